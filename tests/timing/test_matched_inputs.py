@@ -20,7 +20,7 @@ from tests.simulation.systems import arc, event, system, timed
 
 
 def test_a_slow_and_a_fast_sensor() -> None:
-    """w + the slow gap is the age; G + max(w, g) + the slow gap the wait; the fast gap and its wait the gap."""
+    """Within and the slow gap are the age; G + max(w, g) + the slow gap the wait; the fast gap and its wait the gap."""
     analysis = analyse_system(_pair(100, 30, within=40))
     figures = analysis.matches["fuse"]
     assert {key: _ms(age) for key, age in figures.ages.items()} == {"slow": 140, "fast": 140}
