@@ -92,9 +92,10 @@ class _Propagation:
             for index, joined in enumerate(find_joined_resources(state.system, state.triggers, self.resources))
         }
         self.joined_bounds: dict[str, Mapping[str, int]] = {}
-        self.joined_step_of = {
-            name: step for step, joined in self.joined_resources.items() for name in joined.processor.members
-        }
+        self.joined_steps_of: dict[str, list[str]] = {}
+        for step, joined in self.joined_resources.items():
+            for name in joined.processor.members:
+                self.joined_steps_of.setdefault(name, []).append(step)
         self.successors = self._find_successors()
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
@@ -302,7 +303,8 @@ class _Propagation:
 
     def _limit_response(self, name: str, response: WorstResponse) -> WorstResponse:
         """Return a response, or the bound of all resources that are joined with its core, whichever is less."""
-        bound = self.joined_bounds.get(self.joined_step_of.get(name, ""), {}).get(name)
+        bounds = [self.joined_bounds.get(step, {}).get(name) for step in self.joined_steps_of.get(name, ())]
+        bound = min((each for each in bounds if each is not None), default=None)
         if bound is None or response.tier == "declared" or (response.value is not None and response.value <= bound):
             return response
         return WorstResponse(bound, response.tier)

@@ -4,6 +4,10 @@ While anything of them is pending, one of them works: what is pending runs or wa
 for that, or waits for a thread of something of which the same is true. So the longest time for which all their work
 together keeps one processor busy bounds each response, whatever the orders. No response is in it. It is the bound that
 remains at moderate loads where the waits of several threads for one another would add up.
+
+Where all that is used on some cores comes in the order of arrival, those cores need not be joined with others: while
+anything of them is pending, one of them works, or one of their threads waits for a resource or uses it. That takes each
+activation no longer than the longest use of each other thread, and its own.
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.resource_waits import find_turn_times
 from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import EventModels
 from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
@@ -69,12 +74,44 @@ def find_joined_resources(
             _join_steps(neighbours, steps_of.get(name, [name]), steps_of.get(other, [other]))
     for steps in steps_of.values():
         _join_steps(neighbours, steps, steps)
+    yield from _list_groups(system, triggers, parts, neighbours, _list_uses(system))
+    if use_times := _list_turns(system):
+        neighbours = {step: [] for step in (*parts, *user_ids) if step in parts or step not in steps_of}
+        for steps in steps_of.values():
+            _join_steps(neighbours, steps, steps)
+        yield from _list_groups(system, triggers, parts, neighbours, use_times)
+
+
+def _list_uses(system: TimingSystem) -> dict[str, int]:
+    """Return how long each activation uses resources at most, without any wait."""
+    return {
+        activity.id: sum(use.worst for use in activity.uses.values())
+        for activity in system.activities.values()
+        if activity.uses
+    }
+
+
+def _list_turns(system: TimingSystem) -> dict[str, int]:
+    """Return how long each activation waits for resources and uses them, where all come in the order of arrival."""
+    times = {name: find_turn_times(system, name) for name in _list_uses(system)}
+    return {name: time for name, time in times.items() if time is not None}
+
+
+def _list_groups(
+    system: TimingSystem,
+    triggers: TriggerGraph,
+    parts: Mapping[str, ProcessingResource],
+    neighbours: Mapping[str, list[str]],
+    use_times: Mapping[str, int],
+) -> Iterable[JoinedResources]:
+    """Yield the groups of cores that are joined, of which all uses take a time that is known."""
     for group in find_strong_components(neighbours, neighbours.__getitem__):
         units = dict.fromkeys(unit for step in group if step in parts for unit in parts[step].units)
         units |= dict.fromkeys((step,) for step in group if step not in parts)
         is_open = any(step in parts and parts[step].missing for step in group)
-        if not is_open and any(system.activities[name].uses for unit in units for name in unit):
-            yield _join_units(system, triggers, tuple(units))
+        users = [name for unit in units for name in unit if system.activities[name].uses]
+        if users and not is_open and all(name in use_times for name in users):
+            yield _join_units(system, triggers, tuple(units), use_times)
 
 
 def _join_steps(neighbours: Mapping[str, list[str]], steps: Iterable[str], other_steps: Iterable[str]) -> None:
@@ -84,13 +121,14 @@ def _join_steps(neighbours: Mapping[str, list[str]], steps: Iterable[str], other
             neighbours[other_step].append(step)
 
 
-def _join_units(system: TimingSystem, triggers: TriggerGraph, units: tuple[ThreadUnit, ...]) -> JoinedResources:
+def _join_units(
+    system: TimingSystem, triggers: TriggerGraph, units: tuple[ThreadUnit, ...], use_times: Mapping[str, int]
+) -> JoinedResources:
     """Return the processor that does all work of some units, on cores and on resources."""
     activities = dict(system.activities)
     for name in (name for unit in units for name in unit):
         activity = activities[name]
-        use_time = sum(use.worst for use in activity.uses.values())
-        wcet = None if activity.wcet is None else activity.wcet + use_time
+        wcet = None if activity.wcet is None else activity.wcet + use_times.get(name, 0)
         activities[name] = replace(activity, wcet=wcet, uses={}, priority=None)
     joined_system = replace(system, activities=activities)
     processor = ProcessingResource("joined", None, 1, units)

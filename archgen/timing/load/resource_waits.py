@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from heapq import nlargest
 from typing import NamedTuple
@@ -52,7 +52,8 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
     order = _find_order(state.system, resource_id)
     if find_load(state, resource_id) > 1:
         return OVERLOAD_CAUSE
-    in_turn = _bound_in_turn(state, name, resource_id) if order == "fifo" else None
+    users = [user for user in find_users(state.system, resource_id) if state.event_models[user] != ()]
+    in_turn = bound_in_turn(state.system, name, resource_id, users) if order == "fifo" else None
     try:
         by_arrivals = _bound_by_arrivals(state, name, resource_id, budget)
     except DivergedError:
@@ -81,10 +82,20 @@ def thread_key(activity: Activity) -> str:
     return activity.executor or activity.container or activity.id
 
 
-def _bound_in_turn(state: PropagationState, name: str, resource_id: str) -> int | None:
+def find_turn_times(system: TimingSystem, name: str) -> int | None:
+    """Return how long the uses of an activation take if each comes in the order of arrival; None where one does not."""
+    total = 0
+    for resource_id in system.activities[name].uses:
+        is_fifo = _find_order(system, resource_id) == "fifo"
+        time = bound_in_turn(system, name, resource_id, find_users(system, resource_id)) if is_fifo else None
+        if time is None:
+            return None
+        total += time
+    return total
+
+
+def bound_in_turn(system: TimingSystem, name: str, resource_id: str, users: Iterable[str]) -> int | None:
     """Return how long a use takes with one of each other thread before it; None where any number may ask at once."""
-    system = state.system
-    users = [user for user in find_users(system, resource_id) if state.event_models[user] != ()]
     uses_by_thread: dict[str, dict[str | None, list[int]]] = {}
     for user in dict.fromkeys((name, *users)):
         activity = system.activities[user]
