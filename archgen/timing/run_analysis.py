@@ -9,7 +9,12 @@ from operator import attrgetter
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason, ResourceLoad, ResponseTime
 from archgen.timing.load.event_propagation import split_resources
-from archgen.timing.load.host_loads import build_response_times, build_run_responses, find_host_loads
+from archgen.timing.load.host_loads import (
+    build_response_times,
+    build_run_responses,
+    build_storing_waits,
+    find_host_loads,
+)
 from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.load.resource_loads import explain_waits, find_resource_loads
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
@@ -90,7 +95,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         },
         responses=responses,
         runs=build_run_responses(state, responses),
-        hosts=find_host_loads(system, resource_list, rates.paces, responses),
+        hosts=find_host_loads(system, resource_list, rates.paces, rates.outputs, responses),
         links=find_link_loads(state, rates),
         topics={} if judging else find_topic_loads(system, rates.outputs),
         edges=find_edge_fits(edge_context, judging=judging),
@@ -105,6 +110,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         services=find_service_loads(state, rates.paces, responses),
         matches=rates.matches,
         resources=resource_loads,
+        storing_waits=build_storing_waits(state),
         notes=notes,
     )
 

@@ -8,6 +8,7 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
@@ -19,21 +20,25 @@ from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.load_system import build_load_system, list_written_priorities
+from archgen.timing.load.queue_responses import find_core_queue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
-from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.run_ways import EntryWay, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
-from archgen.timing.load.thread_work import DIVERGED_CAUSE, EventModels, WorstResponse
-from archgen.timing.load.waiting_threads import delayed_model, find_waiting_responses
+from archgen.timing.load.single_cores import SingleCores, delay_by_response
+from archgen.timing.load.storing_waits import find_core_waits
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
+from archgen.timing.load.waiting_threads import delayed_model, find_waiting_responses, find_waiting_stores
 from archgen.timing.system.core_placement import (
     ProcessingResource,
     divide_resource,
     find_resources,
     part_waiting_units,
 )
-from archgen.timing.system.timing_system import Arc, TimingSystem
-from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
+from archgen.timing.system.timing_system import Arc, TimingSystem, samples_inputs
+from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
 _MAX_SWEEPS = 300
 """Sweeps over a loop before it is given up as diverged."""
@@ -48,16 +53,32 @@ def propagate_events(
 
     A caller that propagates several times passes the same budgets to all runs.
     """
-    return _Propagation(
-        PropagationState(system, triggers), find_resources(system), group_budgets or GroupBudgets()
+    load_system = build_load_system(system)
+    load_triggers = triggers if load_system is system else find_triggers(load_system)
+    state = _Propagation(
+        PropagationState(load_system, load_triggers),
+        find_resources(load_system),
+        group_budgets or GroupBudgets(),
+        list_written_priorities(system, load_system),
     ).run_to_fixed_point()
+    # What is asked of the state later is about the activities that somebody wrote.
+    state.system, state.triggers = system, triggers
+    for name in load_system.activities.keys() - system.activities.keys():
+        for table in (state.event_models, state.responses, state.ways_to, state.run_arcs, state.storing_waits):
+            table.pop(name, None)
+        state.diverged.discard(name)
+    return state
 
 
 class _Propagation:
     """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
 
     def __init__(
-        self, state: PropagationState, resource_list: Iterable[ProcessingResource], group_budgets: GroupBudgets
+        self,
+        state: PropagationState,
+        resource_list: Iterable[ProcessingResource],
+        group_budgets: GroupBudgets,
+        priorities: Mapping[str, int | None],
     ) -> None:
         self.state = state
         self.resources: dict[str, ProcessingResource] = {}
@@ -77,10 +98,29 @@ class _Propagation:
         self.waiting_ids = frozenset(
             name for resource in self.resources.values() if resource.waits for name in resource.members
         )
+        self.queues = {
+            key: queue
+            for key, resource in self.resources.items()
+            # What waits for a resource comes back into the queue, later than what it came with.
+            if not (resource.waits or resource.neighbour_units)
+            and (queue := find_core_queue(state.system, resource, priorities)) is not None
+        }
+        self.roaming_ids = {
+            key: frozenset(name for unit in resource.roaming_units for name in unit)
+            for key, resource in self.resources.items()
+            if resource.roaming_units
+        }
         self.inner_cores: dict[str, InnerCore] = {}
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
         self._prepare_inner_cores()
+        self.single_cores = self._find_single_cores()
+        # From below, as everything that is found by repetition.
+        self.work_ends = {
+            name: self.state.system.activities[name].wcet or 0
+            for step in self.single_cores
+            for name in self.resources[step].members
+        }
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         # Where a written jitter lets many come at once, that many may wait without anything having run away.
         activities = state.system.activities.values()
@@ -107,13 +147,23 @@ class _Propagation:
             if inner_triggers is None:
                 continue
             if resource.cores == 1:
-                core = self.inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                core = prepare_inner_core(system, resource, inner_triggers)
+                core = self.inner_cores[step] = replace(core, queue=self.queues.get(step))
                 self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
             else:
                 cores = prepare_shared_cores(system, resource, inner_triggers)
                 self.shared_cores[step] = CorePaths(cores)
                 self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to
             self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
+
+    def _find_single_cores(self) -> dict[str, SingleCores]:
+        """Return the cores, one by one, of what shares several of them with what is pinned to some of them."""
+        cores_of = {unit: resource.core_set for resource in self.resources.values() for unit in resource.units}
+        return {
+            step: SingleCores(self.state.system, self.resources[step], cores_of)
+            for step in self.shared_cores
+            if self.resources[step].foreign_units and not any(self.inner_triggers[step].inner_arcs.values())
+        }
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -126,7 +176,46 @@ class _Propagation:
                 self._update_step(steps[0])
             else:
                 self._iterate_steps(steps)
+        self._find_storing_waits()
         return self.state
+
+    def _find_storing_waits(self) -> None:
+        """Find how long storing callbacks may wait, where the responses on a core were found without them."""
+        state = self.state
+        readers = {name for name, activity in state.system.activities.items() if samples_inputs(state.system, activity)}
+        for step, resource in self.resources.items():
+            names = [name for name in resource.members if name in readers]
+            queue = self.queues.get(step)
+            if resource.waits:
+                stores = find_waiting_stores(state, resource, self.waiting_ids, names, self.budget_of[step])
+                state.storing_waits |= {name: self._limit_response(name, wait) for name, wait in stores.items()}
+            elif queue is not None and queue.stores_in_time:
+                state.storing_waits |= dict.fromkeys(names, WorstResponse(0, "fifo"))
+            elif names and step not in self.inner_triggers:
+                models = self._models_of(step)
+                state.storing_waits |= find_core_waits(state.system, resource, models, names, self.budget_of[step])
+        for name in readers.difference(self.resources_of):
+            own_core = ProcessingResource(name, None, 1, ((name,),))
+            if state.system.activities[name].uses:
+                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
+                state.storing_waits |= {name: self._limit_response(name, stores[name])}
+                continue
+            state.storing_waits |= find_core_waits(
+                state.system, own_core, state.event_models, (name,), self.budget_of[name]
+            )
+
+    def _models_of(self, step: str) -> Mapping[str, EventStreams | UnknownCause]:
+        """Return the event models as a resource sees them."""
+        roaming_ids = self.roaming_ids.get(step, frozenset())
+        return {**self.state.event_models, **{name: self._model_of_roaming(name) for name in roaming_ids}}
+
+    def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:
+        """Return the event model of work that another core may have begun."""
+        if name in self.waiting_ids:
+            return delayed_model(self.state, name, self.waiting_ids)
+        return delay_by_response(
+            self.state.event_models[name], self.state.responses.get(name), self.work_ends.get(name)
+        )
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
@@ -150,7 +239,7 @@ class _Propagation:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
             for name in (name for unit in resource.foreign_units for name in unit):
-                rests_on_response = resource.cores > 1 or resource.waits or name in self.waiting_ids
+                rests_on_response = resource.cores > 1 or resource.waits or name in self.roaming_ids.get(step, ())
                 for foreign_step in self.resources_of.get(name, ()) if rests_on_response else ():
                     successors[foreign_step].append(step)
         for name in self.state.system.activities:
@@ -265,12 +354,15 @@ class _Propagation:
         if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
-            new_responses = self._solve_resource(step)
+            old_ends = dict(state.work_ends)
+            new_responses = self._find_responses(step)
             new_responses = {
                 name: self._limit_response(name, _name_tier(self.resources[step], response))
                 for name, response in new_responses.items()
             }
-            changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
+            changed = old_ends != state.work_ends or any(
+                _has_changed(state.responses.get(name), response) for name, response in new_responses.items()
+            )
             state.responses.update(new_responses)
             return changed
         event_model = activation_model(state, step)
@@ -318,25 +410,21 @@ class _Propagation:
         self.state.responses[step] = response
         return changed
 
-    def _solve_resource(self, step: str) -> dict[str, WorstResponse]:
-        """Find the responses of a core on which nothing fires anything else, or of a thread that waits for resources."""
-        state, resource = self.state, self.resources[step]
+    def _find_responses(self, step: str) -> dict[str, WorstResponse]:
+        """Find the responses of a resource on which nothing fires anything else."""
+        state, resource, budget = self.state, self.resources[step], self.budget_of[step]
         if resource.waits:
-            return find_waiting_responses(state, resource, self.waiting_ids, self.budget_of[step])
-        return find_responses(
-            state.system,
-            resource,
-            self._seen_models(resource),
-            AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
-        )
-
-    def _seen_models(self, resource: ProcessingResource) -> EventModels:
-        """Return the event models of all work on a core: what waits for resources comes up to its response later."""
-        waiting_ids = [name for unit in resource.foreign_units for name in unit if name in self.waiting_ids]
-        if not waiting_ids:
-            return self.state.event_models
-        delayed_models = {name: delayed_model(self.state, name, self.waiting_ids) for name in waiting_ids}
-        return {**self.state.event_models, **delayed_models}
+            return find_waiting_responses(state, resource, self.waiting_ids, budget)
+        models = self._models_of(step) if step in self.roaming_ids else state.event_models
+        queue, stale_ids = self.queues.get(step), self._stale_activities(step)
+        # In a queue each response rests on all that waits there.
+        effort = AnalysisEffort(budget, stale_ids if queue is None else None)
+        responses = find_responses(state.system, resource, models, effort)
+        if queue is None:
+            return responses
+        busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+        bounds = queue.bound_responses(models.__getitem__, busy_period, budget)
+        return {name: response.limit_to(bounds.get(name), queue.order) for name, response in responses.items()}
 
     def _update_inner_core(self, step: str) -> bool:
         """Find the responses of a core on which activities fire one another, and return whether anything changed."""
@@ -345,24 +433,27 @@ class _Propagation:
 
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
-                # On several cores the responses of what is foreign are looked at as they are.
-                waiting_ids = self.waiting_ids if step in self.inner_cores else ()
-                return delayed_model(state, str(origin.key), waiting_ids)
+                name = str(origin.key)
+                is_roaming = step in self.inner_cores and name in self.roaming_ids.get(step, ())
+                return self._model_of_roaming(name) if is_roaming else state.event_models[name]
             key = id(entry_arc.arc)
             if key not in entering_models:
                 entering_models[key] = arriving_model(state, entry_arc.arc)
             return entering_models[key]
 
-        new_responses, new_ways = (
+        new_responses, new_ways, new_waits = (
             solve_inner_core(self.inner_cores[step], find_model, self.budget_of[step])
             if step in self.inner_cores
             else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
         )
+        old_ends = dict(self.work_ends)
+        if step in self.single_cores:
+            self._limit_to_single_cores(step, new_responses, new_ways)
         new_responses = {
             name: self._limit_response(name, _name_tier(self.resources[step], response))
             for name, response in new_responses.items()
         }
-        changed = any(
+        changed = old_ends != self.work_ends or any(
             not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
         )
         state.entering_models.update(entering_models)
@@ -372,11 +463,32 @@ class _Propagation:
         )
         state.responses.update(new_responses)
         state.ways_to.update(new_ways)
+        state.storing_waits.update(new_waits)
         return changed
+
+    def _limit_to_single_cores(
+        self, step: str, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]
+    ) -> None:
+        """Limit the responses on several cores to what each of these cores alone would let them be."""
+        state = self.state
+        bounds = self.single_cores[step].limit(
+            state.event_models, {**state.responses, **responses}, self.budget_of[step]
+        )
+        for name in self.resources[step].members:
+            self.work_ends.pop(name, None)
+        self.work_ends.update(bounds)
+        for name, bound in bounds.items():
+            response = responses[name]
+            if response.value is not None and bound < response.value and response.tier != "declared":
+                responses[name] = response._replace(value=bound)
+                ways_to[name] = tuple(
+                    way._replace(delay=min(way.delay, bound)) if len(way.steps) == 1 and way.delay is not None else way
+                    for way in ways_to[name]
+                )
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""
-        resource, event_models = self.resources[step], self._seen_models(self.resources[step])
+        resource, event_models = self.resources[step], self._models_of(step)
         current_models = {
             name: event_models[name] for unit in (*resource.units, *resource.foreign_units) for name in unit
         }

@@ -174,7 +174,7 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
         if by_priority and _urgency(other) < lowest:
             blocking = max(blocking, worst)
             continue
-        response = state.responses.get(user)
+        response = state.work_ends.get(user, state.responses.get(user))
         if isinstance(model, UnknownCause):
             return model
         if response is None or response.value is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -14,6 +15,7 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, su
 from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, name_lane, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -23,6 +25,12 @@ class WorstResponse(NamedTuple):
     value: int | None
     tier: ResponseTier
     cause: UnknownCause = UnknownCause()
+
+    def limit_to(self, bound: int | None, tier: ResponseTier) -> WorstResponse:
+        """Return the response of another tier where that is the smaller bound; what is declared stays."""
+        if bound is None or self.value is None or self.value <= bound or self.tier in {"declared", "unknown"}:
+            return self
+        return WorstResponse(bound, tier)
 
 
 EventModels = Mapping[str, EventStreams | UnknownCause]
@@ -59,7 +67,8 @@ class ThreadWork:
     lowest_priority: int | None
     highest_priority: int | None
     share: Fraction
-    container: str | None
+    in_order: bool = True
+    """Whether the activations of its only activity begin in the order in which they come, one after the other."""
 
 
 def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
@@ -79,7 +88,7 @@ def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventMode
         _lowest_priority(system, unit),
         max(priorities, default=None),
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
-        system.activities[unit[0]].container,
+        works_in_order(system, system.activities[unit[0]]),
     )
 
 
@@ -88,15 +97,13 @@ def lower_crowded_threads(
 ) -> list[ThreadWork]:
     """Lower the priority of threads that wait for work of less priority than their own.
 
-    In a container with fewer threads than members, each waits for the least urgent member too. And whatever is as
-    urgent as some of the container's members must let pass the work that piled up while its threads were held: more
+    In a process with fewer threads than it may ask for, each waits for the least urgent member too. And whatever is as
+    urgent as some of its members must let pass the work that piled up while its threads were held: more
     than what comes in a busy period of their priority, but no more than in one of the least urgent member's.
     """
-    lowest_by_container = _lowest_in_crowded(system, threads, event_models)
+    lowest_of = _lowest_in_crowded(system, threads, event_models)
     lowered_threads = [
-        replace(thread, lowest_priority=lowest_by_container[thread.container])
-        if thread.container and thread.container in lowest_by_container
-        else thread
+        replace(thread, lowest_priority=lowest_of[thread.unit[0]]) if thread.unit[0] in lowest_of else thread
         for thread in threads
     ]
     # Only threads whose priorities differ pass a delay on downwards.
@@ -118,18 +125,26 @@ def lower_crowded_threads(
 def _lowest_in_crowded(
     system: TimingSystem, threads: Sequence[ThreadWork], event_models: EventModels
 ) -> dict[str, int | None]:
-    """Return the least priority in each container that has fewer threads (but several) than members that ever work."""
-    members_by_container: dict[str, list[str]] = {}
-    for thread in threads:
-        if thread.container is not None:
-            members_by_container.setdefault(thread.container, []).extend(
-                name for name in thread.unit if event_models[name] != ()
-            )
+    """Return the least priority in what the members of some threads wait for, by the thread's first member.
+
+    That is the process, where one may wait for one of several threads, else a callback group that is divided.
+    """
+    # A single thread is one unit and needs no lowering: its members run one after the other anyway. Of what never works
+    # nobody has to wait for a thread.
+    working_ids = [name for thread in threads for name in thread.unit if event_models[name] != ()]
+    crowded_pools = find_crowded_pools(system, [system.activities[name] for name in working_ids])
+    unit_counts = Counter(name_lane(system, system.activities[thread.unit[0]]) for thread in threads)
+    members_by_pool: dict[ThreadPool | str, list[str]] = {}
+    for name in working_ids:
+        lane = name_lane(system, system.activities[name])
+        if name in crowded_pools or unit_counts[lane] > 1:
+            members_by_pool.setdefault(crowded_pools.get(name, lane), []).append(name)
+    lowest_by_pool = {key: _lowest_priority(system, names) for key, names in members_by_pool.items()}
+    lowest_of = {name: lowest_by_pool[key] for key, names in members_by_pool.items() for name in names}
     return {
-        container: _lowest_priority(system, names)
-        for container, names in members_by_container.items()
-        # A single thread is one unit and needs no lowering: its members run one after the other anyway.
-        if 1 < (system.threads.get(container) or 1) < len(names)
+        thread.unit[0]: lowest_of[name]
+        for thread in threads
+        if (name := next((each for each in thread.unit if each in lowest_of), "")) in lowest_of
     }
 
 

@@ -13,7 +13,7 @@ is a cascade: what it fires comes from outside.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -42,6 +42,7 @@ from archgen.timing.load.thread_work import (
     work_utilisation,
 )
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import find_pool, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -56,10 +57,24 @@ def find_waiting_responses(
         activity = system.activities[name]
         responses[name] = response
         if activity.response is not None:
+            # What is declared may hold a wait for the world outside; to others it matters when the work is done.
+            state.work_ends[name] = response
             responses[name] = WorstResponse(activity.response, "declared")
         elif activity.wcet is None:
             responses[name] = WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), response.cause)))
     return responses
+
+
+def find_waiting_stores(
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    reader_ids: Iterable[str],
+    budget: SearchBudget,
+) -> dict[str, WorstResponse]:
+    """Return how long a message may wait to be stored in a thread that waits for resources: as long as it is busy."""
+    wait = _bound_unit(state, resource, waiting_ids, budget, any_order=True)
+    return dict.fromkeys(reader_ids, wait)
 
 
 def delayed_model(
@@ -69,7 +84,7 @@ def delayed_model(
     model = state.event_models[name]
     if isinstance(model, UnknownCause) or not model or not (always or name in waiting_ids):
         return model
-    response = state.responses.get(name)
+    response = state.work_ends.get(name, state.responses.get(name))
     if response is None or response.value is None:
         # That a thread has too much to do does not say so of its core.
         return DIVERGED_CAUSE if response is None or not response.cause.missing else response.cause
@@ -77,7 +92,12 @@ def delayed_model(
 
 
 def _bound_unit(
-    state: PropagationState, resource: ProcessingResource, waiting_ids: Collection[str], budget: SearchBudget
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    budget: SearchBudget,
+    *,
+    any_order: bool = False,
 ) -> WorstResponse:
     """Bound the response of all activities of a thread."""
     system = state.system
@@ -90,9 +110,10 @@ def _bound_unit(
     if causes:
         return WorstResponse(None, tier, unite_causes(causes))
     interference = _divide_demand(others, 1 if resource.joined else resource.cores)
+    is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
     # Use by use, or all uses of others in the whole time at once: either may be the smaller one.
     candidates = [
-        _bound_with(system, own_ids, waits, interference, budget)
+        _bound_with(waits, interference, budget, in_order=is_in_order)
         for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))
     ]
     bounds = [bound for bound in candidates if not isinstance(bound, UnknownCause)]
@@ -156,11 +177,7 @@ def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCau
 
 
 def _bound_with(
-    system: TimingSystem,
-    own_ids: Sequence[str],
-    waits: _Waits | UnknownCause,
-    interference: _Interference,
-    budget: SearchBudget,
+    waits: _Waits | UnknownCause, interference: _Interference, budget: SearchBudget, *, in_order: bool
 ) -> int | UnknownCause:
     """Return the longest response of a thread with some waits, or why none is found."""
     if isinstance(waits, UnknownCause):
@@ -173,20 +190,16 @@ def _bound_with(
         interference.demand.term_count + sum([2 * len(each.competitors) for each in waits.rivals]),
     )
     try:
-        return _search(system, own_ids, waits.works, demand, budget)
+        return _search(waits.works, demand, budget, in_order=in_order)
     except DivergedError:
         return DIVERGED_CAUSE
 
 
 def _search(
-    system: TimingSystem,
-    own_ids: Sequence[str],
-    works: Sequence[ActivityWork],
-    interference: DemandFunction,
-    budget: SearchBudget,
+    works: Sequence[ActivityWork], interference: DemandFunction, budget: SearchBudget, *, in_order: bool
 ) -> int:
-    """Return the longest response: by activation where a thread has one callback alone, else the whole busy time."""
-    if len(own_ids) == 1 and works[0].streams and _is_one_callback(system, own_ids[0]):
+    """Return the longest response: by activation where one comes after the other, else the whole busy time."""
+    if in_order and works[0].streams:
         return worst_response(works[0], interference, budget)
     own_demand = GrowingLoad(works).demand_function()
     once_cost = sum(work.cost for work in works if not work.streams)
@@ -195,16 +208,6 @@ def _search(
         own_demand.term_count + interference.term_count,
     )
     return longest_busy_period(total, budget)
-
-
-def _is_one_callback(system: TimingSystem, name: str) -> bool:
-    """Whether the activations of an activity end in the order in which they come: the callbacks of two inputs may not."""
-    activity = system.activities[name]
-    if activity.executor and activity.callback_group is None:
-        return False
-    firing_inputs = activity.triggers if activity.behaviour == "event" and activity.mode == "any" else (name,)
-    requests = [arc for arc in system.arcs_into.get(name, ()) if arc.role == "request"]
-    return len(firing_inputs) + len(requests) == 1
 
 
 def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> _Interference:
@@ -227,9 +230,9 @@ def _fills_resource(state: PropagationState, own_ids: Sequence[str]) -> bool:
 def _fills_thread(state: PropagationState, own_ids: Sequence[str]) -> bool:
     """Whether a thread has more to do than it can, were it never to wait for anybody else."""
     system = state.system
-    if system.activities[own_ids[0]].executor and system.activities[own_ids[0]].callback_group is None:
-        return False
-    if len(own_ids) > 1 and (system.threads.get(system.activities[own_ids[0]].container or "") or 1) > 1:
+    first = system.activities[own_ids[0]]
+    pool = find_pool(system, first)
+    if is_reentrant(system, first) or (len(own_ids) > 1 and pool is not None and pool.threads != 1):
         return False
     shares = [
         work_utilisation((activity.wcet or 0) + sum(use.worst for use in activity.uses.values()), model)
@@ -242,11 +245,11 @@ def _fills_thread(state: PropagationState, own_ids: Sequence[str]) -> bool:
 def _list_own(system: TimingSystem, resource: ProcessingResource) -> tuple[str, ...]:
     """Return what may hold the threads that a unit waits for: itself, and members of its container on other cores."""
     unit = resource.units[0]
-    container = system.activities[unit[0]].container
-    if not resource.joined or container is None or system.threads.get(container) == 1:
+    pool = find_pool(system, system.activities[unit[0]])
+    if not resource.joined or pool is None or pool.threads == 1:
         return unit
     foreign_ids = [name for foreign_unit in resource.foreign_units for name in foreign_unit]
-    return (*unit, *(name for name in foreign_ids if system.activities[name].container == container))
+    return (*unit, *(name for name in foreign_ids if find_pool(system, system.activities[name]) == pool))
 
 
 def _list_others(

@@ -226,3 +226,14 @@ def best_response(activity: Activity) -> int:
 def calls_per_activation(caller: Activity, request: Arc) -> Fraction:
     """Return how many calls a client makes in each of its activations."""
     return caller.calls.get(request.output, Fraction(1))
+
+
+def is_sampled(reader: Activity, arc: Arc) -> bool:
+    """Whether a message on an arc waits in its reader's executor until a callback stores it."""
+    # The client of a service gets its answer in a callback as well.
+    return bool(reader.executor) if arc.role == "answer" else arc.role == "data" and arc.input in reader.storing
+
+
+def samples_inputs(system: TimingSystem, activity: Activity) -> bool:
+    """Whether messages to an activity wait in its executor until a callback stores them."""
+    return bool(activity.storing) or any(is_sampled(activity, arc) for arc in system.arcs_into.get(activity.id, ()))
