@@ -13,6 +13,7 @@ from archgen.timing.system.timing_system import (
     Executor,
     ResourceUse,
     SharedResource,
+    StoringCallback,
     TimingSystem,
 )
 from tests.simulation.systems import arc, system
@@ -70,16 +71,22 @@ class _Maker:
 
     def add_activity(self, name: str) -> None:
         earlier = [activity.id for activity in self.activities]
-        kinds = ("periodic", "periodic", "event", "match", "all") if len(earlier) > 1 else ("periodic",)
+        kinds = ("periodic", "periodic", "event", "match", "all", "any") if len(earlier) > 1 else ("periodic",)
         kind = self.dice.choice(kinds)
         period = self.dice.choice((10, 20, 20, 40, 50, 100))
         values = {**self.work(period), **self.place(name)}
         if kind == "periodic":
             jitter = self.dice.choice((0, 0, 0, period // 4, period))
+            if jitter and values["callback_group"] is None:
+                values["callback_group"] = name  # reentrant jobs that come together may overtake one another
             self.activities.append(Activity(name, name, None, "periodic", period=period, jitter=jitter, **values))
-            if earlier and self.chance(0.3):
-                self.arcs.append(self.arc(self.dice.choice(earlier), name))
+            if earlier and self.chance(0.4):
+                read = self.arc(self.dice.choice(earlier), name)
+                self.arcs.append(read)
+                storing = {read.input: StoringCallback(self.dice.choice((0, 0, 1)))}
+                self.activities[-1] = replace(self.activities[-1], storing=storing)
             return
+        values["callback_group"] = name
         sources = self.dice.sample(earlier, {"event": 1}.get(kind, 2))
         if self.chance(0.15):
             values["throttle"] = self.dice.choice((5, 20, 50))
@@ -133,12 +140,15 @@ class _Maker:
         if self.is_ranked and self.chance(0.8):
             values["priority"] = self.dice.randint(1, 4)
         if host and self.cores[host] > 1 and self.chance(0.3):
-            values["cores"] = (self.dice.randrange(self.cores[host]),)
+            cores = range(self.cores[host])
+            values["cores"] = tuple(sorted(self.dice.sample(cores, self.dice.choice((1, 1, 2)))))
         executor = f"node {name}"
         if self.chance(0.35):
             container = f"k_{host}"
             values["container"], executor = container, f"container {container}"
             self.threads.setdefault(container, self.dice.choice((1, 1, 2, 3)))
-        threads = self.threads[values["container"]] if "container" in values else 1
+        threads = self.threads[values["container"]] if "container" in values else self.dice.choice((1, 1, 1, 1, 2, 3))
         self.executors[executor] = Executor(executor, threads, host)
+        if threads != 1 and self.chance(0.3):
+            values["callback_group"] = None
         return {**values, "executor": executor}

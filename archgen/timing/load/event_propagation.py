@@ -158,9 +158,9 @@ class _Propagation:
 
     def _find_single_cores(self) -> dict[str, SingleCores]:
         """Return the cores, one by one, of what shares several of them with what is pinned to some of them."""
-        cores_of = {unit: resource.core_set for resource in self.resources.values() for unit in resource.units}
+        cores_of = {name: resource.core_set for resource in self.resources.values() for name in resource.members}
         return {
-            step: SingleCores(self.state.system, self.resources[step], cores_of)
+            step: SingleCores(self.state.system, self.resources[step], cores_of, self.waiting_ids)
             for step in self.shared_cores
             if self.resources[step].foreign_units and not any(self.inner_triggers[step].inner_arcs.values())
         }
@@ -444,7 +444,9 @@ class _Propagation:
         new_responses, new_ways, new_waits = (
             solve_inner_core(self.inner_cores[step], find_model, self.budget_of[step])
             if step in self.inner_cores
-            else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
+            else solve_shared_cores(
+                self.shared_cores[step], find_model, {**state.responses, **state.work_ends}, self.budget_of[step]
+            )
         )
         old_ends = dict(self.work_ends)
         if step in self.single_cores:
@@ -472,7 +474,7 @@ class _Propagation:
         """Limit the responses on several cores to what each of these cores alone would let them be."""
         state = self.state
         bounds = self.single_cores[step].limit(
-            state.event_models, {**state.responses, **responses}, self.budget_of[step]
+            state.event_models, {**state.responses, **responses, **state.work_ends}, self.budget_of[step]
         )
         for name in self.resources[step].members:
             self.work_ends.pop(name, None)
