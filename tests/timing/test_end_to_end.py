@@ -56,6 +56,15 @@ def test_published_task_sets(
     assert [value // 10**6 for value in (result.bound.value or 0, *published)] == list(expected)
 
 
+def test_published_bounds_are_not_shown_where_a_callback_has_to_store_what_is_read(tmp_path: Path) -> None:
+    """While `a` works for 1 ms, a message to `b` waits, and `b` may be activated meanwhile: it reads the older one."""
+    text = _tasks(S1, "a b").replace("{stored: at_once}", "{}")
+    project = _project(tmp_path, text)
+    result = project.chains()["c"]
+    assert (result.bound.value, result.bound.complete) == (35 * 10**6, True)
+    assert duerr_bounds.bound_periodic_chain(project.timing(), result.through) is None
+
+
 HOT_PATH = """
 groups:
   lidar:

@@ -7,10 +7,14 @@ blocks has begun a whole unit before, here an instant before.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import get_args
 
 import pytest
 
-from archgen.timing.analysis import Analysis
+from archgen.emit.terminal import timing_legend
+from archgen.timing.analysis import Analysis, ResponseTier
+from archgen.timing.load import host_loads
+from archgen.views.timing import timing_tables
 from tests.timing.sketches import analyse_sketch
 
 MS = 10**6
@@ -99,6 +103,28 @@ def test_a_tier_says_which_order_bounds() -> None:
     assert {response.tier for response in analyse_queue(FIFO_SET, "fixed_priority", "core").responses.values()} == {
         "priorities"
     }
+
+
+def test_a_thread_with_an_order_and_a_core_to_itself_keeps_its_tier() -> None:
+    nodes = {
+        "a +box": "period: 20 ms, wcet: 1 ms",
+        "b +box": "period: 90 ms, wcet: 8 ms",
+        "c @pc": "period: 9 ms, wcet: 1 ms",
+    }
+    rest = "hosts: {pc: {cores: 2}}\ncontainers: {box: {threads: 1, host: pc, scheduling: fifo}}"
+    tiers = {name: response.tier for name, response in analyse_sketch(nodes, rest=rest).responses.items()}
+    assert tiers == {"a": "executor", "b": "executor", "c": "cores"}  # 9 ms in any order as well
+    nodes["a +box"], nodes["b +box"] = (
+        "period: 20 ms, jitter: 40 ms, wcet: 4 ms",
+        "period: 90 ms, wcet: 8 ms, priority: 1",
+    )
+    found = analyse_sketch(nodes, rest=rest.replace("fifo", "non_preemptive")).responses
+    assert (found["b"].worst.value, found["b"].tier) == (12 * MS, "non_preemptive")
+
+
+def test_every_tier_has_words_wherever_it_is_shown() -> None:
+    tables = (host_loads._TIER_SENTENCES, timing_legend._TIERS, timing_tables.TIER_WORDS)  # noqa: SLF001 - they are it
+    assert all(set(table) == set(get_args(ResponseTier)) for table in tables)
 
 
 def test_priorities_do_not_count_on_a_core_of_another_order() -> None:

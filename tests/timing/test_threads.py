@@ -135,7 +135,8 @@ nodes:
         (("cores: [0, 1]", "cores: [1]", "core: 3"), [10, 30, 5]),
         # Two at once: `a` waits until the shorter one of the others has ended.
         (("cores: [0, 1]", "cores: [0, 1]", "cores: [0, 1]"), [15, 25, 15]),
-        (("cores: [0, 1]", "cores: [0, 1]", "cores: [1, 2]"), [15, 25, 15]),
+        # `c` has core 2 to itself, whatever the others do.
+        (("cores: [0, 1]", "cores: [0, 1]", "cores: [1, 2]"), [15, 25, 5]),
         # A set keeps nobody away: what is not pinned may run there too, and on the other two cores.
         (("cores: [0, 1]", "cores: [0, 1]", ""), [15, 25, 5]),
     ],
@@ -165,6 +166,31 @@ nodes:
         "b: {outputs: {out: D}}", "b: {outputs: {out: D}, timing: {period: 100 ms, wcet: 20 ms, core: 1}}"
     )
     assert responses_of(text) == {"ab.a": 35, "ab.b": 35, "c": 35}
+
+
+def test_a_set_of_all_cores_divides_no_group() -> None:
+    """`a` and `b` are of one node: that `a` names all cores, and `b` none, changes nothing."""
+    text = FAST_AND_SLOW.replace("CORES", "4").replace("PLACE", "container: box")
+    text = (
+        text.replace("priority: 90, ", "")
+        .replace(", priority: 50", ", cores: [0, 1, 2, 3]")
+        .replace(", priority: 10", "")
+    )
+    assert responses_of(text)["both.fast"] == 62
+
+
+def test_what_another_core_has_begun_may_come_twice() -> None:
+    """`u` waits for 9 ms while both cores work, then runs on core 1. After 9 ms `q` comes there, and `p` on core 0, where
+    1 ms of `u` is left. Its next job comes 2 ms later: `p` ends after 1 + 10 + 9.5 ms.
+    """
+    text = CORE_SETS.replace("cores: 4", "cores: 2").replace(
+        "{period: 100 ms, wcet: 5 ms, CORES_C}", "{period: 20 ms, wcet: 10 ms}"
+    )
+    text = text.replace("period: 100 ms, wcet: 10 ms, CORES_A", "period: 200 ms, wcet: 9500 us, core: 0")
+    text = text.replace("period: 100 ms, wcet: 20 ms, CORES_B", "period: 200 ms, wcet: 9 ms, core: 1")
+    response = responses_of(text)["a"]
+    assert response is not None
+    assert response >= 20.5
 
 
 @pytest.mark.parametrize("first", [0, *(pytest.param(first, marks=pytest.mark.slow) for first in range(60, 600, 60))])

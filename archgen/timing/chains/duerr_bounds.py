@@ -13,7 +13,8 @@ from itertools import pairwise
 
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
-from archgen.timing.system.timing_system import Activity
+from archgen.timing.figures.timing_values import ZERO_VALUE
+from archgen.timing.system.timing_system import Activity, is_sampled
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +64,12 @@ def bound_periodic_chain(analysis: Analysis, activity_ids: Sequence[str]) -> tup
 
 
 def _is_local(analysis: Analysis, producer: Activity, consumer: Activity) -> bool:
-    """Whether data passes from one activity to another without taking time."""
+    """Whether data passes from one activity to another without taking time, and without waiting to be stored."""
     arcs = [arc for arc in analysis.system.arcs_from.get(producer.id, ()) if arc.target == consumer.id]
-    return bool(arcs) and all(arc.worst == 0 for arc in arcs)
+    storing_wait = analysis.storing_waits.get(consumer.id, ZERO_VALUE)
+    return bool(arcs) and all(
+        arc.worst == 0 and (storing_wait.value == 0 or not is_sampled(consumer, arc)) for arc in arcs
+    )
 
 
 def _has_precedence(producer: Activity, consumer: Activity) -> bool:

@@ -513,7 +513,7 @@ def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingReso
 
 def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
     """Name the tier of a thread that has one of several cores to itself."""
-    if not resource.undisturbed or resource.waits or response.tier in {"declared", "unknown"}:
+    if not resource.undisturbed or resource.waits or response.tier not in {"host", "priorities", "executor"}:
         return response
     return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 

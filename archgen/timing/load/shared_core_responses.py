@@ -31,7 +31,6 @@ from archgen.timing.load.event_streams import (
     EventStreams,
     delay_streams,
     earliest_arrivals,
-    max_arrivals,
     streams_of_calls,
 )
 from archgen.timing.load.inner_triggers import FiringArc
@@ -40,7 +39,7 @@ from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
-from archgen.timing.load.storing_waits import longest_busy_window
+from archgen.timing.load.storing_waits import hold_beside_others
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
 from archgen.timing.system.timing_system import samples_inputs
 
@@ -274,15 +273,13 @@ class _SharedCoreSolver:
 
     def _find_storing_wait(self, name: str) -> WorstResponse:
         """Return how long a message that an activity only stores may wait until an activation that does not read it."""
-        cause = self.cause_of.get(name)
-        if cause is not None:
-            return WorstResponse(None, "cores", cause)
+        if name in self.cause_of:
+            return WorstResponse(None, "cores", self.cause_of[name])
+        thread_ids = (name, *list_storing_ids(self.cores.system.activities[name]))
         try:
-            stored_ids = list_storing_ids(self.cores.system.activities[name])
-            waits = [self._hold_in_thread(each) for each in (name, *stored_ids)]
+            return WorstResponse(max(self._hold_in_thread(each) for each in thread_ids), "cores")
         except DivergedError:
             return WorstResponse(None, "cores", DIVERGED_CAUSE)
-        return WorstResponse(max(waits), "cores")
 
     def _hold_in_thread(self, name: str) -> int:
         """Return how long the thread of an activity may have work until an activation comes that is not part of it."""
@@ -290,23 +287,11 @@ class _SharedCoreSolver:
         last_step = path.last_step
         if last_step is None:
             return self._find_window(path, 0, max(path.cost, 1), spend, None)
-        streams = self._activation_streams(last_step)
-
-        def work_within(window: int) -> int:
-            return self.work.find_time_beside(path, window, spend) + last_step.cost * max_arrivals(streams, window)
-
-        window = 1
-        while (work := work_within(window)) > window:
-            window = work
-        # As in `storing_waits`: the last activation of the window comes at its end.
-        return longest_busy_window(
-            lambda window: (
-                work_within(window)
-                + last_step.cost * (max_arrivals(streams, window + 1) - 1 - max_arrivals(streams, window))
-            ),
-            window,
+        return hold_beside_others(
+            lambda window: self.work.find_time_beside(path, window, spend),
+            last_step.cost,
+            self._activation_streams(last_step),
             spend,
-            1,
         )
 
     def _build_response(self, name: str, ways: Sequence[EntryWay]) -> WorstResponse:

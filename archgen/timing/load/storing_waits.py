@@ -49,6 +49,21 @@ def hold_before_activation(
     return longest_busy_window(work_before, busy_period, budget.start_search(), demand.term_count + 1)
 
 
+def hold_beside_others(
+    find_time_beside: Callable[[int], int], own_cost: int, own_streams: EventStreams, spend: Callable[[int], None]
+) -> int:
+    """Return the same for a thread on several cores, of which others take so much time in a window."""
+    window = 1
+    while (work := find_time_beside(window) + own_cost * max_arrivals(own_streams, window)) > window:
+        window = work
+    return longest_busy_window(
+        lambda window: find_time_beside(window) + own_cost * max(max_arrivals(own_streams, window + 1) - 1, 0),
+        window,
+        spend,
+        1,
+    )
+
+
 def longest_busy_window(
     work_within: Callable[[int], int], longest: int, spend: Callable[[int], None], terms_per_look: int
 ) -> int:

@@ -263,9 +263,11 @@ def _pinned_and_shared(
     free_cores = find_free_cores(cores, pinned_units)
     units_by_set = dict(pinned_units)
     if unpinned_units:
-        units_by_set[free_cores] = [*units_by_set.pop(free_cores, ()), *unpinned_units]
+        # A set may be all the cores that are left: then a group that was divided is one again.
+        names = [name for unit in (*units_by_set.pop(free_cores, ()), *unpinned_units) for name in unit]
+        units_by_set[free_cores] = list(_group_lanes(system, [system.activities[name] for name in names]))
     for resource in _pinned_resources(system, host, units_by_set):
-        is_rest = bool(unpinned_units) and unpinned_units[0] in resource.units
+        is_rest = bool(unpinned_units) and resource.core_set == free_cores
         kept_notes = ("cores to which something is pinned are kept for it",) if len(free_cores) < cores else ()
         yield replace(resource, id=host, assumptions=kept_notes) if is_rest else resource
 

@@ -17,7 +17,11 @@ TIER_WORDS = {
     "dedicated": "own core assumed",
     "host": "any scheduler that never idles",
     "priorities": "by fixed priorities",
+    "non_preemptive": "by priorities, without preemption",
+    "fifo": "first in, first out",
+    "edf": "earliest deadline first",
     "executor": "single-threaded executor",
+    "ros2_executor": "by rounds of the executor",
     "cores": "several cores",
     "unknown": "",
 }

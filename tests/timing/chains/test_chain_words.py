@@ -41,9 +41,19 @@ def test_duerr_by_hand() -> None:
     ("a", "b", "bounds"),
     [
         # a before b on one core: 10 + 3 + max(1, 20) and 3 + 10; turned round 10 + 2 + (20 + 3) and 2 + (10 + 3).
-        ("a @p: period: 10 ms, wcet: 1 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", (33, 13)),
+        (
+            "a @p: period: 10 ms, wcet: 1 ms, priority: 2",
+            "b @p: period: 20 ms, wcet: 2 ms, priority: 1, inputs: {a: {stored: at_once}}",
+            (33, 13),
+        ),
+        # While `a` works, what `b` reads may wait to be stored.
+        ("a @p: period: 10 ms, wcet: 1 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),
         ("a @p: period: 10 ms, wcet: 1 ms, priority: 1", "b @p: period: 20 ms, wcet: 2 ms, priority: 2", (35, 15)),
-        ("a @p: period: 10 ms, wcet: 1 ms, priority: 2", "b @p: period: 20 ms, wcet: 2 ms, priority: 2", (36, 16)),
+        (
+            "a @p: period: 10 ms, wcet: 1 ms, priority: 2",
+            "b @p: period: 20 ms, wcet: 2 ms, priority: 2, inputs: {a: {stored: at_once}}",
+            (36, 16),
+        ),
         ("a: period: 10 ms, response: 1 ms", "b: period: 20 ms, response: 2 ms", (33, 13)),
         ("a @p: period: 10 ms, response: 1 ms", "b @p: period: 20 ms, response: 2 ms, priority: 1", (33, 13)),
         ("a @p: period: 10 ms, wcet: 1 ms", "b @p: period: 20 ms, wcet: 2 ms, priority: 1", None),

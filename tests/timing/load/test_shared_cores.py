@@ -14,7 +14,7 @@ def test_cores_containers_and_pins() -> None:
 
     c: 3 + (4 + 5) / 2 + 6 / 3; d: 4 + (3 + 5) / 2 + 2; e: 5 + (2 x 3 + 2 x 4) / 2 + 2, as two of each come within 14 and the
     response before it. f: 6 + B, where 3 B = 3 + min(4, B) + min(5, B). i: 2 + (3 + 4) / 2; j: 3 + (2 x 2 + 4) / 2; k: 4 + (2 x 2 + 3) / 2.
-    n: 4 + B, where 2 B = 2 x 2 + min(2 x 3, B): what is pinned may have waited for its core, so that two of each count.
+    n: 4 + 2: one of its two cores alone would let it wait for `l` only.
     """
     analysis = analyse_sketch(
         {
@@ -60,7 +60,7 @@ def test_cores_containers_and_pins() -> None:
         "k none ?k..15/2 [assuming 2 dedicated cores for container duo] cores",
         "l none ?l..6 host",
         "m none ?m..7 host",
-        "n none ?n..8 cores",
+        "n none ?n..6 cores",
         "o none ?o..6 [container torn has one thread: it runs where the first pinned member is] executor",
         "p none ?p..6 [container torn has one thread: it runs where the first pinned member is] executor",
         "q none ?q..6 [container torn has one thread: it runs where the first pinned member is] executor",
