@@ -15,6 +15,7 @@ from archgen.analyses import (
     half_written,
     host_links,
     ineffective_timing,
+    input_freshness,
     input_sources,
     name_validity,
     node_mapping,
@@ -87,6 +88,7 @@ _TIMING_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *resource_load.RULES,
     *answer_times.RULES,
     *chain_latency.RULES,
+    *input_freshness.RULES,
 )
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 

@@ -25,7 +25,7 @@ def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fr
 
     Why: From a utilisation of 1 on, work is left over in each round, and responses grow without a bound. Cores to which
     something is pinned are looked at one by one; all else shares the others. Nodes without a host count as having a core of
-    their own, which one of them alone can overload, too.
+    their own, which one of them alone can overload, too. A GPU, or another of the `resources`, works on one use at a time.
 
     Bad:
         groups:
@@ -57,6 +57,7 @@ def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fr
             if utilisation.value is not None and is_beyond and (limit < 1 or load.verdict == "overload"):
                 yield _report_overload(architecture, analysis, host, load, (place_name, cores, utilisation.value))
     yield from _find_overloaded_containers(architecture, analysis, limit)
+    yield from _find_overloaded_resources(architecture, analysis, limit)
     # An activity may overload a core by itself on a host whose cores are enough in total, or without any host.
     overloaded_hosts = {host for host, load in analysis.hosts.items() if load.verdict == "overload"}
     for name, rate_and_gap in analysis.paces.items():
@@ -98,6 +99,24 @@ def _find_overloaded_containers(
                 help="give it more threads, move something out, or let it run less often",
                 element=name,
             )
+
+
+def _find_overloaded_resources(architecture: Architecture, analysis: Analysis, limit: Fraction) -> Iterator[Diagnostic]:
+    """Yield a finding for each resource (a GPU) of which more is asked than it can do."""
+    for name, load in analysis.resources.items():
+        utilisation = load.utilisation.value
+        if utilisation is None or utilisation < limit or (limit == 1 and utilisation == 1):
+            continue
+        heaviest = analysis.system.activities[max(load.shares, key=lambda part: part[1].value or 0)[0]]
+        span = heaviest.places.get(f"uses {name}", heaviest.at)
+        yield Diagnostic(
+            "overloaded-host",
+            f"`{name}` is {_describe_excess(utilisation)}: what uses it takes {format_number(100 * utilisation)} % of its time",
+            architecture.resources[name].at if name in architecture.resources else heaviest.at,
+            labels=(Label(span, f"`{heaviest.id}` takes most"),) if span != NO_SPAN else (),
+            help="use it less often or for a shorter time, or give some of the work another one",
+            element=name,
+        )
 
 
 def _report_overload(

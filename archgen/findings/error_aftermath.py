@@ -23,6 +23,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "short-queue",
         "slow-component",
         "slow-service",
+        "stale-input",
         # What nothing refers to, and what nothing says: that may be what could not be read.
         "disconnected-component",
         "empty-reference",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.model.declared_timing import ActivityBehaviour
+from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.timing.figures.figure_wording import describe_value, format_duration
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound
@@ -101,6 +101,19 @@ class ResponseTime:
 
 
 @dataclass(frozen=True, slots=True)
+class MatchFigures:
+    """What is sure of an activity whose inputs are matched by time, in ns.
+
+    `gap` is the largest between two matches. By input key: `waits` from the arrival of a message until an activation uses
+    it or a newer one, `ages` from a message's time (the activation of its source) until the activation that uses it.
+    """
+
+    gap: TimingValue
+    waits: Mapping[str, TimingValue]
+    ages: Mapping[str, TimingValue]
+
+
+@dataclass(frozen=True, slots=True)
 class RunResponse:
     """How long a run takes at most, in ns: from the event that enters a core until an activity there has ended.
 
@@ -135,6 +148,22 @@ class HostLoad:
         if self.cores is None or self.utilisation.value is None:
             return None if self.cores is None else self.utilisation
         return replace(self.utilisation, value=self.utilisation.value / self.cores)
+
+
+@dataclass(frozen=True, slots=True)
+class ResourceLoad:
+    """What is asked of a resource that works on one use at a time (a GPU).
+
+    `waits` are, by activity, the longest time in ns from the moment at which it asks for the resource until it is done
+    with it; `shares` is what each adds to the utilisation.
+    """
+
+    host: str | None
+    order: SchedulingOrder | None
+    utilisation: TimingValue
+    verdict: Literal["bearable", "overload", "unknown"]
+    shares: tuple[tuple[str, TimingValue], ...]
+    waits: Mapping[str, TimingValue]
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +240,10 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
+    matches: Mapping[str, MatchFigures] = field(default_factory=dict)
+    """What is sure of those whose inputs are matched by time."""
+    resources: Mapping[str, ResourceLoad] = field(default_factory=dict)
+    """The load of GPUs and other resources that work on one use at a time."""
     storing_waits: Mapping[str, TimingValue] = field(default_factory=dict)
     """How long a message may wait to be stored while its reader is activated, by reader, in ns."""
     notes: tuple[Reason, ...] = ()

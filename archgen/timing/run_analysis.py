@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from operator import attrgetter
 
 from archgen.model.architecture import Architecture
-from archgen.timing.analysis import Analysis, Reason
+from archgen.timing.analysis import Analysis, Reason, ResourceLoad, ResponseTime
+from archgen.timing.load.event_propagation import split_resources
 from archgen.timing.load.host_loads import (
     build_response_times,
     build_run_responses,
@@ -13,11 +16,12 @@ from archgen.timing.load.host_loads import (
     find_host_loads,
 )
 from archgen.timing.load.link_queueing import settle_links
+from archgen.timing.load.resource_loads import explain_waits, find_resource_loads
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
-from archgen.timing.system.core_placement import divide_resource, find_resources
+from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -76,10 +80,10 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
     # them.
     system, trigger_graph, state = settle_links(system)
     resource_list = find_resources(system)
-    responses = build_response_times(
-        state, [part for resource in resource_list for part in divide_resource(system, resource)]
-    )
+    responses = build_response_times(state, split_resources(system, resource_list))
     rates = find_rates(state, responses)
+    resource_loads = find_resource_loads(state, rates.paces)
+    responses = _add_wait_reasons(system, responses, resource_loads)
     edge_context = EdgeContext(state, rates.paces, rates.outputs, responses)
     return Analysis(
         system=system,
@@ -104,7 +108,24 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         ),
         derived=rates.derived,
         services=find_service_loads(state, rates.paces, responses),
+        matches=rates.matches,
+        resources=resource_loads,
         storing_waits=build_storing_waits(state),
         notes=notes,
         state=state,
     )
+
+
+def _add_wait_reasons(
+    system: TimingSystem, responses: Mapping[str, ResponseTime], resource_loads: Mapping[str, ResourceLoad]
+) -> dict[str, ResponseTime]:
+    """Return responses with the waits for resources among their reasons."""
+    return {
+        name: replace(
+            response,
+            reasons=(*response.reasons, *explain_waits(resource_loads, system.activities[name], system.tick)),
+        )
+        if system.activities[name].uses
+        else response
+        for name, response in responses.items()
+    }

@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ResourceLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
+from archgen.timing.chains.fused_inputs import FusedInputs, find_fused_inputs
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound
 from archgen.timing.system.timing_system import Arc
@@ -73,11 +74,35 @@ def timing_to_json(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Jso
             }
             for name, load in analysis.services.items()
         },
+        "resources": {name: _resource_to_json(load) for name, load in analysis.resources.items()},
+        "fused": {fused.activity: _fused_to_json(fused) for fused in find_fused_inputs(analysis)},
+    }
+
+
+def _resource_to_json(load: ResourceLoad) -> JsonObject:
+    return {
+        "host": load.host,
+        "scheduling": load.order,
+        "utilisation": quantity_to_json(load.utilisation),
+        "verdict": load.verdict,
+        "users": {
+            name: {"share": quantity_to_json(share), "longest_use": duration_to_json(load.waits[name])}
+            for name, share in load.shares
+        },
+    }
+
+
+def _fused_to_json(fused: FusedInputs) -> JsonObject:
+    return {
+        "within": None if fused.within is None else float(fused.within / _MS),
+        "apart": duration_to_json(fused.apart),
+        "gap": duration_to_json(fused.gap),
+        "ages": {_port_name(key): duration_to_json(age) for key, age in fused.ages.items()},
     }
 
 
 def _element_to_json(analysis: Analysis, name: str) -> JsonObject:
-    rates, response = analysis.paces[name], analysis.responses[name]
+    rates, response, activity = analysis.paces[name], analysis.responses[name], analysis.system.activities[name]
     return {
         "behaviour": rates.behaviour,
         "inferred": rates.inferred,
@@ -86,6 +111,8 @@ def _element_to_json(analysis: Analysis, name: str) -> JsonObject:
         "response": duration_to_json(response.worst),
         "best_response": duration_to_json(response.best),
         "response_tier": response.tier,
+        "percentiles": {key: float(ticks * analysis.system.tick / _MS) for key, ticks in activity.percentiles.items()},
+        "measured": activity.wcet_measured,
     }
 
 

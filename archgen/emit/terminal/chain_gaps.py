@@ -9,7 +9,7 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE
+from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, NO_USE_NOTE, UNLINKED_NOTE
 from archgen.timing.system.core_placement import is_missing_cores
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -38,7 +38,8 @@ def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
     )
     if elsewhere and result.terms:
         phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
-    phrases += [text for text in result.bound.assumptions if not result.terms]
+    notes = (NO_MATCH_NOTE, NO_USE_NOTE)
+    phrases += [text for text in result.bound.assumptions if not result.terms or text.split(":")[0] in notes]
     unfound_text = describe_unfound_places(find_unfound_places(analysis, result.terms))
     if not phrases:
         return f"{_describe_basis(result)}no bound found {unfound_text}" if unfound_text else "no bound"

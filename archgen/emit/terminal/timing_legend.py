@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from archgen.diagnostics.text_columns import TextRow
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
+from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -17,9 +18,10 @@ _CHAIN_FIGURES = {
 }
 _HOST_VERDICTS = {
     "schedulable": "each response is within the period, or the load is so low that it would be with priorities by rate",
-    "overload": "more is to be done than the cores can do",
+    "overload": "more is to be done than the cores (or a resource) can do",
     "undecided": "the cores can do it; not each response is proven to be within its period",
 }
+_RESOURCE_VERDICTS = {"bearable": "what is asked of a resource is no more than it can do"}
 _BEHAVIOURS = {
     "periodic": "works by its own clock",
     "event": "works when something arrives",
@@ -61,10 +63,13 @@ def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: 
         yield from _CHAIN_FIGURES.items()
     # Signs are no part of any id: where one stands in the text, it is a sign.
     yield from ((sign, text) for sign, text in _SIGNS.items() if sign in summary)
-    host_verdicts = {load.verdict for load in analysis.hosts.values()}
+    host_verdicts: set[str] = {load.verdict for load in analysis.hosts.values()}
+    resource_verdicts: set[str] = {load.verdict for load in analysis.resources.values()}
+    host_verdicts |= resource_verdicts
     reasons = {*map(name_unknown_reason, _list_shown_values(analysis, chains)), *host_verdicts}
     yield from ((word, text) for word, text in _FIGURES.items() if word in reasons)
     yield from ((word, text) for word, text in _HOST_VERDICTS.items() if word in host_verdicts)
+    yield from ((word, text) for word, text in _RESOURCE_VERDICTS.items() if word in resource_verdicts)
     behaviours = {pace.behaviour for pace in analysis.paces.values()}
     yield from ((word, text) for word, text in _BEHAVIOURS.items() if word in behaviours)
     if analysis.hosts:
@@ -73,6 +78,9 @@ def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: 
         yield "jitter", "how much later than its clock says an element may start"
     if analysis.services:
         yield "caller", "an element that calls the service; the time holds for one call of each"
+    if find_fused_inputs(analysis):
+        yield "age", "how old a message may be when what uses it begins, since its source began to make it"
+        yield "apart", "the largest time between the beginnings at the sources of what is used together"
     if analysis.paces:
         yield "gap", "the largest time between two activations"
         yield "response", "the longest time from an activation to its end, with all that gets in its way"

@@ -13,10 +13,11 @@ from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
+from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_unfound, list_assumptions
+from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound, list_assumptions
 from archgen.timing.load.host_verdicts import is_done_in_time
 from archgen.timing.system.thread_pools import find_joint_nodes
 
@@ -29,9 +30,12 @@ def format_timing(
         ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
         ("What is late or not proven to be in time, why, and what to do", _advice_rows(analysis, chains.values())),
         ("Hosts", _host_rows(analysis)),
+        ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
         ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
         ("Elements", _element_rows(analysis)),
+        ("Messages that are used together: how old, and how far apart in time", _fused_rows(analysis)),
+        ("Execution times that were measured: no bound rests on percentiles", _percentile_rows(analysis)),
         ("Loops: latency of one round", _loop_rows(loops)),
         ("What is taken for granted", _assumption_rows(analysis)),
     )
@@ -126,6 +130,42 @@ def _format_bounds(load: HostLoad) -> str:
     return f"priorities by rate are sure to do up to {figure_wording.format_share(rounded_down)}, deadlines up to {figure_wording.format_share(deadline_bound)}"
 
 
+def _resource_rows(analysis: Analysis) -> Iterator[TextRow]:
+    for name, load in analysis.resources.items():
+        load_text = f"load {format_figure(load.utilisation, figure_wording.format_share)}"
+        yield name, load.order or "any order", load_text, load.verdict, format_missing(load.utilisation)
+        for user, _ in load.shares:
+            yield f"  {user}", "", "", format_figure(load.waits[user]), format_missing(load.waits[user])
+
+
+def _fused_rows(analysis: Analysis) -> Iterator[TextRow]:
+    for fused in find_fused_inputs(analysis):
+        how = (
+            "waits for all"
+            if fused.within is None
+            else f"matches within {figure_wording.format_duration(fused.within)}"
+        )
+        notes = [text for text in fused.gap.assumptions if text.startswith(NO_MATCH_NOTE)]
+        yield fused.activity, how, f"apart {format_figure(fused.apart)}", "", "; ".join(notes)
+        for key, age in fused.ages.items():
+            yield f"  {key.rpartition('.')[2]}", "", "", f"age {format_figure(age)}", format_missing(age)
+
+
+def _percentile_rows(analysis: Analysis) -> Iterator[TextRow]:
+    for activity in analysis.system.activities.values():
+        if activity.percentiles:
+            texts = [
+                f"{key} {figure_wording.format_duration(Fraction(ticks * analysis.system.tick))}"
+                for key, ticks in activity.percentiles.items()
+            ]
+            longest = (
+                f"longest {figure_wording.format_duration(Fraction(activity.wcet * analysis.system.tick))}"
+                if activity.wcet is not None
+                else ""
+            )
+            yield activity.id, ", ".join(texts), longest, "as seen" if activity.wcet_measured else ""
+
+
 def _link_rows(analysis: Analysis) -> Iterator[TextRow]:
     for name, load in analysis.links.items():
         traffic = format_figure(load.traffic, lambda count: f"{figure_wording.format_size(count)}/s")
@@ -169,6 +209,10 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
     unwritten_count = sum("jitter" not in activity.places for activity in clocked)
     if unwritten_count:
         yield (f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken as none",)
+    measured_ids = tuple(activity.id for activity in analysis.system.activities.values() if activity.wcet_measured)
+    if measured_ids:
+        names = figure_wording.join_first_names(measured_ids)
+        yield (f"the execution time of {names} is the longest that was seen, and not proven",)
     joint_count = len(find_joint_nodes(analysis.system))
     if joint_count:
         subject = "node of several components" if joint_count == 1 else "nodes of several components"

@@ -17,6 +17,7 @@ from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdi
 from archgen.timing.chains import chain_regions
 from archgen.timing.chains.chain_verdicts import judge_deadline, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
+from archgen.timing.chains.measured_basis import describe_measured_basis
 from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
@@ -167,7 +168,7 @@ def _build_result(
         )
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     view, path, path_bound = extreme_path
-    bound = _note_event_start(network, path, path_bound)
+    bound = _note_measured(network, path, _note_event_start(network, path, path_bound))
     best = _extreme_value(network, regions, "best")
     event_ages = _ages_from_events(network, regions, chain_points[0].activities)
     return ChainResult(
@@ -218,6 +219,13 @@ def _note_event_start(network: CostNetwork, path: CostedPath, bound: TimingValue
         f"the reaction counts from the event that fires {first_id}; data age is larger by its largest gap ({gap_text})"
     )
     return replace(bound, assumptions=(*bound.assumptions, assumption))
+
+
+def _note_measured(network: CostNetwork, path: CostedPath, bound: TimingValue) -> TimingValue:
+    """Note on a chain which measured execution times its bound rests on."""
+    through = (network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs))
+    note = describe_measured_basis(network.steps.analysis, through)
+    return replace(bound, assumptions=(*bound.assumptions, note)) if note else bound
 
 
 def find_data_age(network: CostNetwork, result: ChainResult) -> TimingValue:

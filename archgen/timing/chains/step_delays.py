@@ -16,7 +16,13 @@ from archgen.timing.analysis import Analysis
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, is_known_bound, name_missing_element, sum_bounds
+from archgen.timing.figures.value_arithmetic import (
+    NO_USE_NOTE,
+    UNBOUNDED_VALUE,
+    is_known_bound,
+    name_missing_element,
+    sum_bounds,
+)
 from archgen.timing.system.timing_system import Activity, Arc, is_sampled, is_selective_arc
 
 _SELECTIVE_ASSUMPTIONS = {
@@ -74,7 +80,9 @@ class StepDelays:
             return StepDelay(value, f"called by {arc.topic}", arc.at)
         if self.arrivals.fires_reader(arc):
             waiting_text = (
-                ", waits for its other triggers"
+                ", waits for messages of the same time"
+                if reader.mode == "match"
+                else ", waits for its other triggers"
                 if self.arrivals.other_triggers_gap(reader, arc) is not ZERO_VALUE
                 else ""
             )
@@ -104,7 +112,9 @@ class StepDelays:
         # All-of uses a sample once, when the set is complete: it is no older than the gap of its output (a newer one
         # would have replaced it), nor than the wait for the others. Calls make it work again with the same set, so that
         # both add up.
-        if self.arrivals.waits_for_all(reader):
+        if reader.mode == "match" and arc.role == "data":
+            sample_age = self._matched_age(reader, arc)
+        elif self.arrivals.waits_for_all(reader):
             known_gaps = [
                 value for value in (gap, self.arrivals.other_triggers_gap(reader, arc)) if is_known_bound(value)
             ]
@@ -115,8 +125,21 @@ class StepDelays:
                 )  # a call finds what last came together
         else:
             # Any-of: another trigger sends on what this one brought last, which may be a gap old.
-            sample_age = ZERO_VALUE if self.arrivals.is_sole_trigger(arc) else gap
+            sample_age = ZERO_VALUE if self.arrivals.is_sole_trigger(arc) else self._kept_age(reader, arc, gap)
         return sample_age if jitter_wait is ZERO_VALUE else sum_bounds((sample_age, jitter_wait))
+
+    def _matched_age(self, reader: Activity, arc: Arc) -> TimingValue:
+        """Return how old a matched sample may be, since it was sent; calls make its reader work with it again."""
+        sample_age = self.arrivals.match_age(reader, arc)
+        if any(other_arc.role == "request" for other_arc in self.analysis.system.arcs_into.get(reader.id, ())):
+            return sum_bounds((sample_age, self.arrivals.activation_gap(reader.id)))
+        return sample_age
+
+    def _kept_age(self, reader: Activity, arc: Arc, gap: TimingValue) -> TimingValue:
+        """Return how old the last sample of a trigger may be when another one fires: what is forgotten does not replace it."""
+        if self.arrivals.lacks_sure_use(reader, arc):
+            return _unsure_use(reader)
+        return self.arrivals.activation_gap(reader.id) if self.arrivals.forgets_dropped(reader) else gap
 
     def response_value(self, name: str, *, worst: bool = True) -> TimingValue:
         """Return R, the largest response time, or the smallest."""
@@ -185,9 +208,13 @@ class StepDelays:
         if self.arrivals.fires_reader(arc):
             if arc.role == "request":
                 return ZERO_VALUE
-            others_gap, thinning_wait = (
-                self.arrivals.other_triggers_gap(reader, arc),
-                self.arrivals.thinning_wait(reader),
+            if self.arrivals.lacks_sure_use(reader, arc):
+                return _unsure_use(reader)
+            thinning_wait = self.arrivals.thinning_wait(reader)
+            others_gap = (
+                self.arrivals.match_wait(reader, arc)
+                if reader.mode == "match"
+                else self.arrivals.other_triggers_gap(reader, arc)
             )
             return others_gap if thinning_wait is ZERO_VALUE else sum_bounds((others_gap, thinning_wait))
         # Of what works once, or nobody knows when, the gap is unbounded or unknown as well.
@@ -224,6 +251,12 @@ def _undefined_delay(activity: Activity) -> StepDelay:
         )
     unknown_delay = TimingValue(None, complete=False, missing=(activity.id,))
     return StepDelay(unknown_delay, "its behaviour is not known", activity.at)
+
+
+def _unsure_use(reader: Activity) -> TimingValue:
+    """Return the wait for a use that nothing promises: each message may be among those that are dropped and forgotten."""
+    text = f"{NO_USE_NOTE}: {reader.id} forgets what it drops (`dropped: forgotten`), and any of its triggers may be dropped"
+    return TimingValue(None, assumptions=("diverged", text))
 
 
 def _gap_text(gap: TimingValue) -> str:

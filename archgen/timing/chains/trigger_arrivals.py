@@ -17,7 +17,7 @@ from archgen.timing.figures.value_arithmetic import (
     sum_bounds,
     unknown_value,
 )
-from archgen.timing.system.timing_system import Activity, Arc
+from archgen.timing.system.timing_system import Activity, Arc, best_response
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +68,37 @@ class TriggerArrivals:
             return ZERO_VALUE
         return _largest_known(gap for key, gap in self._trigger_gaps(activity).items() if key != arc.input)
 
+    def match_wait(self, activity: Activity, arc: Arc) -> TimingValue:
+        """Return how long a message waits at most for a match of it or of a newer one, where inputs are matched."""
+        figures = self.analysis.matches.get(activity.id)
+        return figures.waits[arc.input] if figures else self.activation_gap(activity.id)
+
+    def match_age(self, activity: Activity, arc: Arc) -> TimingValue:
+        """Return how old a message may be when it is matched, since it was sent, without the link's worst latency."""
+        figures = self.analysis.matches.get(activity.id)
+        age = figures.ages[arc.input] if figures else self.activation_gap(activity.id)
+        if age.value is None:
+            return age
+        source = self.analysis.system.activities[arc.source]
+        covered = (best_response(source) + (arc.worst or 0)) * self.analysis.system.tick
+        return replace(age, value=max(age.value - covered, Fraction(0)))
+
+    def lacks_sure_use(self, activity: Activity, arc: Arc) -> bool:
+        """Whether each message of an arc may be among those that are dropped and forgotten: others may come before it."""
+        if arc.role != "data" or activity.mode != "any" or not self.forgets_dropped(activity):
+            return False
+        data_arcs = [
+            other_arc
+            for other_arc in self.analysis.system.arcs_into.get(activity.id, ())
+            if other_arc.role == "data" and self.fires_reader(other_arc)
+        ]
+        outside_inputs = self.analysis.system.external_inputs.get(activity.id, ())
+        return len(data_arcs) > 1 or any(key in outside_inputs for key in activity.triggers)
+
+    def forgets_dropped(self, activity: Activity) -> bool:
+        """Whether an activity drops messages, and does not store what it drops."""
+        return not activity.keeps_dropped and (activity.every > 1 or activity.throttle > 0)
+
     def thinning_wait(self, activity: Activity) -> TimingValue:
         """Return how long `every`, `throttle` and `jitter` let a trigger wait.
 
@@ -92,6 +123,9 @@ class TriggerArrivals:
 
     def firing_gap(self, activity: Activity) -> TimingValue:
         """Return the largest gap between two occasions to fire."""
+        if activity.mode == "match":
+            figures = self.analysis.matches.get(activity.id)
+            return figures.gap if figures else self.activation_gap(activity.id)
         gaps = self._trigger_gaps(activity).values()
         merged = _largest_known(gaps) if activity.mode == "all" else _smallest_known(gaps)
         return name_missing_element(merged, activity.id)

@@ -16,7 +16,11 @@ BOUNDLESS_WORDS = ("overload", "unbounded")
 """Assumptions of values that grow beyond any bound. `diverged` is none of them: there the search was given up."""
 UNLINKED_NOTE = "no link joins their hosts"
 """The note of what is unknown because the hosts of two elements are not joined."""
-_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged", UNLINKED_NOTE)
+NO_MATCH_NOTE = "no sure match"
+"""What the note begins with of what is not bounded because inputs are matched by time and nothing promises a match."""
+NO_USE_NOTE = "no sure use"
+"""What the note begins with of what is not bounded because each message may be among those that are forgotten."""
+_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged", UNLINKED_NOTE, NO_MATCH_NOTE, NO_USE_NOTE)
 
 
 def unknown_value(*missing: str) -> TimingValue:

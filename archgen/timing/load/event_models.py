@@ -20,10 +20,11 @@ from archgen.timing.load.event_streams import (
     throttle_streams,
     written_streams,
 )
+from archgen.timing.load.match_delays import combine_matched
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.thread_pools import is_reentrant
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, calls_per_activation
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response, calls_per_activation
 from archgen.timing.system.trigger_graph import TriggerGraph
 
 _DOWNSTREAM_WORDS = {"overload": "unbounded"}
@@ -47,6 +48,8 @@ class PropagationState:
     """The same from where events enter a host of several cores, where that is bounded as a whole."""
     run_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
     """The arcs by which ways go on to an activity from another of its core."""
+    work_ends: dict[str, WorstResponse] = field(default_factory=dict)
+    """When the work is done of those with a declared response whose threads wait for resources."""
     entering_models: dict[int, EventStreams | UnknownCause] = field(default_factory=dict)
     """Event models of what comes by the arcs that enter such a core (by identity), as its responses rest on them."""
     leaving_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
@@ -94,7 +97,10 @@ def _fired_model(
     """Return the event model of what triggers fire, before `every`, `throttle` and `jitter`."""
     if activity.mode == "any":
         return _merge_models(input_model(state, activity, key, arcs) for key, arcs in inputs.items())
-    needed_inputs = [key for key, arcs in inputs.items() if not is_always_present(state.system, arcs)]
+    # A match uses up what was sent once as well: with that there is no second one.
+    needed_inputs = [
+        key for key, arcs in inputs.items() if activity.mode == "match" or not is_always_present(state.system, arcs)
+    ]
     if not needed_inputs:
         renewed_inputs = find_renewed_inputs(state.system, inputs)
         return (
@@ -102,20 +108,22 @@ def _fired_model(
             if renewed_inputs
             else ()
         )
-    input_models = [
+    input_models = {
         # An input that closes a ring: how often it comes rests on this activity itself. The others bound the rate.
-        UnknownCause((activity.id,))
+        key: UnknownCause((activity.id,))
         if (activity.id, key) in state.triggers.open_inputs
         else input_model(state, activity, key, inputs[key])
         for key in needed_inputs
-    ]
-    known_models = [streams for streams in input_models if not isinstance(streams, UnknownCause)]
+    }
+    known_models = {key: streams for key, streams in input_models.items() if not isinstance(streams, UnknownCause)}
     # One input on which nothing ever comes is enough for all-of never to fire.
-    if any(not streams for streams in known_models):
+    if any(not streams for streams in known_models.values()):
         return ()
     if not known_models:
-        return unite_causes(cause for cause in input_models if isinstance(cause, UnknownCause))
-    return combine_all_of(known_models, complete=len(known_models) == len(input_models))
+        return unite_causes(cause for cause in input_models.values() if isinstance(cause, UnknownCause))
+    if activity.mode == "match":
+        return combine_matched(state, activity, inputs, known_models)
+    return combine_all_of(list(known_models.values()), complete=len(known_models) == len(input_models))
 
 
 def is_always_present(system: TimingSystem, arcs: Iterable[Arc]) -> bool:
@@ -225,7 +233,7 @@ def _complete_streams(
 
 def _best_case(source: Activity, calls: Fraction | None) -> int:
     """Return how long after its activation something leaves at the earliest: a call as soon as its caller starts."""
-    return (source.bcet or 0) if calls is None else 0
+    return best_response(source) if calls is None else 0
 
 
 def _keep_completions_apart(

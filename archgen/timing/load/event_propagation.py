@@ -18,6 +18,7 @@ from archgen.timing.load.event_models import PropagationState, activation_model,
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
+from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
 from archgen.timing.load.queue_responses import find_core_queue
@@ -29,8 +30,14 @@ from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, delay_by_response
 from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
+from archgen.timing.load.waiting_threads import delayed_model, find_waiting_responses, find_waiting_stores
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
-from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
+from archgen.timing.system.core_placement import (
+    ProcessingResource,
+    divide_resource,
+    find_resources,
+    part_waiting_units,
+)
 from archgen.timing.system.timing_system import Arc, TimingSystem, samples_inputs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
@@ -78,7 +85,7 @@ class _Propagation:
         self.resources: dict[str, ProcessingResource] = {}
         self.resources_of: dict[str, list[str]] = {}
         self.disturbed_resources: dict[str, list[str]] = {}
-        divided_resources = (part for resource in resource_list for part in divide_resource(state.system, resource))
+        divided_resources = split_resources(state.system, resource_list)
         for index, resource in enumerate(divided_resources):
             # Resources get keys that no activity has: both are steps of one graph.
             key = f"{index} {resource.id}"
@@ -89,10 +96,15 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.waiting_ids = frozenset(
+            name for resource in self.resources.values() if resource.waits for name in resource.members
+        )
         self.queues = {
             key: queue
             for key, resource in self.resources.items()
-            if (queue := find_core_queue(state.system, resource, priorities)) is not None
+            # What waits for a resource comes back into the queue, later than what it came with.
+            if not (resource.waits or resource.neighbour_units)
+            and (queue := find_core_queue(state.system, resource, priorities)) is not None
         }
         self.roaming_ids = {
             key: frozenset(name for unit in resource.roaming_units for name in unit)
@@ -120,6 +132,15 @@ class _Propagation:
         shortest_period = min((activity.period for activity in activities if activity.period), default=1)
         largest_jitter = max((activity.jitter for activity in activities), default=0)
         self.max_waiting = _MAX_WAITING_ACTIVATIONS * (1 + largest_jitter // shortest_period)
+        self.joined_resources: dict[str, JoinedResources] = {
+            f"joined {index}": joined
+            for index, joined in enumerate(find_joined_resources(state.system, state.triggers, self.resources))
+        }
+        self.joined_bounds: dict[str, Mapping[str, int]] = {}
+        self.joined_steps_of: dict[str, list[str]] = {}
+        for step, joined in self.joined_resources.items():
+            for name in joined.processor.members:
+                self.joined_steps_of.setdefault(name, []).append(step)
         self.successors = self._find_successors()
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
@@ -150,16 +171,16 @@ class _Propagation:
 
     def _find_single_cores(self) -> dict[str, SingleCores]:
         """Return the cores, one by one, of what shares several of them with what is pinned to some of them."""
-        cores_of = {unit: resource.core_set for resource in self.resources.values() for unit in resource.units}
+        cores_of = {name: resource.core_set for resource in self.resources.values() for name in resource.members}
         return {
-            step: SingleCores(self.state.system, self.resources[step], cores_of)
+            step: SingleCores(self.state.system, self.resources[step], cores_of, self.waiting_ids)
             for step in self.shared_cores
             if self.resources[step].foreign_units and not any(self.inner_triggers[step].inner_arcs.values())
         }
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
-        all_steps = [*self.state.triggers.order, *self.whole_hosts, *self.resources]
+        all_steps = [*self.state.triggers.order, *self.whole_hosts, *self.resources, *self.joined_resources]
         for steps in find_strong_components(all_steps, self.successors.__getitem__):
             # The strong components come in the order of dependency: what is outside of loops is found once, in one
             # pass.
@@ -177,7 +198,10 @@ class _Propagation:
         for step, resource in self.resources.items():
             names = [name for name in resource.members if name in readers]
             queue = self.queues.get(step)
-            if queue is not None and queue.stores_in_time:
+            if resource.waits:
+                stores = find_waiting_stores(state, resource, self.waiting_ids, names, self.budget_of[step])
+                state.storing_waits |= {name: self._limit_response(name, wait) for name, wait in stores.items()}
+            elif queue is not None and queue.stores_in_time:
                 state.storing_waits |= dict.fromkeys(names, WorstResponse(0, "fifo"))
             elif names and step not in self.inner_triggers:
                 models = self._models_of(step)
@@ -187,6 +211,10 @@ class _Propagation:
                 ).storing_waits
         for name in readers.difference(self.resources_of):
             own_core = ProcessingResource(name, None, 1, ((name,),))
+            if state.system.activities[name].uses:
+                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
+                state.storing_waits |= {name: self._limit_response(name, stores[name])}
+                continue
             state.storing_waits |= find_core_waits(
                 state.system, own_core, state.event_models, (name,), self.budget_of[name]
             )
@@ -198,6 +226,8 @@ class _Propagation:
 
     def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:
         """Return the event model of work that another core may have begun."""
+        if name in self.waiting_ids:
+            return delayed_model(self.state, name, self.waiting_ids)
         return delay_by_response(
             self.state.event_models[name], self.state.responses.get(name), self.work_ends.get(name)
         )
@@ -206,9 +236,11 @@ class _Propagation:
         """Return the steps that must be looked at again when a step has changed."""
         system, triggers = self.state.system, self.state.triggers
         successors: dict[str, list[str]] = {
-            step: [] for step in (*system.activities, *self.whole_hosts, *self.resources)
+            step: [] for step in (*system.activities, *self.whole_hosts, *self.resources, *self.joined_resources)
         }
         self._add_resource_steps(successors)
+        self._add_shared_uses(successors)
+        self._add_joined_steps(successors)
         for name, activity in system.activities.items():
             if not has_own_rate(activity) and name not in triggers.unknown_rates:
                 for arc in self._trigger_arcs(name):
@@ -222,9 +254,9 @@ class _Propagation:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
             for name in (name for unit in resource.foreign_units for name in unit):
-                if resource.cores > 1 or name in self.roaming_ids.get(step, ()):
-                    for foreign_step in self.resources_of.get(name, ()):
-                        successors[foreign_step].append(step)
+                rests_on_response = resource.cores > 1 or resource.waits or name in self.roaming_ids.get(step, ())
+                for foreign_step in self.resources_of.get(name, ()) if rests_on_response else ():
+                    successors[foreign_step].append(step)
         for name in self.state.system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
         self._add_whole_host_steps(successors)
@@ -250,6 +282,32 @@ class _Propagation:
         whole_step = f"whole {self.state.system.activities[name].host}"
         if whole_step in self.whole_hosts:
             yield whole_step
+
+    def _add_shared_uses(self, successors: dict[str, list[str]]) -> None:
+        """Add what the waits for resources rest on: the event models and responses of all that use them."""
+        activities = self.state.system.activities.values()
+        for resource_id in dict.fromkeys(key for activity in activities for key in activity.uses):
+            user_ids = [activity.id for activity in activities if resource_id in activity.uses]
+            for user in user_ids:
+                for other in user_ids:
+                    if other != user:
+                        for step in self.resources_of.get(other, (other,)):
+                            successors[user].append(step)
+                            for user_step in self.resources_of.get(user, ()):
+                                successors[user_step].append(step)
+
+    def _add_joined_steps(self, successors: dict[str, list[str]]) -> None:
+        """Add what the bounds of joined resources rest on, and the steps that they bound."""
+        for step, joined in self.joined_resources.items():
+            inner_triggers = joined.inner_triggers
+            for name in joined.processor.members:
+                if inner_triggers is None or name not in inner_triggers.inner_arcs:
+                    successors[name].append(step)
+                successors[step] += self.resources_of.get(name, (name,))
+            for source in dict.fromkeys(inner_triggers.outer_sources if inner_triggers else ()):
+                successors[source].append(step)
+                for source_step in self.resources_of.get(source, ()):
+                    successors[source_step].append(step)
 
     def _rests_on(self, step: str, name: str) -> bool:
         """Whether a resource's responses rest on an activity's event model: not where it is fired from inside."""
@@ -306,7 +364,7 @@ class _Propagation:
     def _activity_ids(self, steps: tuple[str, ...]) -> Iterator[str]:
         """Yield the activities whose figures some steps find."""
         for step in steps:
-            if step not in self.whole_hosts:
+            if step not in self.whole_hosts and step not in self.joined_resources:
                 yield from self.resources[step].members if step in self.resources else (step,)
 
     def _give_up_steps(self, steps: tuple[str, ...]) -> None:
@@ -325,23 +383,39 @@ class _Propagation:
 
     def _update_step(self, step: str) -> bool:
         """Find the figures of one step anew, and return whether they changed."""
-        state = self.state
         if step in self.whole_hosts:
             return self._update_whole_host(step)
+        if step in self.joined_resources:
+            return self._update_joined_resources(step)
         if step in self.inner_triggers:
             return self._update_inner_core(step)
-        if step in self.resources:
-            new_responses = self._find_responses(step)
-            new_responses = {
-                name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
-            }
-            changed = any(_has_changed(state.responses.get(name), response) for name, response in new_responses.items())
-            state.responses.update(new_responses)
-            return changed
+        return self._update_plain_resource(step) if step in self.resources else self._update_activity(step)
+
+    def _update_plain_resource(self, step: str) -> bool:
+        """Find the responses of a resource on which nothing fires anything else, and return whether any changed."""
+        state = self.state
+        old_ends = dict(state.work_ends)
+        new_responses = {
+            name: self._limit_response(name, _name_tier(self.resources[step], response))
+            for name, response in self._find_responses(step).items()
+        }
+        changed = old_ends != state.work_ends or any(
+            _has_changed(state.responses.get(name), response) for name, response in new_responses.items()
+        )
+        state.responses.update(new_responses)
+        return changed
+
+    def _update_activity(self, step: str) -> bool:
+        """Find the event model of an activity, its response too where it has a core of its own."""
+        state = self.state
         event_model = activation_model(state, step)
-        if step in state.responses and _is_unchanged(state.event_models.get(step), event_model):
+        is_same_model = step in state.responses and _is_unchanged(state.event_models.get(step), event_model)
+        is_waiting = step not in self.resources_of and bool(state.system.activities[step].uses)
+        if is_same_model and not is_waiting:
             return False
         state.event_models[step] = event_model
+        if is_waiting:
+            return self._update_dedicated_user(step) or not is_same_model
         # On no resource: a core of its own, so that its response rests on nothing but its own events.
         if step not in self.resources_of:
             state.responses[step] = find_dedicated_response(
@@ -349,9 +423,41 @@ class _Propagation:
             )
         return True
 
+    def _update_joined_resources(self, step: str) -> bool:
+        """Find the bounds of joined resources, and return whether they changed."""
+
+        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+            if entry_arc is None:
+                return self.state.event_models[str(origin.key)]
+            return arriving_model(self.state, entry_arc.arc)
+
+        bounds = self.joined_resources[step].find_bounds(find_model, self.state.event_models, self.budget_of[step])
+        changed = bounds != self.joined_bounds.get(step)
+        self.joined_bounds[step] = bounds
+        return changed
+
+    def _limit_response(self, name: str, response: WorstResponse) -> WorstResponse:
+        """Return a response, or the bound of all resources that are joined with its core, whichever is less."""
+        bounds = [self.joined_bounds.get(step, {}).get(name) for step in self.joined_steps_of.get(name, ())]
+        bound = min((each for each in bounds if each is not None), default=None)
+        if bound is None or response.tier == "declared" or (response.value is not None and response.value <= bound):
+            return response
+        return WorstResponse(bound, response.tier)
+
+    def _update_dedicated_user(self, step: str) -> bool:
+        """Find the response of what has a core of its own and waits for resources, and return whether it changed."""
+        own_core = ProcessingResource(step, None, 1, ((step,),), waits=True)
+        response = find_waiting_responses(self.state, own_core, self.waiting_ids, self.budget_of[step])[step]
+        response = self._limit_response(step, response)
+        changed = _has_changed(self.state.responses.get(step), response)
+        self.state.responses[step] = response
+        return changed
+
     def _find_responses(self, step: str) -> dict[str, WorstResponse]:
         """Find the responses of a resource on which nothing fires anything else."""
         state, resource, budget = self.state, self.resources[step], self.budget_of[step]
+        if resource.waits:
+            return find_waiting_responses(state, resource, self.waiting_ids, budget)
         models = self._models_of(step) if step in self.roaming_ids else state.event_models
         queue, stale_ids = self.queues.get(step), self._stale_activities(step)
         # In a queue each response rests on all that waits there.
@@ -402,12 +508,17 @@ class _Propagation:
         new_responses, new_ways, new_waits = (
             limit_responses(solve_inner_core(self.inner_cores[step], find_model, budget), limits)
             if step in self.inner_cores
-            else solve_shared_cores(self.shared_cores[step], find_model, (state.responses, limits), budget)
+            else solve_shared_cores(
+                self.shared_cores[step], find_model, ({**state.responses, **state.work_ends}, limits), budget
+            )
         )
         old_ends = dict(self.work_ends)
         if step in self.single_cores:
             self._limit_to_single_cores(step, new_responses, new_ways)
-        new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
+        new_responses = {
+            name: self._limit_response(name, _name_tier(self.resources[step], response))
+            for name, response in new_responses.items()
+        }
         changed = old_ends != self.work_ends or any(
             not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
         )
@@ -427,7 +538,7 @@ class _Propagation:
         """Limit the responses on several cores to what each of these cores alone would let them be."""
         state = self.state
         bounds = self.single_cores[step].limit(
-            state.event_models, {**state.responses, **responses}, self.budget_of[step]
+            state.event_models, {**state.responses, **responses, **state.work_ends}, self.budget_of[step]
         )
         for name in self.resources[step].members:
             self.work_ends.pop(name, None)
@@ -443,7 +554,7 @@ class _Propagation:
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""
-        resource, event_models = self.resources[step], self.state.event_models
+        resource, event_models = self.resources[step], self._models_of(step)
         current_models = {
             name: event_models[name] for unit in (*resource.units, *resource.foreign_units) for name in unit
         }
@@ -457,9 +568,16 @@ class _Propagation:
         )
 
 
+def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
+    """Yield the parts of resources whose responses are found at once."""
+    for resource in resource_list:
+        for part in divide_resource(system, resource):
+            yield from part_waiting_units(system, part)
+
+
 def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
     """Name the tier of a thread that has one of several cores to itself."""
-    if not resource.undisturbed or response.tier not in {"host", "priorities", "executor"}:
+    if not resource.undisturbed or resource.waits or response.tier not in {"host", "priorities", "executor"}:
         return response
     return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
 

@@ -14,7 +14,7 @@ from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.timing_system import Activity, TimingSystem
+from archgen.timing.system.timing_system import Activity, TimingSystem, best_response
 
 _ONE_CORE_ONLY = TimingValue(None, assumptions=("one core only",))
 _TIER_SENTENCES = {
@@ -49,7 +49,7 @@ def _build_response_time(
 ) -> ResponseTime:
     """Return one activity's response, with the tier's sentence as its reason."""
     activity, tick = state.system.activities[name], state.system.tick
-    best = unknown_value(name) if activity.bcet is None else TimingValue(activity.bcet * tick)
+    best = unknown_value(name) if activity.bcet is None else TimingValue(best_response(activity) * tick)
     sentence = _TIER_SENTENCES[worst_response.tier]
     if resource is not None and resource.undisturbed and worst_response.tier == "cores":
         sentence = _OWN_CORE_SENTENCE

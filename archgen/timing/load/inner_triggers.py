@@ -60,10 +60,10 @@ def find_inner_triggers(
     That is so where cores are joined, or nobody wrote how many there are, where one core has no trigger inside, and on a
     core of some with priorities on which others may run too.
     """
-    if resource.joined or resource.missing:
+    if resource.joined or resource.missing or resource.waits:
         return None
     is_ranked = any(system.activities[name].priority is not None for name in resource.members)
-    if resource.cores == 1 and resource.foreign_units and is_ranked:
+    if resource.cores == 1 and resource.stranger_units and is_ranked:
         # While something urgent runs on another core, what is less urgent may end here, and fire more that is urgent.
         return None
     members = dict.fromkeys(resource.members)
@@ -135,7 +135,8 @@ def _build_inner_triggers(
 
 def _takes_no_time(system: TimingSystem, arc: Arc, members: Mapping[str, None]) -> bool:
     """Whether an arc lies inside the core, and is taken at the very end of its source (or while that runs)."""
-    # What a declared response ends with may have left the core in between.
+    # What a declared response ends with may have left the core in between. (What waits for a resource is no member of
+    # a part with triggers inside.)
     return (
         arc.source in members and arc.link is None and arc.worst == 0 and system.activities[arc.source].response is None
     )
@@ -144,6 +145,9 @@ def _takes_no_time(system: TimingSystem, arc: Arc, members: Mapping[str, None]) 
 def _is_fired_by_arcs(system: TimingSystem, triggers: TriggerGraph, name: str) -> bool:
     """Whether what fires an activity is known arc by arc: it is no timer, and nothing unknown may fire it too."""
     activity = system.activities[name]
+    if activity.mode == "match":
+        # What is matched may have come long before: the matches have an event model of their own.
+        return False
     if has_own_rate(activity) or activity.jitter or name in triggers.never_firing or name in triggers.unknown_rates:
         return False
     if activity.behaviour not in {"event", "on_demand"}:

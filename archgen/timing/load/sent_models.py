@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_models import PropagationState, leaving_model
 from archgen.timing.load.event_streams import EventStreams, delay_streams
-from archgen.timing.system.timing_system import Arc
+from archgen.timing.system.timing_system import Arc, best_response
 
 
 def sent_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
@@ -43,7 +43,7 @@ def _answer_model(state: PropagationState, answer: Arc) -> EventStreams | Unknow
     if request.worst is None:
         return UnknownCause((request.link or request.source,))
     # A best latency that is not written is 0, as everywhere: the least there can be, so that the spread is a bound.
-    spread = max(response.value - (server.bcet or 0), 0) + request.worst - (request.best or 0)
+    spread = max(response.value - best_response(server), 0) + request.worst - (request.best or 0)
     # A periodic server looks for calls when it runs: an answer waits up to one more of its gaps.
     if server.behaviour in {"event", "on_demand"}:
         return delay_streams(request_model, spread)

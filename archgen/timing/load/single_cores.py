@@ -7,7 +7,7 @@ runs, are used up as fast as time passes: the bound is that of the core alone, w
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from archgen.timing.figures.timing_values import UnknownCause
@@ -20,10 +20,17 @@ from archgen.timing.system.timing_system import TimingSystem
 
 
 class SingleCores:
-    """The cores of a resource, each with what may run there; `cores_of` has the cores of each unit of the host."""
+    """The cores of a resource, each with what may run there; `cores_of` has those of each activity of the host.
+
+    `waiting_ids` are the activities whose threads wait for GPUs and the like: their work comes late as well.
+    """
 
     def __init__(
-        self, system: TimingSystem, resource: ProcessingResource, cores_of: Mapping[ThreadUnit, CoreSet]
+        self,
+        system: TimingSystem,
+        resource: ProcessingResource,
+        cores_of: Mapping[str, CoreSet],
+        waiting_ids: Collection[str] = (),
     ) -> None:
         """Find what may run on each core."""
         # What somebody declares may hold a wait for the world outside. Here it matters when the work is done.
@@ -31,10 +38,14 @@ class SingleCores:
         self.system = replace(system, activities={**system.activities, **own_activities})
         self.resource = resource
         self.units_by_core = {
-            core: tuple(unit for unit in resource.foreign_units if core in cores_of.get(unit, ()))
+            core: tuple(unit for unit in resource.foreign_units if core in cores_of.get(unit[0], ()))
             for core in resource.core_set
         }
-        self.roaming_units = frozenset(unit for unit in resource.foreign_units if len(cores_of.get(unit, ())) > 1)
+        self.roaming_units = frozenset(
+            unit
+            for unit in resource.foreign_units
+            if len(cores_of.get(unit[0], ())) > 1 or any(name in waiting_ids for name in unit)
+        )
 
     def limit(
         self, event_models: EventModels, responses: Mapping[str, WorstResponse], budget: SearchBudget

@@ -37,9 +37,12 @@ def find_whole_hosts(
     """Return each host of several cores, as one core, on which activities fire one another."""
     units_by_host: dict[str, list[ThreadUnit]] = {}
     hosts_of_one_core: set[str] = set()
+    hosts_with_waits: set[str] = set()
     for resource in resources:
         if resource.host is None or resource.missing:
             continue
+        if any(system.activities[name].uses for name in resource.members):
+            hosts_with_waits.add(resource.host)
         if resource.host not in units_by_host and resource.cores == 1 and not resource.undisturbed:
             hosts_of_one_core.add(resource.host)
         else:
@@ -47,7 +50,8 @@ def find_whole_hosts(
         units_by_host.setdefault(resource.host, []).extend(resource.units)
     whole_hosts: dict[str, InnerCore] = {}
     for host, units in units_by_host.items():
-        if host in hosts_of_one_core:
+        # What waits for a GPU leaves all cores idle.
+        if host in hosts_of_one_core or host in hosts_with_waits:
             continue
         whole_host = ProcessingResource(host, host, 1, tuple(units))
         inner_triggers = find_inner_triggers(system, triggers, whole_host)

@@ -18,7 +18,7 @@ from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, collapse_streams
 from archgen.timing.rates.activation_rates import find_rate_and_gap, periodic_rate, periodic_reason
 from archgen.timing.rates.rate_table import RateAndGap, RateTable
-from archgen.timing.system.timing_system import Activity
+from archgen.timing.system.timing_system import Activity, best_response
 
 
 def find_rates(state: PropagationState, responses: Mapping[str, ResponseTime]) -> RateTable:
@@ -172,7 +172,7 @@ def _response_spread(rates: RateTable, activity: Activity) -> TimingValue:
 def _longest_delay(rates: RateTable, activity: Activity) -> int | None:
     """Return R - B in ticks, None where there is no response. A best case that nobody wrote counts as 0."""
     worst = rates.state.responses[activity.id].value
-    return None if worst is None else max(worst - (activity.bcet or 0), 0)
+    return None if worst is None else max(worst - best_response(activity), 0)
 
 
 def _unsure_distance(pace: EventPace) -> TimingValue:

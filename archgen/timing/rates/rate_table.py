@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
-from archgen.timing.analysis import EventPace, ResponseTime
+from archgen.timing.analysis import EventPace, MatchFigures, ResponseTime
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.system.timing_system import Activity
@@ -25,6 +25,8 @@ class RateTable:
     paces: dict[str, EventPace] = field(default_factory=dict)
     outputs: dict[tuple[str, str], EventPace] = field(default_factory=dict)
     derived: dict[str, EventPace] = field(default_factory=dict)
+    matches: dict[str, MatchFigures] = field(default_factory=dict)
+    """What is sure of the matches of those whose inputs are matched by time."""
     written_rates: dict[tuple[int, int], RateAndGap] = field(default_factory=dict)
     """Rate and gap by period and jitter (ticks)."""
     duration_values: dict[int, TimingValue] = field(default_factory=dict)

@@ -19,6 +19,8 @@ from archgen.timing.figures.value_arithmetic import (
     unknown_value,
 )
 from archgen.timing.load.event_models import find_renewed_inputs, input_model, is_always_present
+from archgen.timing.load.match_delays import has_same_source
+from archgen.timing.rates.matched_rates import find_match, match_reason
 from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
 from archgen.timing.system.timing_system import Activity, Arc
 
@@ -30,9 +32,8 @@ def find_triggered_rate(rates: RateTable, activity: Activity) -> tuple[RateAndGa
         return (unknown_value(activity.id), unknown_value(activity.id)), [
             Reason("event-driven, but no input fires it", activity.at)
         ]
-    rate_and_gap, reasons = (
-        _all_of_rate(rates, activity, inputs) if activity.mode == "all" else _any_of_rate(rates, activity, inputs)
-    )
+    find_rate = {"any": _any_of_rate, "all": _all_of_rate, "match": _matched_rate}[activity.mode]
+    rate_and_gap, reasons = find_rate(rates, activity, inputs)
     # In this order: `every` counts triggers, `throttle` acts on what `every` lets through, `jitter` delays what fires
     # at last. The event model (event_propagation) is made in the same order.
     if activity.every > 1:
@@ -142,6 +143,24 @@ def _all_of_rate(
         _slowest_rate(rates, activity, input_rates, inputs),
         largest_value(gap for _, gap in input_rates.values()),
     ), reasons
+
+
+def _matched_rate(
+    rates: RateTable, activity: Activity, inputs: Mapping[str, tuple[Arc, ...]]
+) -> tuple[RateAndGap, list[Reason]]:
+    """Return rate and gap of matches: at most the smallest rate, and the gap within which one is sure."""
+    figures = rates.matches[activity.id] = find_match(rates, activity, inputs)
+    reasons = [match_reason(rates, activity, figures)]
+    input_rates: dict[str, RateAndGap] = {}
+    for key, arcs in inputs.items():
+        input_rates[key], input_reasons = _input_rate(rates, activity, key, arcs)
+        reasons += input_reasons
+        if (activity.id, key) in rates.state.triggers.open_inputs:
+            input_rates[key] = unknown_value(activity.id), unknown_value(activity.id)
+    slowest = _slowest_rate(rates, activity, input_rates, inputs)
+    if slowest.value is not None and slowest.complete and not has_same_source(rates.state, inputs):
+        slowest = replace(slowest, side="at most")
+    return (slowest, figures.gap), reasons
 
 
 def _slowest_rate(

@@ -54,6 +54,15 @@ class ProcessingResource:
     """The numbers of the cores, where they are known."""
     undisturbed: bool = False
     """One thread, of no more threads than there are cores: it always has one to itself."""
+    neighbour_units: tuple[ThreadUnit, ...] = ()
+    """Those of `foreign_units` that have no other cores than these: their responses are found in another part."""
+    waits: bool = False
+    """One thread, or the members of one container, that keep the thread while they wait for a resource such as a GPU."""
+
+    @property
+    def stranger_units(self) -> tuple[ThreadUnit, ...]:
+        """Return the units that may run here and elsewhere."""
+        return tuple(unit for unit in self.foreign_units if unit not in self.neighbour_units)
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -101,6 +110,54 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
         *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
         *(replace(resource, cores=pool.threads or 1, units=tuple(units)) for pool, units in units_by_pool.items()),
     )
+
+
+def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
+    waiting_units = tuple(_find_waiting_units(system, resource)) if system.resources or _uses_any(system) else ()
+    if not waiting_units or resource.missing:
+        yield resource
+        return
+    waiting_ids = {name for unit in waiting_units for name in unit}
+    other_units = tuple(unit for unit in resource.units if unit[0] not in waiting_ids)
+    if other_units:
+        yield replace(
+            resource,
+            units=other_units,
+            foreign_units=(*resource.foreign_units, *waiting_units),
+            roaming_units=(*resource.roaming_units, *waiting_units),
+            neighbour_units=waiting_units,
+        )
+    for unit in waiting_units:
+        neighbours = (*other_units, *(other_unit for other_unit in waiting_units if other_unit != unit))
+        yield replace(
+            resource,
+            units=(unit,),
+            foreign_units=(*resource.foreign_units, *neighbours),
+            neighbour_units=neighbours,
+            waits=True,
+        )
+
+
+def _uses_any(system: TimingSystem) -> bool:
+    return any(activity.uses for activity in system.activities.values())
+
+
+def _find_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ThreadUnit]:
+    """Yield the units that wait for resources; those of a process with too few threads wait for one another."""
+    all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
+    crowded_pools = find_crowded_pools(system, all_members)
+    waiting_pools = {
+        crowded_pools[activity.id] for activity in all_members if activity.uses and activity.id in crowded_pools
+    }
+    crowds: dict[ThreadPool, list[str]] = {}
+    for unit in resource.units:
+        pool = crowded_pools.get(unit[0])
+        if pool is not None and pool in waiting_pools:
+            crowds.setdefault(pool, []).extend(unit)
+        elif any(system.activities[name].uses for name in unit):
+            yield unit
+    yield from (tuple(names) for names in crowds.values())
 
 
 def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:

@@ -218,6 +218,11 @@ def is_selective_arc(system: TimingSystem, arc: Arc) -> bool:
     )
 
 
+def best_response(activity: Activity) -> int:
+    """Return how long an activation takes at least, in ticks; what nobody wrote counts as 0."""
+    return (activity.bcet or 0) + sum(use.best for use in activity.uses.values())
+
+
 def calls_per_activation(caller: Activity, request: Arc) -> Fraction:
     """Return how many calls a client makes in each of its activations."""
     return caller.calls.get(request.output, Fraction(1))

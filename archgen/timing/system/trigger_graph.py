@@ -81,7 +81,7 @@ def _trigger_inputs(system: TimingSystem, activity: Activity) -> dict[str, tuple
     for arc in system.arcs_into.get(activity.id, ()):
         if arc.role == "data" and arc.input in arcs_by_input:
             arcs_by_input[arc.input].append(arc)
-    waits_for_all = activity.mode == "all"
+    waits_for_all = activity.mode != "any"
     outside = system.external_inputs.get(activity.id, ())
     return {
         key: tuple(arcs)
@@ -124,7 +124,7 @@ class _TriggerSearch:
     def find_gates(self, name: str, ring: tuple[str, ...]) -> tuple[str, ...]:
         """Return the inputs by which a ring enters an all-of activity that also waits for something from outside."""
         activity = self.system.activities[name]
-        if activity.mode != "all" or has_own_rate(activity):
+        if activity.mode == "any" or has_own_rate(activity):
             return ()
         members = set(ring)
         within = tuple(
@@ -165,7 +165,7 @@ class _TriggerSearch:
             # On demand without a known caller: somebody outside may call it.
             return not self.requests[name]
         fed_inputs = [self._is_fed(name, key, arcs, firing) for key, arcs in self.inputs[name].items()]
-        return not fed_inputs or (all(fed_inputs) if activity.mode == "all" else any(fed_inputs))
+        return not fed_inputs or (any(fed_inputs) if activity.mode == "any" else all(fed_inputs))
 
     def _is_fed(self, name: str, key: str, arcs: tuple[Arc, ...], firing: set[str]) -> bool:
         """Whether something can arrive at an input, given those known to fire so far."""
@@ -211,13 +211,13 @@ class _TriggerSearch:
         for ring in find_strong_components(self.system.activities, successors.__getitem__):
             if ring[0] in firing:
                 continue
-            waits_for_all = any(self.system.activities[name].mode == "all" for name in ring)
+            waits_for_all = any(self.system.activities[name].mode != "any" for name in ring)
             if (waits_for_all and is_ring(ring, successors)) or any(self.unfed_inputs(name) for name in ring):
                 yield ring
 
     def unfed_inputs(self, name: str) -> tuple[str, ...]:
         """Return the inputs that all-of waits for and nothing feeds."""
-        if self.system.activities[name].mode != "all":
+        if self.system.activities[name].mode == "any":
             return ()
         outside = self.system.external_inputs.get(name, ())
         return tuple(key for key, arcs in self.inputs[name].items() if not arcs and key not in outside)

@@ -9,7 +9,7 @@ from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Figure, Paragraph, Section
 from archgen.views.tables import architecture_tables
-from archgen.views.timing import element_timing, interaction_timing, timing_tables, timing_verdicts
+from archgen.views.timing import element_timing, interaction_timing, timing_tables, timing_verdicts, use_tables
 from archgen.views.timing.timing_lookup import TimingLookup
 
 
@@ -31,7 +31,13 @@ def make_timing_sections(
         Section(
             "timing:rates",
             "Rates and responses",
-            _drop_missing(timing_tables.make_activity_table(lookup, timing_lookup)),
+            _drop_missing(
+                timing_tables.make_activity_table(lookup, timing_lookup),
+                use_tables.make_measured_table(lookup, timing_lookup),
+            ),
+        ),
+        Section(
+            "timing:fused", "What is used together", _drop_missing(use_tables.make_fused_table(lookup, timing_lookup))
         ),
         Section(
             "timing:edges", "Where rates differ", tuple(interaction_timing.make_edge_blocks(lookup, timing_lookup))
@@ -40,7 +46,13 @@ def make_timing_sections(
         Section(
             "timing:hosts",
             "Load of the hosts",
-            (*load_figures, *_drop_missing(timing_tables.make_load_table(lookup, timing_lookup))),
+            (
+                *load_figures,
+                *_drop_missing(
+                    timing_tables.make_load_table(lookup, timing_lookup),
+                    use_tables.make_resource_table(lookup, timing_lookup),
+                ),
+            ),
         ),
         Section(
             "timing:network",

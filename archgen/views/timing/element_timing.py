@@ -12,7 +12,7 @@ from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
-from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, value_format
+from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 
@@ -150,6 +150,7 @@ def _activity_facts(
             f"Response{suffix}",
             inline_text.to_inlines(f"within {value_format.display_duration(response.worst)}{tier}"),
         )
+    yield from use_tables.list_use_facts(timing_lookup, activity, suffix)
 
 
 def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> Inlines:

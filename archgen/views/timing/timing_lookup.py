@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.system.timing_system import Activity
 from archgen.views.timing import value_format
+
+if TYPE_CHECKING:
+    from archgen.timing.chains.fused_inputs import FusedInputs
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +25,8 @@ class TimingLookup:
     """Activities that an inferred rate comes from, by activity id; rates that were written have no entry."""
     activities_of_node: Mapping[str, tuple[Activity, ...]] = field(default_factory=dict)
     """Activities of a node, by node id."""
+    fused_inputs: tuple[FusedInputs, ...] = ()
+    """What uses messages of several inputs together."""
 
 
 def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> TimingLookup:
@@ -28,7 +34,16 @@ def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -
     activities_by_node: dict[str, tuple[Activity, ...]] = {}
     for activity in analysis.system.activities.values():
         activities_by_node[activity.node] = (*activities_by_node.get(activity.node, ()), activity)
-    return TimingLookup(analysis, tuple(chains), value_format.find_rate_origins(analysis), activities_by_node)
+    # Imported here because the engine takes time to load, and most commands show no timing.
+    from archgen.timing.chains.fused_inputs import find_fused_inputs
+
+    return TimingLookup(
+        analysis,
+        tuple(chains),
+        value_format.find_rate_origins(analysis),
+        activities_by_node,
+        find_fused_inputs(analysis),
+    )
 
 
 def analyse_with_chains(architecture: Architecture) -> TimingLookup:

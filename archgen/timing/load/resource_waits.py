@@ -1,0 +1,201 @@
+"""How long an activation waits for a GPU, or another resource that works on one use at a time, and uses it.
+
+- In the order of arrival: when a use is asked for, each thread elsewhere has asked for at most one, and none that comes
+  later goes before.
+- In any order: while a use waits the resource is busy, so that it is done as soon as all uses of others are that can fall
+  into that time. They are of activations that came in it, or up to their own response before.
+- By priority, never preempted: of those in any order only the ones that are as urgent, and once the longest of the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from heapq import nlargest
+from typing import NamedTuple
+
+from archgen.model.declared_timing import SchedulingOrder
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
+from archgen.timing.load.busy_windows import DemandFunction, DivergedError, SearchBudget, longest_busy_period
+from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.event_streams import EventStreams, max_arrivals
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, work_utilisation
+from archgen.timing.system.timing_system import Activity, TimingSystem
+
+
+class Competitor(NamedTuple):
+    """Another activity that uses a resource: how long, how often, and how long before it may have been activated."""
+
+    worst: int
+    streams: EventStreams
+    response: int
+
+
+def find_users(system: TimingSystem, resource_id: str) -> tuple[str, ...]:
+    """Return the activities that use a resource again and again."""
+    return tuple(
+        activity.id
+        for activity in system.activities.values()
+        if resource_id in activity.uses and activity.behaviour != "once"
+    )
+
+
+def find_use_times(state: PropagationState, name: str, budget: SearchBudget) -> int | UnknownCause:
+    """Return how long an activation waits for all resources that it uses, and uses them, in ticks."""
+    times = [find_use_time(state, name, resource_id, budget) for resource_id in state.system.activities[name].uses]
+    causes = [time for time in times if isinstance(time, UnknownCause)]
+    return unite_causes(causes) if causes else sum(time for time in times if not isinstance(time, UnknownCause))
+
+
+def find_use_time(state: PropagationState, name: str, resource_id: str, budget: SearchBudget) -> int | UnknownCause:
+    """Return how long an activation waits for a resource and uses it, in ticks, or why that is not bounded."""
+    order = _find_order(state.system, resource_id)
+    if find_load(state, resource_id) > 1:
+        return OVERLOAD_CAUSE
+    users = [user for user in find_users(state.system, resource_id) if state.event_models[user] != ()]
+    in_turn = bound_in_turn(state.system, name, resource_id, users) if order == "fifo" else None
+    try:
+        by_arrivals = _bound_by_arrivals(state, name, resource_id, budget)
+    except DivergedError:
+        by_arrivals = DIVERGED_CAUSE
+    if isinstance(by_arrivals, UnknownCause):
+        return by_arrivals if in_turn is None else in_turn
+    return by_arrivals if in_turn is None else min(in_turn, by_arrivals)
+
+
+def find_load(state: PropagationState, resource_id: str) -> Fraction:
+    """Return the share of a resource that is used in the long run; what is not known of it counts as nothing."""
+    loads = [
+        work_utilisation(state.system.activities[user].uses[resource_id].worst, model)
+        for user in find_users(state.system, resource_id)
+        if not isinstance(model := state.event_models[user], UnknownCause)
+    ]
+    return sum_fractions([Fraction(0), *loads])
+
+
+def _find_order(system: TimingSystem, resource_id: str) -> SchedulingOrder | None:
+    return system.resources[resource_id].order if resource_id in system.resources else None
+
+
+def thread_key(activity: Activity) -> str:
+    """Return what runs an activity: its executor, its container, or itself."""
+    return activity.executor or activity.container or activity.id
+
+
+def find_turn_times(system: TimingSystem, name: str) -> int | None:
+    """Return how long the uses of an activation take if each comes in the order of arrival; None where one does not."""
+    total = 0
+    for resource_id in system.activities[name].uses:
+        is_fifo = _find_order(system, resource_id) == "fifo"
+        time = bound_in_turn(system, name, resource_id, find_users(system, resource_id)) if is_fifo else None
+        if time is None:
+            return None
+        total += time
+    return total
+
+
+def bound_in_turn(system: TimingSystem, name: str, resource_id: str, users: Iterable[str]) -> int | None:
+    """Return how long a use takes with one of each other thread before it; None where any number may ask at once."""
+    uses_by_thread: dict[str, dict[str | None, list[int]]] = {}
+    for user in dict.fromkeys((name, *users)):
+        activity = system.activities[user]
+        groups = uses_by_thread.setdefault(thread_key(activity), {})
+        # Without executors each activity excludes itself.
+        group = activity.callback_group if activity.executor else user
+        groups.setdefault(group, []).append(activity.uses[resource_id].worst)
+    own = system.activities[name]
+    own_group = own.callback_group if own.executor else name
+    total = own.uses[resource_id].worst
+    for key, all_groups in uses_by_thread.items():
+        threads, groups = _count_threads(system, key), all_groups
+        if key == thread_key(own):
+            threads = None if threads is None else threads - 1
+            groups = {group: times for group, times in groups.items() if group != own_group or group is None}
+        concurrent = [max(times) for group, times in groups.items() if group is not None]
+        if groups.get(None):
+            if threads is None:
+                return None
+            concurrent += [max(groups[None])] * threads
+        total += sum(concurrent if threads is None else nlargest(threads, concurrent))
+    return total
+
+
+def _count_threads(system: TimingSystem, key: str) -> int | None:
+    """Return the threads of an executor or container; None where there is one for each member."""
+    if key in system.executors:
+        return system.executors[key].threads
+    return system.threads.get(key) if key in system.threads else 1
+
+
+def _bound_by_arrivals(
+    state: PropagationState, name: str, resource_id: str, budget: SearchBudget
+) -> int | UnknownCause:
+    """Return how long a use takes with all others before it that may come, or of those as urgent by priority."""
+    rivals = find_rivals(state, (name,), resource_id)
+    if isinstance(rivals, UnknownCause):
+        return rivals
+    start = state.system.activities[name].uses[resource_id].worst + rivals.blocking
+    if rivals.share >= 1:
+        return DIVERGED_CAUSE
+    demand = DemandFunction(lambda window: start + rivals.work_within(window), 2 * len(rivals.competitors))
+    return longest_busy_period(demand, budget, start)
+
+
+class Rivals(NamedTuple):
+    """What may use a resource while some activities wait for it, and the longest use that is less urgent (`blocking`)."""
+
+    competitors: tuple[Competitor, ...]
+    blocking: int
+
+    @property
+    def share(self) -> Fraction:
+        """Return how much of the resource they take in the long run."""
+        return sum_fractions([Fraction(0), *(work_utilisation(each.worst, each.streams) for each in self.competitors)])
+
+    def work_within(self, window: int) -> int:
+        """Return for how long they may use it in a window: of what came in it, or up to their response before."""
+        return sum([worst * max_arrivals(streams, window + response) for worst, streams, response in self.competitors])
+
+
+def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: str) -> Rivals | UnknownCause:
+    """Return what may use a resource before some activities that wait for it, or why that is not known."""
+    system = state.system
+    waiting = [activity for name in own_ids if resource_id in (activity := system.activities[name]).uses]
+    by_priority = _find_order(system, resource_id) == "fixed_priority"
+    lowest = min(map(_urgency, waiting), default=-1)
+    competitors: list[Competitor] = []
+    blocking = 0
+    for user in find_users(system, resource_id):
+        other, model = system.activities[user], state.event_models[user]
+        is_own = user in own_ids and not (len(own_ids) == 1 and _may_overlap(other))
+        if model == () or is_own or all(_excludes(system, each, other) for each in waiting):
+            continue
+        worst = other.uses[resource_id].worst
+        if by_priority and _urgency(other) < lowest:
+            blocking = max(blocking, worst)
+            continue
+        response = state.work_ends.get(user, state.responses.get(user))
+        if isinstance(model, UnknownCause):
+            return model
+        if response is None or response.value is None:
+            return DIVERGED_CAUSE if response is None or not response.cause.missing else response.cause
+        competitors.append(Competitor(worst, model, response.value))
+    return Rivals(tuple(competitors), blocking)
+
+
+def _urgency(activity: Activity) -> int:
+    return -1 if activity.priority is None else activity.priority
+
+
+def _may_overlap(activity: Activity) -> bool:
+    """Whether several activations of an activity may run at once."""
+    return bool(activity.executor) and activity.callback_group is None
+
+
+def _excludes(system: TimingSystem, first: Activity, second: Activity) -> bool:
+    """Whether two activities never run at the same time: one thread, or one callback group."""
+    key = thread_key(first)
+    if key != thread_key(second):
+        return False
+    is_same_group = first.callback_group is not None and first.callback_group == second.callback_group
+    return is_same_group or _count_threads(system, key) == 1

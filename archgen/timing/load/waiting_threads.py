@@ -1,0 +1,297 @@
+"""Responses of threads that wait for resources (GPUs): they keep the thread, and leave the core.
+
+From the last instant at which nothing of the thread was under way, until an activation has ended, at each moment one of
+its activations waits for a resource or uses it, or runs, or is held up by others that are as urgent while they run on all
+cores. The first takes as long as all waits of what comes in that time, the second its execution times. The third is the
+work of the others: where they never wait themselves and there is one core, that instant is one at which none of them had
+any, so that it is what comes in that time; else it is also what came up to their response before. How the execution time
+is divided by the waits does not matter.
+
+To all others on the core such a thread is work that comes up to its response later than it might. So nothing in between
+is a cascade: what it fires comes from outside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
+from archgen.timing.load.busy_windows import (
+    ActivityWork,
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    longest_busy_period,
+    worst_response,
+)
+from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.load.resource_waits import Rivals, find_load, find_rivals, find_use_times
+from archgen.timing.load.thread_work import (
+    DIVERGED_CAUSE,
+    OVERLOAD_CAUSE,
+    ThreadWork,
+    WorstResponse,
+    build_thread,
+    find_work,
+    lower_crowded_threads,
+    work_utilisation,
+)
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import find_pool, is_reentrant, works_in_order
+from archgen.timing.system.timing_system import TimingSystem
+
+
+def find_waiting_responses(
+    state: PropagationState, resource: ProcessingResource, waiting_ids: Collection[str], budget: SearchBudget
+) -> dict[str, WorstResponse]:
+    """Return the responses of a thread that waits for resources; everything else there is foreign to it."""
+    system, unit = state.system, resource.units[0]
+    response = _bound_unit(state, resource, waiting_ids, budget)
+    responses: dict[str, WorstResponse] = {}
+    for name in unit:
+        activity = system.activities[name]
+        responses[name] = response
+        if activity.response is not None:
+            # What is declared may hold a wait for the world outside; to others it matters when the work is done.
+            state.work_ends[name] = response
+            responses[name] = WorstResponse(activity.response, "declared")
+        elif activity.wcet is None:
+            responses[name] = WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), response.cause)))
+    return responses
+
+
+def find_waiting_stores(
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    reader_ids: Iterable[str],
+    budget: SearchBudget,
+) -> dict[str, WorstResponse]:
+    """Return how long a message may wait to be stored in a thread that waits for resources: as long as it is busy."""
+    wait = _bound_unit(state, resource, waiting_ids, budget, any_order=True)
+    return dict.fromkeys(reader_ids, wait)
+
+
+def delayed_model(
+    state: PropagationState, name: str, waiting_ids: Collection[str], *, always: bool = False
+) -> EventStreams | UnknownCause:
+    """Return the event model of an activity's work as others on its core see it: up to its response later if it waits."""
+    model = state.event_models[name]
+    if isinstance(model, UnknownCause) or not model or not (always or name in waiting_ids):
+        return model
+    response = state.work_ends.get(name, state.responses.get(name))
+    if response is None or response.value is None:
+        # That a thread has too much to do does not say so of its core.
+        return DIVERGED_CAUSE if response is None or not response.cause.missing else response.cause
+    return delay_streams(model, response.value)
+
+
+def _bound_unit(
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    budget: SearchBudget,
+    *,
+    any_order: bool = False,
+) -> WorstResponse:
+    """Bound the response of all activities of a thread."""
+    system = state.system
+    own_ids = _list_own(system, resource)
+    tier = _name_tier(system, resource)
+    if _fills_resource(state, own_ids) or (len(own_ids) == len(resource.units[0]) and _fills_thread(state, own_ids)):
+        return WorstResponse(None, tier, OVERLOAD_CAUSE)
+    others = list(_list_others(state, resource, own_ids, waiting_ids))
+    causes = [thread.cause for thread in others if thread.cause]
+    if causes:
+        return WorstResponse(None, tier, unite_causes(causes))
+    interference = _divide_demand(others, 1 if resource.joined else resource.cores)
+    is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
+    # Use by use, or all uses of others in the whole time at once: either may be the smaller one.
+    candidates = [
+        _bound_with(waits, interference, budget, in_order=is_in_order)
+        for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))
+    ]
+    bounds = [bound for bound in candidates if not isinstance(bound, UnknownCause)]
+    if bounds:
+        return WorstResponse(min(bounds), tier)
+    return WorstResponse(None, tier, unite_causes([bound for bound in candidates if isinstance(bound, UnknownCause)]))
+
+
+class _Waits(NamedTuple):
+    """The work of a thread with its waits for resources, and what of them is not counted for each activation alone."""
+
+    works: tuple[ActivityWork, ...]
+    rivals: tuple[Rivals, ...] = ()
+
+
+class _Interference(NamedTuple):
+    """How long others can keep all cores busy in a window, and their share of them in the long run."""
+
+    demand: DemandFunction
+    share: Fraction
+
+
+def _waits_by_use(state: PropagationState, own_ids: Sequence[str], budget: SearchBudget) -> _Waits | UnknownCause:
+    """Return the work of a thread with the longest wait for each use."""
+    use_times = {name: find_use_times(state, name, budget) for name in own_ids}
+    return _add_waits(state, use_times)
+
+
+def _waits_together(state: PropagationState, own_ids: Sequence[str]) -> _Waits | UnknownCause:
+    """Return the work of a thread with its uses alone, and the rivals: no use of theirs is waited for twice."""
+    rivals = {
+        resource_id: find_rivals(state, own_ids, resource_id)
+        for resource_id in dict.fromkeys(key for name in own_ids for key in state.system.activities[name].uses)
+    }
+    causes = [each for each in rivals.values() if isinstance(each, UnknownCause)]
+    if causes:
+        return unite_causes(causes)
+    known_rivals = {key: each for key, each in rivals.items() if isinstance(each, Rivals)}
+    use_times: dict[str, int | UnknownCause] = {
+        name: sum(use.worst + known_rivals[key].blocking for key, use in state.system.activities[name].uses.items())
+        for name in own_ids
+    }
+    waits = _add_waits(state, use_times)
+    return waits if isinstance(waits, UnknownCause) else waits._replace(rivals=tuple(known_rivals.values()))
+
+
+def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCause]) -> _Waits | UnknownCause:
+    """Return the work of a thread, each activation with a time on top, or what is missing of it."""
+    works: list[ActivityWork] = []
+    causes: list[UnknownCause] = []
+    for name, use_time in use_times.items():
+        work = find_work(state.system, name, state.event_models)
+        model = state.event_models[name]
+        causes += [each for each in (work, use_time) if isinstance(each, UnknownCause)]
+        if isinstance(work, ActivityWork) and not isinstance(use_time, UnknownCause):
+            if isinstance(model, UnknownCause) and use_time:
+                causes.append(model)
+            else:
+                works.append(ActivityWork(work.cost + use_time, () if isinstance(model, UnknownCause) else model))
+    return unite_causes(causes) if causes else _Waits(tuple(works))
+
+
+def _bound_with(
+    waits: _Waits | UnknownCause, interference: _Interference, budget: SearchBudget, *, in_order: bool
+) -> int | UnknownCause:
+    """Return the longest response of a thread with some waits, or why none is found."""
+    if isinstance(waits, UnknownCause):
+        return waits
+    shares = [work_utilisation(work.cost, work.streams) for work in waits.works]
+    if sum_fractions([interference.share, *shares, *(rivals.share for rivals in waits.rivals)]) >= 1:
+        return DIVERGED_CAUSE
+    demand = DemandFunction(
+        lambda window: interference.demand.within(window) + sum([each.work_within(window) for each in waits.rivals]),
+        interference.demand.term_count + sum([2 * len(each.competitors) for each in waits.rivals]),
+    )
+    try:
+        return _search(waits.works, demand, budget, in_order=in_order)
+    except DivergedError:
+        return DIVERGED_CAUSE
+
+
+def _search(
+    works: Sequence[ActivityWork], interference: DemandFunction, budget: SearchBudget, *, in_order: bool
+) -> int:
+    """Return the longest response: by activation where one comes after the other, else the whole busy time."""
+    if in_order and works[0].streams:
+        return worst_response(works[0], interference, budget)
+    own_demand = GrowingLoad(works).demand_function()
+    once_cost = sum(work.cost for work in works if not work.streams)
+    total = DemandFunction(
+        lambda window: once_cost + own_demand.within(window) + interference.within(window),
+        own_demand.term_count + interference.term_count,
+    )
+    return longest_busy_period(total, budget)
+
+
+def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> _Interference:
+    """Return how long others can be busy on all cores at once in a window."""
+    demand = GrowingLoad([work for thread in others for work in thread.works]).demand_function()
+    return _Interference(
+        DemandFunction(lambda window: -(-demand.within(window) // core_count), demand.term_count),
+        sum_fractions([Fraction(0), *(thread.share for thread in others)]) / core_count,
+    )
+
+
+def _fills_resource(state: PropagationState, own_ids: Sequence[str]) -> bool:
+    """Whether more is asked of a resource that a thread uses than it can do."""
+    return any(
+        find_load(state, resource_id) > 1
+        for resource_id in dict.fromkeys(key for name in own_ids for key in state.system.activities[name].uses)
+    )
+
+
+def _fills_thread(state: PropagationState, own_ids: Sequence[str]) -> bool:
+    """Whether a thread has more to do than it can, were it never to wait for anybody else."""
+    system = state.system
+    first = system.activities[own_ids[0]]
+    pool = find_pool(system, first)
+    if is_reentrant(system, first) or (len(own_ids) > 1 and pool is not None and pool.threads != 1):
+        return False
+    shares = [
+        work_utilisation((activity.wcet or 0) + sum(use.worst for use in activity.uses.values()), model)
+        for activity in (system.activities[name] for name in own_ids)
+        if not isinstance(model := state.event_models[activity.id], UnknownCause)
+    ]
+    return sum_fractions(shares) > 1 if shares else False
+
+
+def _list_own(system: TimingSystem, resource: ProcessingResource) -> tuple[str, ...]:
+    """Return what may hold the threads that a unit waits for: itself, and members of its container on other cores."""
+    unit = resource.units[0]
+    pool = find_pool(system, system.activities[unit[0]])
+    if not resource.joined or pool is None or pool.threads == 1:
+        return unit
+    foreign_ids = [name for foreign_unit in resource.foreign_units for name in foreign_unit]
+    return (*unit, *(name for name in foreign_ids if find_pool(system, system.activities[name]) == pool))
+
+
+def _list_others(
+    state: PropagationState, resource: ProcessingResource, own_ids: Sequence[str], waiting_ids: Collection[str]
+) -> Iterator[ThreadWork]:
+    """Yield the threads that may hold up a unit on its core, with the work that they may do there in a window."""
+    system = state.system
+    is_late = resource.cores > 1 or resource.joined
+    strangers = {name for unit in resource.stranger_units for name in unit}
+    models = {
+        name: delayed_model(state, name, waiting_ids, always=is_late or name in strangers)
+        for unit in resource.foreign_units
+        for name in unit
+        if name not in own_ids
+    }
+    models |= {name: state.event_models[name] for name in own_ids}
+    other_units = [
+        rest for unit in resource.foreign_units if (rest := tuple(name for name in unit if name not in own_ids))
+    ]
+    threads = lower_crowded_threads(
+        system, [build_thread(system, unit, models) for unit in (resource.units[0], *other_units)], models
+    )
+    level = None if _ignores_priorities(system, resource) else threads[0].lowest_priority
+    for thread in threads[1:]:
+        if level is None or (thread.highest_priority is not None and thread.highest_priority >= level):
+            yield thread
+
+
+def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> bool:
+    """Whether something other than preemptive priorities may decide who runs."""
+    host = resource.host or ""
+    orders = {system.host_orders.get(host), *(order for (name, _), order in system.core_orders.items() if name == host)}
+    return not orders <= {None, "fixed_priority"}
+
+
+def _name_tier(system: TimingSystem, resource: ProcessingResource) -> ResponseTier:
+    """Return the tier of a thread's response."""
+    if resource.host is None and len(resource.units[0]) == 1:
+        return "dedicated"
+    if len(resource.units[0]) > 1:
+        return "executor"
+    if resource.cores > 1:
+        return "cores"
+    is_ranked = system.activities[resource.units[0][0]].priority is not None
+    return "priorities" if is_ranked and not _ignores_priorities(system, resource) else "host"

@@ -1,0 +1,80 @@
+"""No simulation exceeds a bound: random systems with resources, matched inputs, and dropped messages that are forgotten."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import cast
+
+import pytest
+
+from archgen.model.architecture import Architecture, Chain, Waypoint
+from archgen.simulation import SimulationResult, simulate_system
+from archgen.simulation.analysis_bounds import find_publish_pauses
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_bounds import bound_chain, find_data_age
+from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.load import busy_windows
+from archgen.timing.run_analysis import analyse_system
+from tests.timing.exceeded import bounded
+from tests.timing.random_uses import random_use_system, random_walks
+
+Held = tuple[str, Fraction | None, TimingValue]
+
+
+@pytest.mark.parametrize(
+    "first", [0, 60, *(pytest.param(first, marks=pytest.mark.slow) for first in range(120, 1020, 60))]
+)
+def test_no_simulation_exceeds_a_bound(first: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(busy_windows, "_MAX_TERMS_PER_SEARCH", 100_000)
+    held_count = 0
+    for seed in range(first, first + 60):
+        pairs = [
+            (what, seen, bound)
+            for what, seen, value in _list_pairs(seed)
+            if seen is not None and (bound := bounded(value)) is not None
+        ]
+        assert [pair for pair in pairs if pair[1] > pair[2]] == [], seed
+        held_count += len(pairs)
+    assert held_count > 600
+
+
+def _list_pairs(seed: int) -> Iterator[Held]:
+    of = random_use_system(seed)
+    analysis, walks = analyse_system(of), random_walks(of, seed)
+    seen = simulate_system(of, 1, 8, walks, find_publish_pauses(analysis))
+    yield from _activity_pairs(analysis, seen)
+    network = CostNetwork.of_analysis(analysis)
+    for name, way in walks.items():
+        yield from _chain_pairs(network, seen, name, way)
+
+
+def _activity_pairs(analysis: Analysis, seen: SimulationResult) -> Iterator[Held]:
+    for name, one in seen.activities.items():
+        response = analysis.responses[name].worst
+        yield f"response of {name}", one.worst_response, response
+        yield f"gap of {name}", one.activation_gap, analysis.paces[name].gap
+        figures = analysis.matches.get(name)
+        activity = analysis.system.activities[name]
+        ages = [bounded(age) for age in figures.ages.values()] if figures else [None]
+        oldest = None if None in ages else max(age for age in ages if age is not None)
+        if oldest is not None and bounded(response) is not None and not activity.jitter:
+            yield f"age of what {name} fuses", one.fused_age, TimingValue(oldest + (response.value or 0))
+        if activity.within is not None:
+            yield f"apart at {name}", one.fused_spread, TimingValue(activity.within * analysis.system.tick)
+
+
+def _chain_pairs(network: CostNetwork, seen: SimulationResult, name: str, way: tuple[str, ...]) -> Iterator[Held]:
+    chain = Chain(name, name, tuple(Waypoint("node", step) for step in way))
+    no_elements = cast("Architecture", SimpleNamespace(nodes={}, outputs={}))
+    found: ChainResult = bound_chain(network.steps.analysis, no_elements, chain, network)
+    one = seen.chains[name].bounded_figures
+    title = " > ".join(way)
+    yield f"reaction of {title}", one.reaction.largest if one.reaction else None, found.bound
+    yield f"age of {title}", one.age.largest if one.age else None, find_data_age(network, found)
+    yield f"reduced reaction of {title}", one.reduced_reaction, found.reduced_reaction
+    yield f"reduced age of {title}", one.reduced_age, found.reduced_age
+    # What is sent cannot be older than it becomes until the next output replaces it.
+    yield f"reduced age in {title}", found.reduced_age.value, find_data_age(network, found)
