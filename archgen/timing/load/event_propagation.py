@@ -168,7 +168,7 @@ class _Propagation:
             elif names and step not in self.inner_triggers:
                 models = self._models_of(step)
                 state.storing_waits |= find_core_waits(state.system, resource, models, names, self.budget_of[step])
-        for name in readers.difference(self.resources_of):
+        for name in sorted(readers.difference(self.resources_of)):
             own_core = ProcessingResource(name, None, 1, ((name,),))
             state.storing_waits |= find_core_waits(
                 state.system, own_core, state.event_models, (name,), self.budget_of[name]
