@@ -209,7 +209,7 @@ class _Propagation:
                 state.storing_waits |= limit_responses(
                     CoreResponses({}, {}, waits), self._limits_of(step)
                 ).storing_waits
-        for name in readers.difference(self.resources_of):
+        for name in sorted(readers.difference(self.resources_of)):
             own_core = ProcessingResource(name, None, 1, ((name,),))
             if state.system.activities[name].uses:
                 stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
