@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any, get_args
+from typing import get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
-from archgen.frozen import dataclass
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import ActivityBehaviour, Timing, Trigger
+from archgen.model.declared_timing import ActivityBehaviour, Trigger
 from archgen.model.node import Node
 from archgen.model.quantity import UNIT_FACTORS, parse_quantity
+from archgen.model.timing_override import ArchitectureOverride, ThreadsOverride, TimingOverride, apply_override
 
 _DURATION, _FREQUENCY = "duration", "frequency"
 _QUANTITY_KEYS = {
@@ -37,19 +37,6 @@ class OverrideError(ValueError):
     """A figure cannot be overridden; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class TimingOverride:
-    """A new value for one key of one activity: a node's part for a component ("" if the node implements none)."""
-
-    node: str
-    component: str
-    key: str
-    value: Any
-
-    def __str__(self) -> str:
-        return f"{self.node}.timing.{self.key}={self.value}"
-
-
 def apply_overrides(architecture: Architecture, override_texts: Iterable[str]) -> Architecture:
     """Return an architecture with overrides written as `ELEMENT.timing.KEY=VALUE`. Raises `OverrideError`."""
     for text in override_texts:
@@ -60,10 +47,12 @@ def apply_overrides(architecture: Architecture, override_texts: Iterable[str]) -
     return architecture
 
 
-def read_override(architecture: Architecture, text: str) -> tuple[TimingOverride, ...]:
+def read_override(architecture: Architecture, text: str) -> tuple[ArchitectureOverride, ...]:
     """Parse one override text into an override for each activity that it concerns. Raises `OverrideError`."""
     # From the right: an id may itself be `timing`.
     path, equals, value = text.partition("=")
+    if equals and ".timing." not in path and path.strip().endswith(".threads"):
+        return (_read_threads(architecture, path.strip().removesuffix(".threads"), value.strip()),)
     element, dot, key = path.strip().rpartition(".timing.")
     if not equals or not dot or not element:
         msg = f"`{text}` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms"
@@ -81,19 +70,17 @@ def read_override(architecture: Architecture, text: str) -> tuple[TimingOverride
     )
 
 
-def apply_override(architecture: Architecture, override: TimingOverride) -> Architecture:
-    """Return an architecture with one value overridden; overriding the rate removes the period, and the reverse."""
-    node = architecture.nodes[override.node]
-    timing = node.timing.get(override.component, Timing(at=node.at))
-    changes = {override.key: override.value}
-    if override.key in {"rate", "period"}:
-        changes["period" if override.key == "rate" else "rate"] = None
-    kept_places = {key: span for key, span in timing.places.items() if changes.get(key, key) is not None}
-    new_timing = replace(
-        timing, **changes, places={**kept_places, override.key: timing.places.get(override.key, timing.at)}
-    )
-    new_node = replace(node, timing={**node.timing, override.component: new_timing})
-    return replace(architecture, nodes={**architecture.nodes, node.id: new_node})
+def _read_threads(architecture: Architecture, element: str, text: str) -> ThreadsOverride:
+    """Return another number of threads of a container. Raises `OverrideError`."""
+    if element not in architecture.containers:
+        guess = did_you_mean(element, architecture.containers)
+        msg = f"no container is called `{element}`" + (f"; {guess}" if guess else "")
+        raise OverrideError(msg)
+    threads = _parse_count(text)
+    if not threads:
+        msg = f"`threads` takes a whole number from 1 on, not `{text}`"
+        raise OverrideError(msg)
+    return ThreadsOverride(element, "container", threads)
 
 
 def _parse_value(key: str, text: str) -> object:

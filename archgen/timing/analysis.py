@@ -194,6 +194,8 @@ class Analysis:
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
     notes: tuple[Reason, ...] = ()
+    searched_terms: int = field(default=0, compare=False, repr=False)
+    """How many terms the searches looked at: what the analysis has cost, on whatever computer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,3 +223,12 @@ class ChainResult:
     reduced_age: TimingValue
     deadline: TimingValue | None
     verdict: ChainVerdict
+
+    @property
+    def slack(self) -> Fraction | None:
+        """Return what the bound leaves of the deadline, in ns: negative where it is above; None where either is unknown."""
+        bound = self.bound
+        if self.deadline is None or self.deadline.value is None or bound.value is None:
+            return None
+        is_bound = bound.complete or bound.side == "at most"
+        return self.deadline.value - bound.value if is_bound else None

@@ -100,4 +100,5 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         derived=rates.derived,
         services=find_service_loads(state, rates.paces, responses),
         notes=notes,
+        searched_terms=state.searched_terms,
     )
