@@ -29,7 +29,9 @@ def list_waiting_elements(analysis: Analysis, elements: Iterable[Activity]) -> l
 
 def _part_order(term: ChainTerm) -> tuple[bool, Fraction]:
     parts = (term.sampling, term.response, term.link)
-    return all(part.value is not None for part in parts), -sum((part.value or Fraction(0) for part in parts), Fraction(0))
+    return all(part.value is not None for part in parts), -sum(
+        (part.value or Fraction(0) for part in parts), Fraction(0)
+    )
 
 
 def list_neighbours(analysis: Analysis, elements: Iterable[Activity]) -> list[Activity]:

@@ -56,8 +56,7 @@ class ChangeTrials:
         """Whether some changes make the verdict on any other chain worse."""
         key = tuple(changes)
         return any(
-            _VERDICT_RANKS[self.bound_chain(other_id, key).verdict]
-            < _VERDICT_RANKS[self.bound_chain(other_id).verdict]
+            _VERDICT_RANKS[self.bound_chain(other_id, key).verdict] < _VERDICT_RANKS[self.bound_chain(other_id).verdict]
             for other_id in self.architecture.chains
             if other_id != chain_id
         )

@@ -13,9 +13,9 @@ from archgen.frozen import dataclass
 from archgen.model.timing_override import ThreadsOverride, TimingOverride
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours, list_waiting_elements
 from archgen.timing.search.change_candidates import list_settings
 from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
-from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours, list_waiting_elements
 from archgen.timing.search.largest_step import find_largest_step
 from archgen.timing.search.tried_figures import TriedFigure, find_execution_time, find_own_period
 from archgen.timing.system.timing_system import Activity

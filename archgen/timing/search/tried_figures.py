@@ -39,6 +39,10 @@ class TriedFigure:
         """Return the least value in whole ticks, at least one."""
         return max(1, int(-(-self.least // self.tick)))
 
+    def grow_by(self, factor: Fraction) -> Fraction:
+        """Return what is written times a factor, in ns; not less than it can be."""
+        return max(self.written * factor, self.least)
+
     def change_to(self, step: int) -> TimingOverride:
         """Return the override that sets the figure to a number of ticks."""
         return self.change_to_duration(Fraction(step * self.tick))
