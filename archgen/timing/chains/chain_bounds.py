@@ -280,12 +280,16 @@ def _find_extreme_path(
         if path is None:
             return None
         extreme_paths.append(_ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
-    return min(extreme_paths, key=lambda extreme_path: _bound_order(extreme_path.value))
+    return min(extreme_paths, key=_bound_order)
 
 
-def _bound_order(bound: TimingValue) -> tuple[bool, bool, Fraction]:
-    """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first."""
-    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0)
+def _bound_order(extreme_path: _ExtremePath) -> tuple[bool, bool, Fraction, bool]:
+    """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first.
+
+    Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.
+    """
+    view, _, bound = extreme_path
+    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.by_runs
 
 
 def _path_sum(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:

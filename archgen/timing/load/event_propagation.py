@@ -198,6 +198,8 @@ class _Propagation:
         for name in self._activity_ids(steps):
             state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED_CAUSE)
             state.diverged.add(name)
+            if name in state.ways_to:
+                state.ways_to[name] = tuple(way._replace(delay=None) for way in state.ways_to[name])
         for step in steps:
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):
                 state.event_models[step] = DIVERGED_CAUSE

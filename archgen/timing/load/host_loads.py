@@ -33,6 +33,7 @@ _TIER_SENTENCES = {
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
+_OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
 _OPEN_CORES_SENTENCE = "nobody wrote how many cores {0} has"
 
 
@@ -53,10 +54,10 @@ def _build_response_time(
     best = unknown_value(name) if activity.bcet is None else TimingValue(activity.bcet * tick)
     sentence = _TIER_SENTENCES[worst_response.tier]
     if resource is not None and resource.undisturbed and worst_response.tier == "cores":
-        sentence = "its own work: {0} has no more threads than cores"
+        sentence = _OWN_CORE_SENTENCE
+    if resource is not None and worst_response.tier == "unknown" and activity.wcet is not None:
+        sentence = _OPEN_CORES_SENTENCE
     sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
-    is_open = worst_response.tier == "unknown" and activity.wcet is not None and resource is not None
-    sentence = _OPEN_CORES_SENTENCE if is_open else _TIER_SENTENCES[worst_response.tier]
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,

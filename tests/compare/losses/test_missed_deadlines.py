@@ -38,16 +38,21 @@ links: {lan: {connects: [pc, base], bandwidth: 10 Mbit/s, latency: {best: 1 ms, 
 chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}
 """
 CHAINS = BASE[BASE.index("chains:") :]
-# Three cores, which two fans share with the others.
+# It may start a little late: so it is part of no run, and its response and that of what fires it make each other longer.
+LATE_START = ("behaviour: event, wcet: 20 ms", "behaviour: event, jitter: 1 us, wcet: 20 ms")
+# Three cores, which three fans share with the others.
 CROWDED = (
     BASE.replace("pc: {cores: 1}", "pc: {cores: 3}")
-    .replace("wcet: 20 ms", "wcet: 30 ms")
-    .replace("wcet: 2 ms", "wcet: 30 ms")
-    .replace("      tracker: {", "      one: {outputs: {x: X}}\n      two: {outputs: {y: Y}}\n      tracker: {")
+    .replace("rate: 10 Hz, wcet: 2 ms", "rate: 5 Hz, wcet: 10 ms")
+    .replace(
+        "      tracker: {",
+        "      one: {outputs: {x: X}}\n      two: {outputs: {y: Y}}\n      three: {outputs: {z: Z}}\n      tracker: {",
+    )
     .replace(
         "nodes:\n",
         "nodes:\n  fan: {implements: one, timing: {rate: 10 Hz, wcet: 1 ms}, host: pc}\n"
-        "  gan: {implements: two, timing: {rate: 10 Hz, wcet: 0.1 ms}, host: pc}\n",
+        "  gan: {implements: two, timing: {rate: 10 Hz, wcet: 0.1 ms}, host: pc}\n"
+        "  van: {implements: three, timing: {rate: 10 Hz, wcet: 30 ms}, host: pc}\n",
     )
 )
 LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
@@ -69,7 +74,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                LATE + " (151 ms → 301 ms); `mind` of SSSA and `feet` of TUM are on it",
+                LATE + " (129 ms → 279 ms); `mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -88,7 +93,7 @@ TABLE = {
         [("rate: 10 Hz", "rate: 11 Hz"), ("wcet: 5 ms", "wcet: 145 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` miss its deadline of 250 ms (151 ms → no bound); `eye` of CERTH and `mind` of SSSA are on it",
+            "makes the chain `react` miss its deadline of 250 ms (129 ms → no bound); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -98,7 +103,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
+            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 129 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -129,7 +134,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (129 ms → 279 ms); "
                 "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
@@ -176,7 +181,7 @@ TABLE = {
         [("wcet: 5 ms", "wcet: 6 ms")],
         both(
             "moving.planner/timing.wcet",
-            "makes the chain `react` exceed its deadline of 100 ms by still more (151 ms → 152 ms); `eye` of CERTH and `mind` of SSSA are on it",
+            "makes the chain `react` exceed its deadline of 100 ms by still more (129 ms → 130 ms); `eye` of CERTH and `mind` of SSSA are on it",
             "certh",
             "sssa",
         ),
@@ -187,7 +192,7 @@ TABLE = {
         [("behaviour: event, wcet: 20 ms", "behaviour: event")],
         both(
             "tracking.tracker/timing.wcet",
-            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; "
+            "leaves the chain `react`, which met its deadline of 250 ms with 129 ms, without a bound; "
             "`eye` of CERTH and `feet` of TUM are on it",
             "certh",
             "tum",
@@ -197,7 +202,7 @@ TABLE = {
         BASE,
         [("inputs: {image: camera.image}, ", "")],
         [
-            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 151 ms; `feet` of TUM is on it"
+            "tracking.tracker.image tum: cuts the chain `react`, which met its deadline of 250 ms with 129 ms; `feet` of TUM is on it"
         ],
     ),
     "a step more on the way": (
@@ -208,14 +213,37 @@ TABLE = {
                 "outputs: {image: Colour image}}\n      mend: {inputs: {image: camera.image}, outputs: {image: Colour image}}",
             ),
             ("{inputs: {image: camera.image}, outputs: {tracks", "{inputs: {image: mend.image}, outputs: {tracks"),
-            ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 50 ms}, host: pc}\n"),
+            (
+                "nodes:\n",
+                "nodes:\n  mender: {implements: mend, timing: {behaviour: event, jitter: 1 us, wcet: 50 ms}, host: pc}\n",
+            ),
         ],
         both(
             "sensing.mend",
-            "leaves the chain `react`, which met its deadline of 250 ms with 151 ms, without a bound; `mind` of SSSA and `feet` of TUM are on it",
+            "leaves the chain `react`, which met its deadline of 250 ms with 129 ms, without a bound; `mind` of SSSA and `feet` of TUM are on it",
             "sssa",
             "tum",
         ),
+    ),
+    "a step more on the way that is too much for its host": (
+        BASE,
+        [
+            (
+                "outputs: {image: Colour image}}",
+                "outputs: {image: Colour image}}\n      mend: {inputs: {image: camera.image}, outputs: {image: Colour image}}",
+            ),
+            ("{inputs: {image: camera.image}, outputs: {tracks", "{inputs: {image: mend.image}, outputs: {tracks"),
+            ("nodes:\n", "nodes:\n  mender: {implements: mend, timing: {behaviour: event, wcet: 90 ms}, host: pc}\n"),
+        ],
+        [
+            *both(
+                "sensing.mend",
+                "makes the chain `react` miss its deadline of 250 ms (129 ms → no bound); `mind` of SSSA and `feet` of TUM are on it",
+                "sssa",
+                "tum",
+            ),
+            "sensing.mend sssa: overloads the host `pc` (112 % of its core), where `mind` of SSSA runs",
+        ],
     ),
     "a chain that is removed": (
         BASE,
@@ -234,7 +262,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (151 ms → 301 ms); "
+                "takes away the proof that the chain `react` meets the deadline of 250 ms that it had before (129 ms → 279 ms); "
                 "`mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
@@ -248,11 +276,11 @@ TABLE = {
         [],
     ),
     "a longer way": (
-        BASE.replace("deadline: 250 ms", "deadline: 150 ms").replace("tracker, planner]", "tracker]"),
+        BASE.replace("deadline: 250 ms", "deadline: 125 ms").replace("tracker, planner]", "tracker]"),
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "takes away the proof that the chain `react` meets its deadline of 150 ms (144 ms → 151 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
+            "takes away the proof that the chain `react` meets its deadline of 125 ms (122 ms → 129 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -266,7 +294,7 @@ TABLE = {
             for fan in ("one", "two")
             for line in both(
                 f"tracking.{fan}/timing.core",
-                f"{LATE} (~223.467 ms → 292 ms); `eye` of CERTH and `feet` of TUM are on it",
+                f"{LATE} (237.1 ms → 267 ms); `eye` of CERTH and `feet` of TUM are on it",
                 "certh",
                 "tum",
             )
@@ -363,12 +391,15 @@ def test_bounds_in_sentences() -> None:
     ]
 
 
-DIRECT = SHORT_CUT.replace("[camera, tracker, planner], deadline: 250 ms", "[camera, planner], deadline: 240 ms")
+# With a priority `eye` waits for nobody: it is done after 2 ms, `mind` after 22 ms.
+DIRECT = SHORT_CUT.replace(
+    "[camera, tracker, planner], deadline: 250 ms", "[camera, planner], deadline: 120 ms"
+).replace("wcet: 2 ms", "wcet: 2 ms, priority: 9")
 
 
 def test_a_way_round_that_nobody_meant_is_no_chain(compared: Compared) -> None:
     edits = [("tracks: tracker.tracks, image: camera.image", "tracks: tracker.tracks")]
-    said = broken(compared, DIRECT.replace("240 ms", "140 ms"), edits)
+    said = broken(compared, DIRECT, edits)
     # `mind` is on the way round alone: its partner had no part in the chain.
     assert said == [
         "moving.planner.image certh: cuts the chain `react`: `eye` no longer reaches `feet` directly; `eye` of CERTH is on it"
@@ -380,4 +411,4 @@ def test_what_is_put_between_two_parts_makes_the_chain_later(compared: Compared)
         ("image: camera.image}}", "image: filter.image}}\n      filter: {inputs: {image: camera.image}, outputs: {image: Colour image}}"),
         ("hosts:", "  sieve: {implements: filter, timing: {behaviour: event, wcet: 90 ms}, host: base}\nhosts:"),
     ]  # fmt: skip
-    assert "cuts" not in " ".join(broken(compared, DIRECT.replace("240 ms", "140 ms"), edits))
+    assert "cuts" not in " ".join(broken(compared, DIRECT, edits))

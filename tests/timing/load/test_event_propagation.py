@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from tests.timing.sketches import analyse_sketch, list_edges, list_hosts, list_outputs, list_paces, list_responses
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from tests.timing.printed import show_ms
+from tests.timing.sketches import (
+    analyse_sketch,
+    list_edges,
+    list_hosts,
+    list_outputs,
+    list_paces,
+    list_responses,
+    read_sketch,
+)
 
 
 def test_what_is_behind_an_overload() -> None:
@@ -269,3 +279,26 @@ def test_several_triggers_of_each_kind() -> None:
         "never>hushed: loss 0, rereads 1, beat 0, queue 4",
         "never>other: loss 0, rereads 1, beat 0, queue 4",
     ]
+
+
+def test_what_is_given_up_leaves_no_run_either() -> None:
+    """From p to q and back: each makes the other late without end. Runs of the last turn are below the truth, not bounds.
+
+    `x`, elsewhere, fires the second step of such a run: what it leads to has no bound.
+    """
+    fired = "behaviour: event, trigger: any, wcet: 3500 us, bcet: 0 ms"
+    nodes = {"n0 @p": "period: 20 ms, wcet: 3500 us, bcet: 0 ms"}
+    nodes |= {f"n{at} @{'pq'[at // 2 % 2]}": fired for at in range(1, 8)}
+    nodes["x @r"] = "period: 1 s, wcet: 1 us"
+    wires = " ".join(f"n{at}>n{at + 1}" for at in range(7)) + " x>n5"
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}, r: {cores: 1}}\n"
+        "links: {lan: {connects: [p, q, r], latency: 0 ms}}\nchains: {c: {through: [g.x, g.n5]}}"
+    )
+    analysis = analyse_sketch(nodes, wires, rest)
+    assert analysis.diverged == tuple(f"n{at}" for at in range(8))
+    assert analysis.runs == {}
+    assert (
+        show_ms(bound_all_chains(analysis, read_sketch(nodes, wires, rest))["c"].bound)
+        == ">= 1000001/1000 ? [diverged]"
+    )

@@ -8,12 +8,10 @@ from fractions import Fraction
 import pytest
 
 from archgen.timing.load import link_queueing, response_times, search_budgets
-from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
-from archgen.timing.load.event_streams import written_streams
 from archgen.timing.load.host_loads import is_below_rate_bound, rate_monotonic_bound
 from archgen.timing.load.link_queueing import longest_queueing, settle_links
-from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.trigger_graph import find_triggers
 from tests.timing.printed import MS, show_ms
@@ -46,12 +44,13 @@ def test_the_exact_bound_needs_no_root() -> None:
     [
         # 0.8 + 0.4 / 2 = 1. The others have no bound beside what has none.
         (2, (8, 2, 2), ["none [diverged]"] * 3),
-        # 7 + 3 (2 + 2) / 2: two jobs of each come within 13, and one is carried in. The others: 2 + (3 x 7 + 4 x 2) / 2.
-        (2, (7, 2, 2), ["13", "33/2", "33/2"]),
+        # 7 + (2 + 2 + 2) / 2: one of each comes within 10, and one of them may have been pending. The others: 2 + B, where
+        # 2 B = min(7, B) + 2: the first keeps one core busy, and the other core has 2 besides.
+        (2, (7, 2, 2), ["10", "4", "4"]),
         # 0.8 + 0.6 / 3 = 1.
         (3, (8, 2, 2, 2), ["none [diverged]"] * 4),
-        # 6 + 2 (2 + 2 + 2) / 3; 2 + (2 x 6 + 2 x 2 + 2 x 2) / 3.
-        (3, (6, 2, 2, 2), ["10", "26/3", "26/3", "26/3"]),
+        # 6 + (2 + 2 + 2 + 2 x 2) / 3: two were pending. 2 + B, where 3 B = min(6, B) + 2 + 2.
+        (3, (6, 2, 2, 2), ["28/3", "4", "4", "4"]),
     ],
 )
 def test_a_thread_and_its_part_of_the_others_fill_a_core(
@@ -65,9 +64,9 @@ def test_a_thread_and_its_part_of_the_others_fill_a_core(
 @pytest.mark.parametrize(
     ("shares", "others", "responses"),
     [
-        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95. 5 + (18 x 5 + 23 x 2) / 2 + 16 x 3 / 3 = 89: with responses of 89, 138 and
-        # 211/3, so many came within 89 and the response before it.
-        ((5, 5, 2), 3, ["89", "89", "138", "211/3"]),
+        # 0.5 + (0.5 + 0.2) / 2 + 0.3 / 3 = 0.95. 5 + (11 x 5 + 14 x 2) / 2 + 8 x 3 / 3 = 54.5: with responses of 54.5, 83 and
+        # 25, so many came within 54.5 and the response before it.
+        ((5, 5, 2), 3, ["109/2", "109/2", "83", "25"]),
         # 0.5 + (0.5 + 0.3) / 2 + 0.3 / 3 = 1.
         ((5, 5, 3), 3, ["none [diverged]"] * 4),
         # 0.5 + (0.5 + 0.2) / 2 + 0.6 / 3 = 1.05.
@@ -140,32 +139,36 @@ def test_one_budget_bounds_all_searches(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.parametrize(
-    ("cores", "shares", "others", "causes"),
+    ("cores", "shares", "others", "is_full"),
     [
-        # In percent of a core. 80 + (20 + 20) / 2 fills one: no search is needed to know it; 19 and 20 + (80 + 19) / 2 do not.
-        (2, (80, 20, 20), 0, "diverged diverged diverged"),
-        (2, (80, 20, 19), 0, "diverged diverged diverged"),
+        # In percent of a core. 80 + (20 + 20) / 2 fills one: no search is needed to know it; with 19 there is room left.
+        (2, (80, 20, 20), 0, True),
+        (2, (80, 20, 19), 0, False),
         # 80 + (20 + 20 + 20) / 3; without 1 of it there is room left.
-        (3, (80, 20, 20, 20), 0, "diverged diverged diverged diverged"),
-        (3, (79, 20, 20, 20), 0, "diverged diverged diverged diverged"),
+        (3, (80, 20, 20, 20), 0, True),
+        (3, (79, 20, 20, 20), 0, False),
         # Two threads of a container on three cores: 50 + (50 + 30) / 2 + 30 / 3; one less, and there is room left.
-        (3, (50, 50, 30), 30, "diverged diverged diverged diverged"),
-        (3, (50, 50, 29), 30, "diverged diverged diverged diverged"),
-        (3, (50, 50, 30), 29, "diverged diverged diverged diverged"),
+        (3, (50, 50, 30), 30, True),
+        (3, (50, 50, 29), 30, False),
+        (3, (50, 50, 30), 29, False),
     ],
 )
 def test_what_a_full_core_is_known_by_without_a_search(
-    cores: int, shares: tuple[int, ...], others: int, causes: str
+    monkeypatch: pytest.MonkeyPatch, cores: int, shares: tuple[int, ...], others: int, *, is_full: bool
 ) -> None:
-    """Nothing may be searched here, so that whatever is not known to be full is given up."""
+    """What is known to be full, and what is beside it, is not searched for; all else is, but given up at once here."""
+    looks: list[int] = []
+
+    def give_up(term_count: int) -> None:
+        looks.append(term_count)
+        raise DivergedError
+
+    monkeypatch.setattr(SearchBudget, "start_search", lambda _: give_up)
     place = "+box" if others else "@pc"
     nodes = {f"c{index} {place}": f"period: 100 ms, wcet: {share} ms" for index, share in enumerate(shares)}
     nodes |= {"other @pc": f"period: 100 ms, wcet: {others} ms"} if others else {}
     rest = f"hosts: {{pc: {{cores: {cores}}}}}\ncontainers: {{box: {{threads: 2, host: pc}}}}"
     system, _ = build_system(read_sketch(nodes, "", rest))
-    (resource,) = find_resources(system)
-    event_models = {name: written_streams(activity) or () for name, activity in system.activities.items()}
-    found = response_times.find_responses(
-        system, resource, event_models, {}, response_times.AnalysisEffort(SearchBudget(0))
-    )
-    assert " ".join(response.cause.notes[0] for response in found.response_of.values()) == causes
+    found = propagate_events(system, find_triggers(system)).responses
+    assert {response.cause.notes for response in found.values()} == {("diverged",)}
+    assert bool(looks) is not is_full

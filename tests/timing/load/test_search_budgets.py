@@ -18,13 +18,16 @@ Derived = Callable[[str], Architecture]
 
 
 def _rising_chains(**steps_and_costs: tuple[int, int]) -> str:
-    """Write a chain for each host: one core, 10 Hz, so many steps of so many ms, each more urgent than the one before."""
+    """Write a chain for each host: one core, 10 Hz, so many steps of so many ms, each more urgent than the one before.
+
+    Each may start 1 us late: so it begins a run of its own, and the jitter of one step makes the next one wait.
+    """
     components, nodes = [], []
     for host, (steps, cost) in steps_and_costs.items():
         for step in range(steps):
             name = f"{host}{step}"
             inputs = f"inputs: {{before{step}: {host}{step - 1}.out}}, " if step else ""
-            clock = "behaviour: event" if step else "period: 100 ms"
+            clock = "behaviour: event, jitter: 1 us" if step else "period: 100 ms"
             components.append(f"      {name}: {{{inputs}outputs: {{out: std_msgs/msg/Empty}}}}")
             figures = f"{clock}, wcet: {cost} ms, bcet: {cost} ms, priority: {step + 1}"
             nodes.append(f"  {name}: {{implements: {name}, host: {host}, timing: {{{figures}}}}}")

@@ -22,17 +22,17 @@ groups:
       b: {inputs: {i: a.o}, outputs: {o: std_msgs/msg/Empty}}
       c: {inputs: {i: b.o}}
 nodes:
-  a: {implements: a, host: pc, timing: {period: 100 ms, wcet: COST, bcet: COST}}
-  b: {implements: b, host: pc, timing: {wcet: COST, bcet: COST}}
-  c: {implements: c, host: pc, timing: {wcet: COST, bcet: COST}}
+  a: {implements: a, host: pc, timing: {period: 100 ms, COSTS}}
+  b: {implements: b, host: pc, timing: {COSTS}}
+  c: {implements: c, host: pc, timing: {COSTS}}
 hosts: {pc: {title: Computer, CORES}}
 chains: {c: {through: [g.a, g.b, g.c], deadline: LIMIT}}
 """
 
 
-def _view(folder: Path, cost: str, cores: str, limit: str) -> tuple[Lookup, tuple[Diagnostic, ...]]:
+def _view(folder: Path, costs: str, cores: str, limit: str) -> tuple[Lookup, tuple[Diagnostic, ...]]:
     file = folder / "robot.yaml"
-    file.write_text(_FIVE.replace("COST", cost).replace("CORES", cores).replace("LIMIT", limit), encoding="utf-8")
+    file.write_text(_FIVE.replace("COSTS", costs).replace("CORES", cores).replace("LIMIT", limit), encoding="utf-8")
     checked = pipeline.check_project(file)
     return make_lookup(checked.architecture, timing_lookup=analyse_with_chains(checked.architecture)), checked.findings
 
@@ -41,23 +41,31 @@ def _view(folder: Path, cost: str, cores: str, limit: str) -> tuple[Lookup, tupl
     ("figures", "verdict", "kind"),
     [
         (
-            ("1 ms", "cores: 1", "200 ms"),
-            "Met: at the latest after 109 ms, 91 ms before the deadline of 200 ms.",
+            ("wcet: 1 ms, bcet: 1 ms", "cores: 1", "200 ms"),
+            "Met: at the latest after 103 ms, 97 ms before the deadline of 200 ms.",
             "met",
         ),
-        (("1 ms", "cores: 1", "100 ms"), "Not proven: up to 109 ms, 9 ms after the deadline of 100 ms.", "unproven"),
         (
-            ("1 ms", "cores: 1", "2 ms"),
+            ("wcet: 1 ms, bcet: 1 ms", "cores: 1", "100 ms"),
+            "Not proven: up to 103 ms, 3 ms after the deadline of 100 ms.",
+            "unproven",
+        ),
+        (
+            ("wcet: 1 ms, bcet: 1 ms", "cores: 1", "2 ms"),
             "Missed: at the earliest after 3 ms, 1 ms after the deadline of 2 ms.",
             "missed",
         ),
-        (("40 ms", "cores: 1", "1 s"), "Missed: pc is overloaded.", None),
+        (("wcet: 40 ms, bcet: 40 ms", "cores: 1", "1 s"), "Missed: pc is overloaded.", None),
         (
-            ("20 ms", "cores: 1", "1 s"),
+            ("wcet: 20 ms, bcet: 20 ms, jitter: 1 us", "cores: 1", "1 s"),
             "Not proven: no bound was found on pc at a load of 60 % (in any order), for the deadline of 1000 ms.",
             "unproven",
         ),
-        (("1 ms", "tags: []", "200 ms"), "Open: >= 103 ms; no bound: cores of pc not written.", "open"),
+        (
+            ("wcet: 1 ms, bcet: 1 ms", "tags: []", "200 ms"),
+            "Open: >= 103 ms; no bound: cores of pc not written.",
+            "open",
+        ),
     ],
 )
 def test_a_verdict_is_in_words_and_in_a_colour_of_its_own(
@@ -77,7 +85,7 @@ def _text(value: Inlines) -> str:
 
 
 def test_where_no_bound_was_found_each_host_is_one_line(tmp_path: Path) -> None:
-    view, _ = _view(tmp_path, "20 ms", "cores: 1", "1 s")
+    view, _ = _view(tmp_path, "wcet: 20 ms, bcet: 20 ms, jitter: 1 us", "cores: 1", "1 s")
     assert view.timing is not None
     lead, bullets = timing_verdicts.list_unfound_bounds(view, view.timing)
     assert isinstance(lead, Paragraph)
@@ -86,7 +94,7 @@ def test_where_no_bound_was_found_each_host_is_one_line(tmp_path: Path) -> None:
 
 
 def test_without_a_number_of_cores_there_is_no_share_and_no_chart(tmp_path: Path) -> None:
-    view, findings = _view(tmp_path, "90 ms", "tags: []", "1 s")
+    view, findings = _view(tmp_path, "wcet: 90 ms, bcet: 90 ms", "tags: []", "1 s")
     assert view.timing is not None
     table = timing_tables.make_load_table(view, view.timing)
     assert table is not None
