@@ -21,6 +21,7 @@ from archgen.analyses import (
     policy_violations,
     port_sections,
     port_types,
+    process_settings,
     qos_compatibility,
     rate_conflicts,
     requirement_tracing,
@@ -73,12 +74,14 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *host_links.RULES,
     *timing_plausibility.RULES,
     *ineffective_timing.RULES,
+    *process_settings.RULES,
     *policy_violations.RULES,
     *selector_checks.RULES,
     *completeness.RULES,
 )
 
 _TIMING_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
+    *ineffective_timing.TIMING_RULES,
     *rate_conflicts.RULES,
     *trigger_cycles.RULES,
     *resource_load.RULES,

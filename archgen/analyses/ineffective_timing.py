@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 
 if TYPE_CHECKING:
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
     from archgen.model.declared_timing import Timing
+    from archgen.model.deployment import Host
     from archgen.model.node import Node
+    from archgen.timing.analysis import Analysis
 
 _INPUT_TRIGGER_KEYS = ("trigger", "every", "throttle")
 """Keys that say how inputs trigger an activity: attributes of `Timing`, and keys of its `places`."""
@@ -28,12 +31,14 @@ _SELF_ACTIVATED = {
 }
 
 
-def idle_timing(architecture: Architecture) -> Iterator[Diagnostic]:
+def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """A key of timing has no effect where it stands.
 
     Why: What somebody writes is meant to count. A `trigger`, `every` or `throttle` does not where a period, or a call, fires
     the element; `calls` does not for an input that is a topic, and `max_gap` does not for an output that is not
-    `conditional`. One of the two is a slip.
+    `conditional`. Nothing is `dropped` without `every` or `throttle`. The times below `inputs` are those of callbacks that
+    only store a message: what fires the element is in its own `wcet`. `freshness` does not count where nothing is sent.
+    One of the two is a slip.
 
     Bad:
         groups:
@@ -64,10 +69,14 @@ def idle_timing(architecture: Architecture) -> Iterator[Diagnostic]:
                 *_find_idle_triggers(node, timing),
                 *_find_idle_calls(node, timing, uses),
                 *_find_idle_gaps(node, timing),
+                *_find_idle_dropping(node, timing),
+                *_find_idle_measurement(node, timing),
             ):
                 if finding.span not in reported_spans:
                     reported_spans.add(finding.span)
                     yield finding
+    yield from _find_idle_inputs(architecture, analysis)
+    yield from _find_idle_freshness(architecture)
 
 
 def _port_uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
@@ -120,6 +129,56 @@ def _find_idle_gaps(node: Node, timing: Timing) -> Iterator[Diagnostic]:
             )
 
 
+def _find_idle_dropping(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    if timing.dropped is not None and timing.throttle is None and (timing.every or 1) == 1:
+        yield Diagnostic(
+            "idle-timing",
+            f"`dropped` of `{node.id}` has no effect: without `every` or `throttle` no message is dropped",
+            timing.places["dropped"],
+            help="leave it out, or write what drops messages, such as `every: 3`",
+            element=node.id,
+        )
+
+
+def _find_idle_measurement(node: Node, timing: Timing) -> Iterator[Diagnostic]:
+    if timing.wcet is None and timing.measured_times is not None and timing.measured_times.is_measured:
+        yield Diagnostic(
+            "idle-timing",
+            f"`measured` of `{node.id}` has no effect: no longest time is written that it could be about",
+            timing.places["wcet"],
+            help="write the longest time that was seen: `wcet: {max: 80 ms, measured: true}`",
+            element=node.id,
+        )
+
+
+def _find_idle_inputs(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """Yield execution times for storing what is not stored: inputs that fire, and those of services and actions."""
+    for activity in analysis.system.activities.values():
+        timing = architecture.nodes[activity.node].timing.get(activity.component or "")
+        called_inputs = {arc.input for arc in analysis.system.arcs_into.get(activity.id, ()) if arc.role == "answer"}
+        for port, input_timing in timing.inputs.items() if timing else ():
+            if port in activity.triggers:
+                reason, cure = f"it fires `{activity.id}`", "its time is a part of `wcet`: add it there"
+            elif port in called_inputs:
+                reason, cure = "it is a service or an action, of which no message is stored", "leave it out"
+            else:
+                continue
+            message = f"the time below `inputs` of `{port}` has no effect: {reason}"
+            yield Diagnostic("idle-timing", message, input_timing.at, help=cure, element=activity.node)
+
+
+def _find_idle_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
+    for port in architecture.inputs.values():
+        if port.freshness is not None and port.physical:
+            yield Diagnostic(
+                "idle-timing",
+                f"`freshness` of `{port.id}` has no effect: it is physical, so that nothing is sent there",
+                port.freshness_at,
+                help="write it at an input that reads a message",
+                element=port.component,
+            )
+
+
 def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
     """An element is pinned to a core that its host does not have.
 
@@ -144,25 +203,43 @@ def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
           camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 3}}
         hosts: {pc: {cores: 4}}
     """
+    # One `timing` may stand for several components of a node: its faults are reported once.
     reported_spans: set[Span] = set()
     for node in architecture.nodes.values():
         host = architecture.hosts.get(node.host or "")
         for timing in node.timing.values():
-            span = timing.places.get("core")
-            # A host that does not say how many cores it has is judged by nobody.
-            if host is None or host.cores is None or timing.core is None or span is None or span in reported_spans:
-                continue
-            if timing.core >= host.cores:
-                reported_spans.add(span)
-                available_cores = "only core 0" if host.cores == 1 else f"the cores 0 to {host.cores - 1}"
-                yield Diagnostic(
-                    "absent-core",
-                    f"`{node.id}` is pinned to core {timing.core}, but `{host.id}` has {available_cores}",
-                    span,
-                    labels=(Label(host.at, "its host"),),
-                    help="cores are counted from 0; correct `core`, or the host's `cores`",
-                    element=node.id,
-                )
+            for key, cores in (("core", () if timing.core is None else (timing.core,)), ("cores", timing.cores or ())):
+                span, absent_cores = timing.places.get(key), _list_absent_cores(host, cores)
+                if host is not None and span is not None and absent_cores and span not in reported_spans:
+                    reported_spans.add(span)
+                    yield _report_absent_cores(f"`{node.id}` is pinned to", host, absent_cores, (key, span), node.id)
+    for host in architecture.hosts.values():
+        for core in _list_absent_cores(host, tuple(host.core_scheduling)):
+            yield _report_absent_cores(
+                "an order is written for", host, [core], ("scheduling", host.core_places[core]), host.id
+            )
 
 
-RULES = ((idle_timing, Severity.WARNING), (absent_core, Severity.WARNING))
+def _list_absent_cores(host: Host | None, cores: tuple[int, ...]) -> list[int]:
+    """Return the cores that a host does not have. One that does not say how many it has is judged by nobody."""
+    return [core for core in cores if host is not None and host.cores is not None and core >= host.cores]
+
+
+def _report_absent_cores(
+    beginning: str, host: Host, cores: list[int], place: tuple[str, Span], element_id: str
+) -> Diagnostic:
+    key, span = place
+    word = "core" if len(cores) == 1 else "cores"
+    available_cores = "only core 0" if host.cores == 1 else f"the cores 0 to {(host.cores or 1) - 1}"
+    return Diagnostic(
+        "absent-core",
+        f"{beginning} {word} {join_words([str(core) for core in cores])}, but `{host.id}` has {available_cores}",
+        span,
+        labels=(Label(host.at, "its host"),),
+        help=f"cores are counted from 0; correct `{key}`, or the host's `cores`",
+        element=element_id,
+    )
+
+
+RULES = ((absent_core, Severity.WARNING),)
+TIMING_RULES = ((idle_timing, Severity.WARNING),)

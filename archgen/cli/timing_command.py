@@ -241,7 +241,8 @@ def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
-    from archgen.link.timing_overrides import OverrideError, apply_overrides
+    from archgen.link.override_values import OverrideError
+    from archgen.link.timing_overrides import apply_overrides
 
     try:
         return apply_overrides(architecture, overrides) if overrides else architecture

@@ -71,6 +71,7 @@ def _find_key_span(element: object, key: str, architecture: Architecture) -> Spa
             for timing in _list_timings(element, architecture)
             for name in _spell_key(key)
         ),
+        getattr(element, "executor_places", {}).get(first_word, NO_SPAN),
         getattr(element, f"{first_word}_at", NO_SPAN),
         topic_spans[0] if first_word == "topic" and topic_spans else NO_SPAN,
         getattr(getattr(element, first_word, None), "at", NO_SPAN),

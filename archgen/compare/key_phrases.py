@@ -17,10 +17,12 @@ _NAMED_SECTIONS = {
     "constants": "constant",
     "defaults": "default of",
     "comments": "what is said of",
+    "callback_groups": "callback group",
 }
 """What sentences call the keys of a section, by the section."""
 _ACCEPTED_PREFIX = "review.accepted."
-_CALLS_PREFIX = "timing.calls."
+_TIMING_SECTIONS = {"calls": "calls of", "uses": "use of"}
+"""What sentences call the keys below a key of `timing`, by that key."""
 
 
 def describe_key_change(change: Change) -> str:
@@ -79,8 +81,10 @@ def _key_noun(key: str) -> str:
         return f"`{option}` of the rule `{rule}`" if option else f"severity of the rule `{rule}`"
     if key.startswith(_ACCEPTED_PREFIX):
         return f"what is accepted of `{shorten_text(key.removeprefix(_ACCEPTED_PREFIX))}`"
-    if key.startswith(_CALLS_PREFIX):
-        return f"calls of `{shorten_text(key.removeprefix(_CALLS_PREFIX))}`"
+    if key.startswith("timing."):
+        timing_key, _, part = key.removeprefix("timing.").partition(".")
+        if timing_key in _TIMING_SECTIONS and part:
+            return f"{_TIMING_SECTIONS[timing_key]} `{shorten_text(part)}`"
     section, _, name = key.partition(".")
     if section in _NAMED_SECTIONS and name:
         return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"

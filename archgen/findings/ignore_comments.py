@@ -152,7 +152,7 @@ def find_first_lines(architecture: Architecture) -> Mapping[str, LineSet]:
             model.types,
             model.nodes,
         ),
-        *(model.hosts, model.containers, model.links, model.chains, model.views, model.policies),
+        *(model.hosts, model.containers, model.resources, model.links, model.chains, model.views, model.policies),
     )
     for elements in element_maps:
         for key, element in elements.items():

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.link import mapping_values
+from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import PortEdge
@@ -61,10 +61,14 @@ class InputWiring:
             physical=mapping_values.get_text(body, "medium") == "physical",
             type=mapping_values.normalise_type_name(type_text) if type_text else None,
             optional=mapping_values.get_flag(body, "optional"),
+            freshness=sanity_checks.read_positive(
+                body, "freshness", "duration", component_id, self.resolver.diagnostics
+            ),
             description=mapping_values.get_text(body, "description"),
             from_written=body.get("from") is not None,
             at=entry.key_span,
             type_at=mapping_values.get_span(body, "type"),
+            freshness_at=mapping_values.get_span(body, "freshness"),
         )
 
     def _connect_source(self, component_id: str, input_id: str, reference: ScalarNode) -> Connection | None:

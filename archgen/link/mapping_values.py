@@ -7,16 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from typing import get_args
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model import quantity
 from archgen.model.component import DiagramLayout
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.message_types import full_message_name
 from archgen.model.path_resolver import title_from_id
 from archgen.model.quantity import Quantity
 from archgen.schema.short_forms import fold_type_name
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
+_ORDERS = frozenset(get_args(SchedulingOrder))
 EMPTY_MAPPING = MappingNode({}, NO_SPAN)
 
 
@@ -79,6 +82,12 @@ def get_quantity(mapping: MappingNode, key: str, dimension: str) -> Quantity | N
     """Return a quantity of a dimension such as `duration`, None where it is not written or malformed."""
     node = get_scalar(mapping, key)
     return quantity.parse_quantity(node.text, dimension) if node else None
+
+
+def get_order(mapping: MappingNode, key: str) -> SchedulingOrder | None:
+    """Return the scheduling order at a key, None where none is written."""
+    word = get_text(mapping, key)
+    return word if word in _ORDERS else None  # type: ignore[return-value]
 
 
 def get_span(mapping: MappingNode, key: str) -> Span:

@@ -12,8 +12,11 @@ from archgen.link import sanity_checks
 from archgen.model.component import Component
 from archgen.model.declared_timing import Timing
 
-# All keys of `timing` that people write; the other two fields of Timing are positions.
-_TIMING_KEYS = tuple(f.name for f in fields(Timing) if f.name not in {"places", "at"})
+# All keys of `timing` that people write, with the fields of Timing that hold their values; two fields are positions.
+_FIELDS_OF_KEY = {
+    **{f.name: (f.name,) for f in fields(Timing) if f.name not in {"places", "at", "measured_times"}},
+    "wcet": ("wcet", "measured_times"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +64,7 @@ def find_shared_components(implements: Iterable[Iterable[str]]) -> frozenset[str
 
 
 def _restrict_timing(timing: Timing, component: str) -> Timing:
-    """Return a node's timing with only those triggers, outputs and calls that are ports of one of its components."""
+    """Return a node's timing with only those triggers, inputs, outputs and calls that are ports of one of its components."""
     prefix = f"{component}."
     trigger = timing.trigger
     if trigger and trigger.inputs is not None:
@@ -70,6 +73,7 @@ def _restrict_timing(timing: Timing, component: str) -> Timing:
     return replace(
         timing,
         trigger=trigger,
+        inputs={port: value for port, value in timing.inputs.items() if port.startswith(prefix)},
         outputs={port: value for port, value in timing.outputs.items() if port.startswith(prefix)},
         calls={port: value for port, value in timing.calls.items() if port.startswith(prefix)},
     )
@@ -79,10 +83,15 @@ def _merge_over_component(
     node_id: str, node_timing: Timing, component_timing: Timing, diagnostics: list[Diagnostic]
 ) -> Timing:
     """Merge a component's timing with that of its only node; a key that both write is reported, the node's counts."""
-    doubled_keys = [key for key in _TIMING_KEYS if key in node_timing.places and key in component_timing.places]
+    doubled_keys = [key for key in _FIELDS_OF_KEY if key in node_timing.places and key in component_timing.places]
     diagnostics += (_diagnose_doubled_key(node_id, key, node_timing, component_timing) for key in doubled_keys)
     # `places` holds the keys that were written: a key that was written as `{}` must not be filled in.
-    missing_values = {key: getattr(component_timing, key) for key in _TIMING_KEYS if key not in node_timing.places}
+    missing_values = {
+        name: getattr(component_timing, name)
+        for key, names in _FIELDS_OF_KEY.items()
+        if key not in node_timing.places
+        for name in names
+    }
     merged = replace(node_timing, **missing_values, places={**component_timing.places, **node_timing.places})
     # Each of the two made sense alone; together they may not: a rate here and a period there, for instance.
     return sanity_checks.drop_senseless(merged, node_id, diagnostics)

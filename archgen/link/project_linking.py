@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare import section_declaration
+from archgen.link.declare import deployment_declaration, section_declaration
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import declare_types
 from archgen.link.element_outline import ElementOutline, build_outline
 from archgen.link.merged_timing import TimingMerger, find_shared_components
-from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
@@ -45,14 +45,15 @@ def link_project(  # noqa: PLR0913 - all by name
     types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     groups, components, connections, edges = declare_groups(element_outline, resolver, types)
-    containers = section_declaration.declare_containers(root, resolver)
+    containers = deployment_declaration.declare_containers(root, resolver)
     implements = resolve_implements(root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
         root, NodeContext(element_outline, resolver, components, containers, timing_merger), implements
     )
     requirements = section_declaration.declare_requirements(root, resolver)
-    links = section_declaration.declare_links(root, resolver)
+    resources = deployment_declaration.declare_resources(root, resolver)
+    links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
@@ -73,8 +74,9 @@ def link_project(  # noqa: PLR0913 - all by name
         edges=edges,
         types=types,
         nodes=nodes,
-        hosts=section_declaration.declare_hosts(root),
+        hosts=deployment_declaration.declare_hosts(root),
         containers=containers,
+        resources=resources,
         links=links,
         chains=chains,
         views=section_declaration.declare_views(root),
@@ -104,9 +106,8 @@ def _make_resolver(
         },
         "node": {entry.key: entry.key_span for entry in mapping_values.get_mapping(root, "nodes")},
     }
-    sections = {"partner": "partners", "host": "hosts", "container": "containers", "use case": "use_cases"}
     plain_spans = {
         kind: {entry.key: entry.key_span for entry in mapping_values.get_mapping(root, section)}
-        for kind, section in sections.items()
+        for kind, section in PLAIN_SECTIONS.items()
     }
     return ReferenceResolver(spans, plain_spans, diagnostics, lost_keys, damaged_elements)

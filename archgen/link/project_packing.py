@@ -20,7 +20,10 @@ from archgen.syntax.yaml_tree import IgnoreComment, MappingEntry, MappingNode, S
 
 DataPath = tuple[str | int, ...]
 _BARE_KEYS = frozenset(
-    {"archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core"},
+    {
+        *("archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core", "measured"),
+        "reentrant",
+    },
 )
 """Keys whose values are numbers or booleans; everything else outside of parameters is text."""
 _RAW_KEYS = frozenset({"parameters", "calls"})
@@ -208,4 +211,4 @@ def _pack_mapping(
 
 
 def _holds_raw_values(entry: MappingEntry) -> bool:
-    return entry.key in _RAW_KEYS or (entry.key in _BARE_KEYS and isinstance(entry.value, ScalarNode))
+    return entry.key in _RAW_KEYS or (entry.key in _BARE_KEYS and not isinstance(entry.value, MappingNode))

@@ -16,7 +16,13 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 # How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
 _PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
-_PLAIN_SECTIONS = {"partner": "partners", "host": "hosts", "container": "containers", "use case": "use_cases"}
+PLAIN_SECTIONS = {
+    "partner": "partners",
+    "host": "hosts",
+    "container": "containers",
+    "resource": "resources",
+    "use case": "use_cases",
+}
 """The sections that declare what is named by its id alone."""
 _NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
 _GUESS_BUDGET = 300_000
@@ -93,13 +99,18 @@ class ReferenceResolver:
         known_spans = self.plain_spans[kind]
         if reference is None or reference.text in known_spans:
             return reference.text if reference else None
-        if self.is_lost(reference.text) or _PLAIN_SECTIONS[kind] in self.lost_keys:
+        if self.is_lost(reference.text) or PLAIN_SECTIONS[kind] in self.lost_keys:
             return None
         guess = self.guess_name(reference.text, known_spans)
         self.diagnostics.append(
             diagnose_unknown_reference(reference, kind, guess, known_spans.get(guess or "", NO_SPAN), element_id)
         )
         return None
+
+    def resolve_plain_ids(self, references: Iterable[ScalarNode], kind: str, element_id: str) -> tuple[str, ...]:
+        """Return the plain ids in a list that are declared, each once; the others are reported."""
+        ids = (self.resolve_plain_id(reference, kind, element_id) for reference in references)
+        return tuple(dict.fromkeys(name for name in ids if name))
 
     def _refuse_if_finished(self) -> None:
         if self._is_finished:
@@ -110,10 +121,7 @@ class ReferenceResolver:
         """Return the owners of an element, each once: those written, or the inherited ones if none are written."""
         if body.get("owner") is None:
             return tuple(dict.fromkeys(inherited_owners))
-        partner_ids = (
-            self.resolve_plain_id(scalar, "partner", element_id) for scalar in mapping_values.get_scalars(body, "owner")
-        )
-        return tuple(dict.fromkeys(name for name in partner_ids if name))
+        return self.resolve_plain_ids(mapping_values.get_scalars(body, "owner"), "partner", element_id)
 
     def is_lost(self, dotted_path: str) -> bool:
         """Whether what could not be read may declare what a path names."""

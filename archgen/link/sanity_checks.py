@@ -5,8 +5,10 @@ They are left out of the model: whatever would follow from an impossible figure 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
@@ -14,7 +16,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
 from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
-from archgen.syntax.yaml_tree import MappingNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode
 
 _UNKNOWN_HELP = "leave it out where it is not known"
 
@@ -55,6 +57,83 @@ def report_empty_list(
         )
 
 
+def report_exchanged(
+    mapping: MappingNode,
+    smaller: tuple[str, Quantity | None],
+    larger: tuple[str, Quantity | None],
+    element_id: str,
+    diagnostics: list[Diagnostic],
+) -> bool:
+    """Report two durations (each with its key) of which the one that should be smaller is larger; whether it is."""
+    (small_key, small_quantity), (large_key, large_quantity) = smaller, larger
+    if small_quantity is None or large_quantity is None or small_quantity.value <= large_quantity.value:
+        return False
+    label = Label(mapping_values.get_span(mapping, large_key), f"`{large_key}`")
+    message = f"`{small_key}` ({small_quantity}) is above `{large_key}` ({large_quantity})"
+    span = mapping_values.get_span(mapping, small_key)
+    help_line = f"exchange them, or leave `{small_key}` out"
+    diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
+    return True
+
+
+def report_falling_percentiles(
+    wcet_body: MappingNode,
+    percentiles: Mapping[str, Quantity],
+    longest: Quantity | None,
+    element_id: str,
+    diagnostics: list[Diagnostic],
+) -> bool:
+    """Report the first percentile that is above a higher one, or above the longest time; whether there is one."""
+    rising = [*percentiles.items(), ("max", longest)]
+    return any(
+        report_exchanged(wcet_body, smaller, larger, element_id, diagnostics) for smaller, larger in pairwise(rising)
+    )
+
+
+def report_missing_maximum(entry: MappingEntry, element_id: str, diagnostics: list[Diagnostic]) -> None:
+    """Report a resource of which only the shortest use is written."""
+    if mapping_values.get_body(entry).entries:
+        message, help_line = f"`{entry.key}` has no `max`", f"write how long it is used at most: `{entry.key}: 12 ms`"
+        diagnostics.append(_diagnose_senseless(message, entry.key_span, help_line, element_id))
+
+
+def report_mixed_trigger(trigger_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> None:
+    """Report keys of a trigger that have no meaning beside `all`."""
+    if trigger_body.get("all") is None:
+        return
+    label = Label(mapping_values.get_span(trigger_body, "all"), "waits for all of these, whatever their time")
+    for key in ("match", "within"):
+        if trigger_body.get(key) is not None:
+            message = f"`{key}` has no effect beside `all`"
+            help_line = "write either `{all: [...]}`, or `{match: [...], within: 30 ms}`"
+            span = mapping_values.get_span(trigger_body, key)
+            diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
+
+
+def check_match(
+    trigger_body: MappingNode,
+    inputs: Collection[str],
+    within: Quantity | None,
+    element_id: str,
+    diagnostics: list[Diagnostic],
+) -> bool:
+    """Whether a `match` is complete: two inputs or more of each component, and `within`; else it is reported."""
+    span = mapping_values.get_span(trigger_body, "match")
+    # What could not be resolved is reported, and may be the second one.
+    has_unresolved = len(mapping_values.get_texts(trigger_body, "match")) > len(inputs)
+    counts = Counter(port.rpartition(".")[0] for port in inputs)
+    if min(counts.values()) < 2 and not has_unresolved:  # noqa: PLR2004
+        message = "`match` names one input only" if len(inputs) == 1 else "`match` names one input only of a component"
+        help_line = "name two or more inputs of one component; one input alone is `trigger: [input]`"
+        diagnostics.append(_diagnose_senseless(message, span, help_line, element_id))
+        return False
+    if within is None:
+        message = "`match` needs `within`: how far apart the times of matched messages may be"
+        help_line = "write `within: 30 ms` beside it; `within: 0 ms` matches the same time only"
+        diagnostics.append(_diagnose_senseless(message, span, help_line, element_id))
+    return within is not None and min(counts.values()) > 1
+
+
 def read_latency(
     mapping: MappingNode, element_id: str, diagnostics: list[Diagnostic]
 ) -> tuple[Quantity | None, Quantity | None]:
@@ -93,6 +172,13 @@ def _find_senseless(timing: Timing, element_id: str) -> Iterator[tuple[str, Diag
         yield (
             "bcet",
             _diagnose_senseless(message, spans["bcet"], "exchange them, or leave `bcet` out", element_id, label),
+        )
+    if timing.core is not None and timing.cores is not None:
+        label = Label(spans["core"], "one core")
+        help_line = "write one of them: `core: 3` is `cores: [3]`"
+        yield (
+            "cores",
+            _diagnose_senseless("`core` and `cores` are both written", spans["cores"], help_line, element_id, label),
         )
     if timing.every is not None and timing.every < 1:
         yield (

@@ -1,20 +1,33 @@
-"""Override figures of timing without touching a file: `object_recognizer.timing.wcet=120 ms`."""
+"""Override figures of timing without touching a file: `object_recognizer.timing.wcet=120 ms`.
+
+What is not below `timing` (`box.threads=2`) is overridden by `process_overrides`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import re
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import get_args
+from typing import Any, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
+from archgen.frozen import dataclass
+from archgen.link import override_values, process_overrides
+from archgen.link.override_values import OverrideError
+from archgen.link.process_overrides import ProcessOverride
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import ActivityBehaviour, Trigger
+from archgen.model.declared_timing import (
+    ActivityBehaviour,
+    DroppedMessages,
+    InputTiming,
+    ResourceTime,
+    Timing,
+    Trigger,
+)
 from archgen.model.node import Node
 from archgen.model.quantity import UNIT_FACTORS, parse_quantity
-from archgen.model.timing_override import ArchitectureOverride, ThreadsOverride, TimingOverride, apply_override
 
 _DURATION, _FREQUENCY = "duration", "frequency"
 _QUANTITY_KEYS = {
@@ -25,20 +38,38 @@ _QUANTITY_KEYS = {
     "bcet": _DURATION,
     "throttle": _DURATION,
     "response": _DURATION,
+    "deadline": _DURATION,
 }
 _COUNT_KEYS = ("every", "priority", "core")
 _BEHAVIOUR_WORDS = get_args(ActivityBehaviour)
-OVERRIDE_KEYS = (*_QUANTITY_KEYS, *_COUNT_KEYS, "behaviour", "trigger")
-"""The keys of `timing` that can be overridden."""
-_MAX_COUNT_DIGITS = 9
+_WORD_KEYS = {"behaviour": _BEHAVIOUR_WORDS, "dropped": get_args(DroppedMessages)}
+_PLAIN_KEYS = (*_QUANTITY_KEYS, *_COUNT_KEYS, "cores", "behaviour", "trigger", "dropped")
+OVERRIDE_KEYS = (*_PLAIN_KEYS, "inputs.INPUT.wcet", "uses.RESOURCE")
+"""The keys of `timing` that can be overridden, as help names them."""
+_PART_KEYS = re.compile(r"inputs\.(?P<input>.+)\.(?P<bound>wcet|bcet)\Z|uses\.(?P<resource>[^.]+)(?P<least>\.min)?\Z")
+"""Keys below a key of `timing`."""
+_EXCLUSIVE_KEYS = {"rate": "period", "period": "rate", "core": "cores", "cores": "core", "wcet": "measured_times"}
+"""Keys of which one replaces the other. What is measured is not measured of another `wcet`."""
 
 
-class OverrideError(ValueError):
-    """A figure cannot be overridden; the message says why."""
+@dataclass(frozen=True, slots=True)
+class TimingOverride:
+    """A new value for one key of one activity: a node's part for a component ("" if the node implements none)."""
+
+    node: str
+    component: str
+    key: str
+    value: Any
+
+    def __str__(self) -> str:
+        return f"{self.node}.timing.{self.key}={self.value}"
 
 
 def apply_overrides(architecture: Architecture, override_texts: Iterable[str]) -> Architecture:
-    """Return an architecture with overrides written as `ELEMENT.timing.KEY=VALUE`. Raises `OverrideError`."""
+    """Return an architecture with overrides written as `ELEMENT.timing.KEY=VALUE` or `ELEMENT.KEY=VALUE`.
+
+    Raises `OverrideError`.
+    """
     for text in override_texts:
         for override in read_override(architecture, text):
             architecture = apply_override(architecture, override)
@@ -47,65 +78,121 @@ def apply_overrides(architecture: Architecture, override_texts: Iterable[str]) -
     return architecture
 
 
-def read_override(architecture: Architecture, text: str) -> tuple[ArchitectureOverride, ...]:
+def read_override(architecture: Architecture, text: str) -> tuple[TimingOverride | ProcessOverride, ...]:
     """Parse one override text into an override for each activity that it concerns. Raises `OverrideError`."""
-    # From the right: an id may itself be `timing`.
     path, equals, value = text.partition("=")
-    if equals and ".timing." not in path and path.strip().endswith(".threads"):
-        return (_read_threads(architecture, path.strip().removesuffix(".threads"), value.strip()),)
-    element, dot, key = path.strip().rpartition(".timing.")
-    if not equals or not dot or not element:
-        msg = f"`{text}` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms"
+    process_override = process_overrides.read_process_override(architecture, path.strip(), value.strip())
+    if equals and process_override is not None:
+        return (process_override,)
+    element, key = _split_path(path.strip())
+    if not equals or not element:
+        msg = (
+            f"`{text}` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms, nor "
+            "ELEMENT.KEY=VALUE, for instance sensor_box.threads=2"
+        )
         raise OverrideError(msg)
-    if key not in OVERRIDE_KEYS:
+    if not _is_key(key):
         guess = did_you_mean(key, OVERRIDE_KEYS)
         msg = f"`timing` has no key `{key}` that can be set" + (
             f"; {guess}" if guess else f": use {', '.join(OVERRIDE_KEYS)}"
         )
         raise OverrideError(msg)
     parsed_value = _parse_value(key, value.strip())
-    return tuple(
-        TimingOverride(node, component, key, parsed_value)
+    overrides = tuple(
+        TimingOverride(node, component, own_key, parsed_value)
         for node, component in _find_activities(architecture, element)
+        if (own_key := _complete_key(architecture, component, key))
     )
+    if not overrides:
+        input_name = key.removeprefix("inputs.").rpartition(".")[0]
+        names = [port.name for port in architecture.inputs.values()]
+        msg = f"`{element}` has no input `{input_name}`; {did_you_mean(input_name, names) or NAMES_HELP}"
+        raise OverrideError(msg)
+    return overrides
 
 
-def _read_threads(architecture: Architecture, element: str, text: str) -> ThreadsOverride:
-    """Return another number of threads of a container. Raises `OverrideError`."""
-    if element not in architecture.containers:
-        guess = did_you_mean(element, architecture.containers)
-        msg = f"no container is called `{element}`" + (f"; {guess}" if guess else "")
+def _split_path(path: str) -> tuple[str, str]:
+    """Return the element and the key below `timing`, empty where there is none. An id may itself be `timing`."""
+    splits = [(path[: match.start()], path[match.end() :]) for match in re.finditer(r"(?=\.timing\.)", path)]
+    splits = [(element, key.removeprefix(".timing.")) for element, key in splits]
+    return next((split for split in splits if _is_key(split[1])), splits[-1] if splits else ("", ""))
+
+
+def _is_key(key: str) -> bool:
+    return key in _PLAIN_KEYS or _PART_KEYS.match(key) is not None
+
+
+def _complete_key(architecture: Architecture, component: str, key: str) -> str | None:
+    """Return a key with the complete id of the input in it; None where the component has no such input.
+
+    Raises `OverrideError` for a resource that nothing declares.
+    """
+    match = _PART_KEYS.match(key)
+    if match is None:
+        return key
+    if match["resource"]:
+        if match["resource"] not in architecture.resources:
+            guess = did_you_mean(match["resource"], architecture.resources)
+            msg = f"no resource is called `{match['resource']}`; {guess or NAMES_HELP}"
+            raise OverrideError(msg)
+        return key
+    port = f"{component}.{match['input'].rpartition('.')[2]}"
+    is_meant = port in architecture.inputs and f".{port}".endswith(f".{match['input']}")
+    return f"inputs.{port}.{match['bound']}" if is_meant else None
+
+
+def apply_override(architecture: Architecture, override: TimingOverride | ProcessOverride) -> Architecture:
+    """Return an architecture with one value overridden. A rate removes the period, a set of cores the core, and the reverse."""
+    if isinstance(override, ProcessOverride):
+        return process_overrides.apply_process_override(architecture, override)
+    node = architecture.nodes[override.node]
+    timing = node.timing.get(override.component, Timing(at=node.at))
+    key, value = _merge_part(timing, override)
+    changes: dict[str, Any] = {key: value}
+    if key in _EXCLUSIVE_KEYS:
+        changes[_EXCLUSIVE_KEYS[key]] = None
+    kept_places = {name: span for name, span in timing.places.items() if changes.get(name, name) is not None}
+    new_timing = replace(timing, **changes, places={**kept_places, key: timing.places.get(key, timing.at)})
+    new_node = replace(node, timing={**node.timing, override.component: new_timing})
+    return replace(architecture, nodes={**architecture.nodes, node.id: new_node})
+
+
+def _merge_part(timing: Timing, override: TimingOverride) -> tuple[str, Any]:
+    """Return the key of `timing` that changes, and its new value: with all else that is written below it."""
+    match = _PART_KEYS.match(override.key)
+    if match is None:
+        return override.key, override.value
+    if match["input"]:
+        input_timing = timing.inputs.get(match["input"], InputTiming())
+        changed_input = replace(input_timing, **{match["bound"]: override.value})
+        return "inputs", {**timing.inputs, match["input"]: changed_input}
+    resource_time = timing.uses.get(match["resource"])
+    if match["least"] and resource_time is None:
+        msg = f"`{override.node}` does not use `{match['resource']}`: set `uses.{match['resource']}` first"
         raise OverrideError(msg)
-    threads = _parse_count(text)
-    if not threads:
-        msg = f"`threads` takes a whole number from 1 on, not `{text}`"
-        raise OverrideError(msg)
-    return ThreadsOverride(element, "container", threads)
+    if match["least"] and resource_time is not None:
+        changed_time = replace(resource_time, min=override.value)
+    else:
+        changed_time = ResourceTime(override.value, resource_time.min if resource_time else None)
+    return "uses", {**timing.uses, match["resource"]: changed_time}
 
 
 def _parse_value(key: str, text: str) -> object:
-    readers: Mapping[str, Callable[[str], object | None]] = {
-        "behaviour": lambda word: word if word in _BEHAVIOUR_WORDS else None,
-        "trigger": lambda word: Trigger(word, None, NO_SPAN) if word in {"any", "all"} else None,  # type: ignore[arg-type]
-    }
-    if key in _QUANTITY_KEYS:
-        parsed_value: object | None = parse_quantity(text, _QUANTITY_KEYS[key])
-        expected = f"a {_QUANTITY_KEYS[key]} such as {'120 ms' if _QUANTITY_KEYS[key] == _DURATION else '10 Hz'}"
-        expected += f" (units: {' '.join(UNIT_FACTORS[_QUANTITY_KEYS[key]])})"
+    dimension = _QUANTITY_KEYS.get(key, None if key in _PLAIN_KEYS else _DURATION)
+    if dimension is not None:
+        parsed_value: object | None = parse_quantity(text, dimension)
+        expected = f"a {dimension} such as {'120 ms' if dimension == _DURATION else '10 Hz'}"
+        expected += f" (units: {' '.join(UNIT_FACTORS[dimension])})"
     elif key in _COUNT_KEYS:
-        parsed_value, expected = _parse_count(text), "a whole number"
+        parsed_value, expected = override_values.parse_count(text), "a whole number"
+    elif key == "cores":
+        parsed_value, expected = override_values.parse_counts(text), "whole numbers, such as 2, 3"
+    elif key == "trigger":
+        parsed_value = Trigger(text) if text in {"any", "all"} else None  # type: ignore[arg-type]
+        expected = "any or all"
     else:
-        parsed_value = readers[key](text)
-        expected = "any or all" if key == "trigger" else ", ".join(_BEHAVIOUR_WORDS)
-    if parsed_value is None:
-        digits_hint = "; that has too many digits" if sum(map(str.isdigit, text)) > _MAX_COUNT_DIGITS else ""
-        msg = f"`{key}` takes {expected}, not `{text}`{digits_hint}"
-        raise OverrideError(msg)
-    return parsed_value
-
-
-def _parse_count(text: str) -> int | None:
-    return int(text) if text.isascii() and text.isdigit() and len(text) <= _MAX_COUNT_DIGITS else None
+        parsed_value, expected = text if text in _WORD_KEYS[key] else None, ", ".join(_WORD_KEYS[key])
+    return override_values.require_value(key, text, parsed_value, expected)
 
 
 def _find_activities(architecture: Architecture, element: str) -> tuple[tuple[str, str], ...]:
@@ -153,10 +240,24 @@ def _check_timing(architecture: Architecture) -> None:
     for node in architecture.nodes.values():
         for timing in node.timing.values():
             # drop_senseless reads the position of every figure that it reports; an overridden one may have none.
-            spans = {key: timing.places.get(key, timing.at) for key in OVERRIDE_KEYS}
+            spans = {key: timing.places.get(key, timing.at) for key in (*_PLAIN_KEYS, "inputs", "uses")}
             diagnostics: list[Diagnostic] = []
             drop_senseless(replace(timing, places=spans), node.id, diagnostics)
             for diagnostic in diagnostics:
                 raise OverrideError(
                     f"{node.id}: {diagnostic.message}" + (f"; {diagnostic.help}" if diagnostic.help else "")
                 )
+            _check_bounds(node.id, timing)
+
+
+def _check_bounds(node_id: str, timing: Timing) -> None:
+    """Raise `OverrideError` for a part of `timing` whose shortest time is above its longest, or a deadline of zero."""
+    bounds = [(f"inputs.{port}", each.bcet, each.wcet) for port, each in timing.inputs.items()]
+    bounds += [(f"uses.{resource}", each.min, each.max) for resource, each in timing.uses.items()]
+    for name, least, most in bounds:
+        if least is not None and most is not None and least.value > most.value:
+            msg = f"{node_id}: the shortest time of `{name}` ({least}) is above the longest ({most})"
+            raise OverrideError(msg)
+    if timing.deadline is not None and not timing.deadline.value:
+        msg = f"{node_id}: `deadline` cannot be zero"
+        raise OverrideError(msg)

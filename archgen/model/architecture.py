@@ -9,7 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.component import Component, Connection, DiagramLayout, Group, Input, Output
-from archgen.model.deployment import Container, Host, Link
+from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -156,6 +156,7 @@ class Architecture:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     hosts: Mapping[str, Host] = field(default_factory=dict)
     containers: Mapping[str, Container] = field(default_factory=dict)
+    resources: Mapping[str, Resource] = field(default_factory=dict)
     links: Mapping[str, Link] = field(default_factory=dict)
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
@@ -178,6 +179,12 @@ class Architecture:
             return None
         mapped = self.types.get(output.type)
         return mapped.message if mapped else None
+
+    def nodes_using(self, resource_id: str) -> Iterator[Node]:
+        """Yield the nodes of which an activity uses a resource."""
+        return (
+            node for node in self.nodes.values() if any(resource_id in timing.uses for timing in node.timing.values())
+        )
 
     def nodes_implementing(self, component_id: str) -> Iterator[Node]:
         """Yield the nodes that implement the component with this complete id, planned ones included."""

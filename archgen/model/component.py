@@ -50,11 +50,14 @@ class Input:
     physical: bool = False
     type: str | None = None
     optional: bool = False
+    freshness: Quantity | None = None
+    """How old what is read here may be at most, as the reader demands."""
     description: str | None = None
     from_written: bool = False
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    freshness_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

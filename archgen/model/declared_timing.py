@@ -15,16 +15,29 @@ ActivityBehaviour = Literal["periodic", "event", "on_demand", "once"]
 SchedulingOrder = Literal["fixed_priority", "non_preemptive", "fifo", "round_robin", "ros2_executor", "edf"]
 """In which order the cores of a host, or the threads of a container, take what is ready."""
 
+HOST_ORDERS: tuple[SchedulingOrder, ...] = ("fixed_priority", "non_preemptive", "fifo", "round_robin", "edf")
+"""The orders of a host's cores."""
+EXECUTOR_ORDERS: tuple[SchedulingOrder, ...] = ("ros2_executor", "fifo", "non_preemptive", "round_robin", "edf")
+"""The orders of callbacks: those of one thread never preempt one another."""
+RESOURCE_ORDERS: tuple[SchedulingOrder, ...] = ("fifo", "fixed_priority")
+"""The orders of a resource's uses."""
+DroppedMessages = Literal["kept", "forgotten"]
+"""Whether a message that `every` or `throttle` drops is stored, and read by the next activation."""
+PERCENTILES = ("p50", "p90", "p95", "p99")
+"""The percentiles of execution times that can be written, the lowest first."""
+
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
-    """What triggers an activity: any of the inputs, or all of them; `inputs` None means every input.
+    """What triggers an activity: any of the inputs, all of them, or messages of all that match by time.
 
-    Inputs are complete ids of input ports (`group.component.input`).
+    Inputs are complete ids of input ports (`group.component.input`); `inputs` None means every input. With `match`,
+    `within` (ns) is how far apart the times of messages may be that are matched.
     """
 
-    mode: Literal["any", "all"]
+    mode: Literal["any", "all", "match"]
     inputs: tuple[str, ...] | None = None
+    within: Quantity | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -38,11 +51,39 @@ class OutputTiming:
 
 
 @dataclass(frozen=True, slots=True)
+class InputTiming:
+    """How long the callback computes that only stores the messages of an input."""
+
+    wcet: Quantity | None = None
+    bcet: Quantity | None = None
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ResourceTime:
+    """How long one activation uses a resource (a GPU), beside its processor time."""
+
+    max: Quantity
+    min: Quantity | None = None
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredTimes:
+    """What a mapping below `wcet` says of measurements: percentiles by `p50`, `p95` ..., and where `max` is from."""
+
+    percentiles: Mapping[str, Quantity] = field(default_factory=dict)
+    is_measured: bool = False
+    """Whether `wcet` is the longest time that was seen, and not proven."""
+
+
+@dataclass(frozen=True, slots=True)
 class Timing:
     """A `timing` mapping. Durations are in ns, rates in Hz, both exact; None is not written, and hence unknown.
 
-    `outputs` is keyed by the output's complete id; `calls` by the input's, its values are calls per activation. The
-    names of attributes are the keys of the YAML: linker, rules and `timing/sensitivity` read them with `getattr`.
+    `outputs` is keyed by the output's complete id; `inputs` and `calls` by the input's, the values of `calls` are calls
+    per activation; `uses` by the resource. The names of attributes are the keys of the YAML (`measured_times` is a part
+    of `wcet`): linker, rules and `timing/sensitivity` read them with `getattr`.
     """
 
     behaviour: ActivityBehaviour | None = None
@@ -50,15 +91,23 @@ class Timing:
     rate: Quantity | None = None
     jitter: Quantity | None = None
     wcet: Quantity | None = None
+    measured_times: MeasuredTimes | None = None
     bcet: Quantity | None = None
     trigger: Trigger | None = None
     every: int | None = None
     throttle: Quantity | None = None
+    dropped: DroppedMessages | None = None
+    inputs: Mapping[str, InputTiming] = field(default_factory=dict)
     outputs: Mapping[str, OutputTiming] = field(default_factory=dict)
     calls: Mapping[str, Fraction] = field(default_factory=dict)
+    uses: Mapping[str, ResourceTime] = field(default_factory=dict)
     priority: int | None = None
+    deadline: Quantity | None = None
     core: int | None = None
+    cores: tuple[int, ...] | None = None
+    """A set of cores in ascending order, each once."""
     response: Quantity | None = None
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-    """The span of each key's value by the key's name, and of each entry of `calls` by `calls PORT`."""
+    """The span of each key's value by the key's name, and of each entry of `calls` by `calls PORT`,
+    of `uses` by `uses RESOURCE`."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -1,24 +1,34 @@
-"""Where nodes run: hosts, containers (one process each) and the links between hosts."""
+"""Where nodes run: hosts, containers (one process each), what they share, and the links between hosts."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.quantity import Quantity
 
 
 @dataclass(frozen=True, slots=True)
 class Host:
-    """A computer. `cores` is None if unknown."""
+    """A computer. `cores` is None if unknown.
+
+    `scheduling` is the order in which its cores take what is ready, None where nothing is written; `core_scheduling` is
+    that of single cores.
+    """
 
     id: str
     title: str
     cores: int | None = None
+    scheduling: SchedulingOrder | None = None
+    core_scheduling: Mapping[int, SchedulingOrder] = field(default_factory=dict)
     description: str | None = None
     tags: tuple[str, ...] = ()
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    core_places: Mapping[int, Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where the scheduling of single cores is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +39,19 @@ class Container:
     title: str
     host: str | None = None
     threads: int | None = None
+    scheduling: SchedulingOrder | None = None
+    """The order in which its threads take callbacks, None where nothing is written."""
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Resource:
+    """A GPU or another accelerator on a host, which works on one use at a time."""
+
+    id: str
+    title: str
+    host: str | None = None
+    scheduling: SchedulingOrder | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 

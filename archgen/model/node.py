@@ -8,7 +8,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import SchedulingOrder, Timing
 from archgen.model.quantity import Quantity
 
 NodeKind = Literal["node", "lifecycle", "composable", "driver", "nodelet"]
@@ -81,6 +81,13 @@ class Node:
     container: str | None = None
     host: str | None = None
     """The node's own host, else its container's."""
+    threads: int | None = None
+    scheduling: SchedulingOrder | None = None
+    """The order in which its threads take callbacks. As `threads`, it counts where no container runs the node."""
+    callback_groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Components of the node by group; those of one group exclude one another."""
+    reentrant: bool = False
+    """Whether all of its callbacks may run at once."""
     status: NodeStatus | None = None
     uses: tuple[PortUse, ...] = ()
     timing: Mapping[str, Timing] = field(default_factory=dict)
@@ -95,6 +102,8 @@ class Node:
     name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     kind_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     container_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    executor_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    """The spans of `threads`, `scheduling`, `callback_groups` and `reentrant`, where they are written."""
 
     @property
     def full_name(self) -> str:

@@ -31,7 +31,7 @@ _BOOLEAN_WORDS = {
 }
 SECTIONS_BY_ID = frozenset(
     {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
-    | {"views", "policies"}
+    | {"resources", "views", "policies"}
 )
 """The top-level sections that hold elements by id."""
 _UNQUOTED_VALUE = re.compile(r"-?[0-9]+|true|false", re.IGNORECASE)
@@ -160,7 +160,7 @@ def _describe_wrong_value(kind: str, name: str, node: YamlNode, schema_part: dic
     return f"{name} cannot be `{clip_text(text)}`", _find_value_help(kind, text, schema_part, is_entry=is_entry)
 
 
-_WORD_PATTERN = re.compile(r"\^\(\?:([a-z_|]+)\)\$\Z")
+_WORD_PATTERN = re.compile(r"\^\(\?:([a-z0-9_|]+)\)\$\Z")
 """A pattern that is a list of words."""
 
 

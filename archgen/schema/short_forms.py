@@ -68,6 +68,7 @@ _ROOT_FORM = ElementForm(
         "types": ElementForm(("message",)),
         "hosts": _TITLED_FORM,
         "containers": ElementForm(("host",)),
+        "resources": ElementForm(("host",)),
         "links": _LINK_FORM,
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),

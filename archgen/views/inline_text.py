@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import chain
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.declared_timing import Timing
+from archgen.model.deployment import Host
 from archgen.model.node import Node, Qos
 from archgen.views.shapes import Inlines, Text
 
@@ -178,14 +179,20 @@ def format_timing_sentence(timing: Timing | None) -> str:
         f"triggered by {_describe_trigger(timing)}" if timing.trigger else "",
         f"fires at each {timing.every}th" if timing.every else "",
         f"at least {timing.throttle} apart" if timing.throttle else "",
+        f"dropped messages are {timing.dropped}" if timing.dropped else "",
         f"execution {execution_range}" if execution_range else "",
         f"execution up to {timing.wcet}" if timing.wcet and not execution_range else "",
         f"execution at least {timing.bcet}" if timing.bcet and not execution_range else "",
+        *_describe_measured_times(timing),
+        f"storing inputs: {', '.join(_format_stored_inputs(timing))}" if timing.inputs else "",
+        f"uses {', '.join(_format_uses(timing))}" if timing.uses else "",
         f"declared response {timing.response}" if timing.response else "",
         f"publishes only at times: {', '.join(_format_timed_outputs(timing))}" if timing.outputs else "",
         f"calls for each activation: {', '.join(_format_calls(timing))}" if timing.calls else "",
         f"priority {timing.priority}" if timing.priority is not None else "",
+        f"deadline {timing.deadline}" if timing.deadline else "",
         f"core {timing.core}" if timing.core is not None else "",
+        f"cores {', '.join(map(str, timing.cores))}" if timing.cores else "",
     )
     return "; ".join(part for part in parts if part)
 
@@ -202,7 +209,45 @@ def _describe_trigger(timing: Timing) -> str:
     if timing.trigger.inputs is None:
         return f"{timing.trigger.mode} of the inputs"
     names = ", ".join(name.rsplit(".", 1)[-1] for name in timing.trigger.inputs)
+    if timing.trigger.mode == "match":
+        return f"matching messages of {names}, at most {timing.trigger.within} apart"
     return f"{timing.trigger.mode} of {names}"
+
+
+def _describe_measured_times(timing: Timing) -> Iterator[str]:
+    """Describe what is written of measurements: whether the worst case is one, and percentiles."""
+    times = timing.measured_times
+    if times is not None:
+        if times.is_measured:
+            yield "the longest execution is measured, not proven"
+        if times.percentiles:
+            yield f"measured {', '.join(f'{name} {time}' for name, time in times.percentiles.items())}"
+
+
+def _format_stored_inputs(timing: Timing) -> list[str]:
+    """Format how long storing each input takes."""
+    return [
+        f"{name.rsplit('.', 1)[-1]} {f'{each.bcet} to ' if each.bcet and each.wcet else ''}{each.wcet or '?'}"
+        for name, each in timing.inputs.items()
+    ]
+
+
+def _format_uses(timing: Timing) -> list[str]:
+    """Format how long each resource is used."""
+    return [f"{name} {f'{each.min} to ' if each.min else ''}{each.max}" for name, each in timing.uses.items()]
+
+
+def format_callback_groups(node: Node) -> str:
+    """Format a node's callback groups: `fast: obstacle_stop; slow: planner, mapper`."""
+    return "; ".join(
+        f"{name}: {', '.join(component.rpartition('.')[2] for component in members)}"
+        for name, members in node.callback_groups.items()
+    )
+
+
+def format_core_orders(host: Host) -> str:
+    """Format the orders of single cores: `core 0 edf, core 3 fifo`."""
+    return ", ".join(f"core {core} {order}" for core, order in host.core_scheduling.items())
 
 
 def _format_timed_outputs(timing: Timing) -> list[str]:

@@ -53,6 +53,7 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             "requirements",
             "hosts",
             "containers",
+            "resources",
             "links",
             "chains",
             "views",

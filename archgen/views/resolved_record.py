@@ -6,19 +6,17 @@ the number (`value`) and its unit (`unit`): ns, Hz, B or bit/s.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
-from fractions import Fraction
 
-from archgen.model.architecture import Chain, Requirement
+from archgen.model.architecture import Architecture, Chain, Requirement
 from archgen.model.component import Component, Group, Input, Output
-from archgen.model.declared_timing import Timing
-from archgen.model.deployment import Link
+from archgen.model.deployment import Host, Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Qos
-from archgen.model.quantity import Quantity
 from archgen.views.lookup import Lookup
+from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
 from archgen.views.shapes import Record
+from archgen.views.timing_record import record_timing
 
 RECORD_VERSION = 1
 """Version of the format, written as `archgen_resolved`."""
@@ -29,41 +27,37 @@ def make_record(lookup: Lookup) -> Record:
     architecture, is_shown = lookup.architecture, lookup.scope.shows_component
     return {
         "archgen_resolved": RECORD_VERSION,
-        "project": _pick_fields(architecture.project, "id", "title", "version", "description")
-        | _drop_unknown({"distro": architecture.distro}),
+        "project": pick_fields(architecture.project, "id", "title", "version", "description")
+        | drop_unknown({"distro": architecture.distro}),
         # Groups, components, connections, edges, nodes and topics are cut to the scope; all else is given in full.
         "partners": {
-            p.id: _pick_fields(p, "title", "description", "contact", "reviewers")
-            for p in architecture.partners.values()
+            p.id: pick_fields(p, "title", "description", "contact", "reviewers") for p in architecture.partners.values()
         },
-        "use_cases": {u.id: _pick_fields(u, "title", "description") for u in architecture.use_cases.values()},
+        "use_cases": {u.id: pick_fields(u, "title", "description") for u in architecture.use_cases.values()},
         "requirements": {r.id: _record_requirement(lookup, r) for r in architecture.requirements.values()},
         "groups": {name: _record_group(lookup, architecture.groups[name]) for name in lookup.shown_groups()},
         "components": {c.id: _record_component(lookup, c) for c in architecture.components.values() if is_shown(c.id)},
         "connections": [
-            _pick_fields(c, "input", "kind", "target", "outputs")
+            pick_fields(c, "input", "kind", "target", "outputs")
             for c in architecture.connections
             if is_shown(architecture.inputs[c.input].component)
         ],
         "edges": [
-            _drop_unknown({"from": e.output, "to": e.input, **_record_flow(lookup, e.output)})
+            drop_unknown({"from": e.output, "to": e.input, **_record_flow(lookup, e.output)})
             for e in architecture.edges
             if is_shown(architecture.inputs[e.input].component) or is_shown(architecture.outputs[e.output].component)
         ],
         "nodes": {node.id: _record_node(lookup, node) for node in lookup.shown_nodes()},
         "topics": _record_topics(lookup),
         "types": {t.name: _record_type(t) for t in architecture.types.values()},
-        "hosts": {h.id: _pick_fields(h, "title", "description", "cores", "tags") for h in architecture.hosts.values()},
-        "containers": {c.id: _pick_fields(c, "title", "host", "threads") for c in architecture.containers.values()},
+        "hosts": {host.id: _record_host(host) for host in architecture.hosts.values()},
+        "containers": {
+            c.id: pick_fields(c, "title", "host", "threads", "scheduling") for c in architecture.containers.values()
+        },
+        **_record_resources(architecture),
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
     }
-
-
-def _pick_fields(element: object, *keys: str) -> dict[str, object]:
-    """Return the named fields of an element that are known; tuples become lists."""
-    values = {key: getattr(element, key) for key in keys}
-    return _drop_unknown({key: list(value) if isinstance(value, tuple) else value for key, value in values.items()})
 
 
 def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, object]:
@@ -72,50 +66,49 @@ def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, o
         "served_by_chains": [chain.id for chain in lookup.chains_for_requirement.get(requirement.id, ())],
         "urls": dict(requirement.urls),
     }
-    return _pick_fields(requirement, "title", "description", "use_cases", "tags") | _drop_unknown(dict(servers))
+    return pick_fields(requirement, "title", "description", "use_cases", "tags") | drop_unknown(dict(servers))
 
 
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:
     component_ids = [component.id for component in lookup.shown_components(group.id)]
-    fields = _pick_fields(group, "title", "description", "owner", "co_owners", "tags")
-    return fields | _drop_unknown({"components": component_ids, "urls": dict(group.urls)})
+    fields = pick_fields(group, "title", "description", "owner", "co_owners", "tags")
+    return fields | drop_unknown({"components": component_ids, "urls": dict(group.urls)})
 
 
 def _record_type(conceptual_type: ConceptualType) -> dict[str, object]:
     keys = ("message", "comment", "status", "request", "response", "feedback")
-    return _pick_fields(conceptual_type, *keys) | _drop_unknown({"size": _record_quantity(conceptual_type.size, "B")})
+    return pick_fields(conceptual_type, *keys) | drop_unknown({"size": record_quantity(conceptual_type.size, "B")})
+
+
+def _record_host(host: Host) -> dict[str, object]:
+    """Return a host; `scheduling` is by core where single cores have an order of their own."""
+    fields = pick_fields(host, "title", "description", "cores", "tags", "scheduling")
+    by_core = {str(core): order for core, order in host.core_scheduling.items()}
+    return fields | ({"scheduling": by_core} if by_core else {})
+
+
+def _record_resources(architecture: Architecture) -> dict[str, object]:
+    """Return the section of resources, empty in a project without any."""
+    resources = architecture.resources.values()
+    return drop_unknown(
+        {"resources": {each.id: pick_fields(each, "title", "host", "scheduling") for each in resources}}
+    )
 
 
 def _record_link(link: Link) -> dict[str, object]:
-    bandwidth = {"bandwidth": _record_quantity(link.bandwidth, "bit/s")}
-    latency = {"best": _record_quantity(link.best, "ns"), "worst": _record_quantity(link.worst, "ns")}
-    return _pick_fields(link, "title", "connects") | _drop_unknown({**bandwidth, **latency})
+    bandwidth = {"bandwidth": record_quantity(link.bandwidth, "bit/s")}
+    latency = {"best": record_quantity(link.best, "ns"), "worst": record_quantity(link.worst, "ns")}
+    return pick_fields(link, "title", "connects") | drop_unknown({**bandwidth, **latency})
 
 
 def _record_chain(chain: Chain) -> dict[str, object]:
     through = [{"kind": point.kind, "id": point.id} for point in chain.through]
-    fields = {"through": through, "deadline": _record_quantity(chain.deadline, "ns")}
-    return _pick_fields(chain, "title", "requirements") | _drop_unknown(dict(fields))
-
-
-def _drop_unknown(data: dict[str, object]) -> dict[str, object]:
-    """Drop what is not known: None, empty lists and empty mappings."""
-    # 0, False and "" stay: they are values that somebody wrote. Flags that are rarely true are given as `flag or None`.
-    return {key: value for key, value in data.items() if value is not None and value not in ([], {})}
-
-
-def _record_quantity(quantity: Quantity | None, unit: str) -> dict[str, object] | None:
-    """Return a quantity as text, number and unit; `value` is in that unit."""
-    return None if quantity is None else {"text": quantity.text, "value": _to_number(quantity.value), "unit": unit}
-
-
-def _to_number(value: Fraction) -> int | float:
-    """Return an int where that is exact, else the nearest float (JSON and YAML have no fractions)."""
-    return int(value) if value.denominator == 1 else float(value)
+    fields = {"through": through, "deadline": record_quantity(chain.deadline, "ns")}
+    return pick_fields(chain, "title", "requirements") | drop_unknown(dict(fields))
 
 
 def _record_component(lookup: Lookup, component: Component) -> dict[str, object]:
-    return _drop_unknown(
+    return drop_unknown(
         {
             "title": component.title,
             "group": component.group,
@@ -126,11 +119,11 @@ def _record_component(lookup: Lookup, component: Component) -> dict[str, object]
             "description": component.description,
             "requirements": [use.text for use in component.requirements],
             "performance": {
-                i.id: _drop_unknown(
+                i.id: drop_unknown(
                     {
                         "title": i.title,
                         "accuracy": i.accuracy,
-                        "execution_time": _record_quantity(i.execution_time, "ns"),
+                        "execution_time": record_quantity(i.execution_time, "ns"),
                     }
                 )
                 for i in component.performance
@@ -138,7 +131,7 @@ def _record_component(lookup: Lookup, component: Component) -> dict[str, object]
             "inputs": {port.name: _record_input(port) for port in component.inputs.values()},
             "outputs": {port.name: _record_output(lookup, port) for port in component.outputs.values()},
             "nodes": [node.id for node in lookup.nodes_of.get(component.id, ())],
-            "timing": _record_timing(component.timing),
+            "timing": record_timing(component.timing),
             "tags": list(component.tags),
             "urls": dict(component.urls),
         }
@@ -157,12 +150,19 @@ def _record_port(port: Input | Output) -> dict[str, object]:
 
 def _record_input(port: Input) -> dict[str, object]:
     sources = dict.fromkeys(output for connection in port.connections for output in connection.outputs)
-    return _drop_unknown(_record_port(port) | {"optional": port.optional or None, "sources": list(sources)})
+    return drop_unknown(
+        _record_port(port)
+        | {
+            "optional": port.optional or None,
+            "freshness": record_quantity(port.freshness, "ns"),
+            "sources": list(sources),
+        }
+    )
 
 
 def _record_output(lookup: Lookup, port: Output) -> dict[str, object]:
     readers = dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ()))
-    return _drop_unknown(
+    return drop_unknown(
         _record_port(port) | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
     )
 
@@ -185,22 +185,26 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
         "plugin",
         "container",
         "host",
+        "threads",
+        "scheduling",
         "status",
     )
-    return _drop_unknown(
+    return drop_unknown(
         {
             **{key: getattr(node, key) for key in field_names},
             "full_name": node.full_name,
             "kind": list(node.kinds),
             "co_owners": list(node.co_owners),
             "implements": list(node.implements),
+            "callback_groups": {name: list(members) for name, members in node.callback_groups.items()},
+            "reentrant": node.reentrant or None,
             "derived": None if node.written else True,
             "endpoints": [_record_endpoint(endpoint) for endpoint in lookup.endpoints_of.get(node.id, ())],
             # The key is "" for a node that implements no component; the record calls it "node".
-            "timing": _drop_unknown(
-                {component or "node": _record_timing(timing) for component, timing in node.timing.items()}
+            "timing": drop_unknown(
+                {component or "node": record_timing(timing) for component, timing in node.timing.items()}
             ),
-            "parameters": _to_plain(node.parameters),
+            "parameters": to_plain(node.parameters),
             "parameter_files": list(node.parameter_files),
             "tags": list(node.tags),
             "urls": dict(node.urls),
@@ -208,15 +212,8 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
     )
 
 
-def _to_plain(value: object) -> object:
-    """Copy nested parameters into dicts and lists."""
-    if isinstance(value, Mapping):
-        return {str(key): _to_plain(item) for key, item in value.items()}
-    return [_to_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
-
-
 def _record_endpoint(endpoint: Endpoint) -> dict[str, object]:
-    return _drop_unknown(
+    return drop_unknown(
         {
             "use": endpoint.use,
             "name": endpoint.name,
@@ -232,40 +229,15 @@ def _record_endpoint(endpoint: Endpoint) -> dict[str, object]:
 
 
 def _record_qos(qos: Qos) -> dict[str, object]:
-    durations = {key: _record_quantity(getattr(qos, key), "ns") for key in ("deadline", "lifespan", "lease_duration")}
+    durations = {key: record_quantity(getattr(qos, key), "ns") for key in ("deadline", "lifespan", "lease_duration")}
     # All other fields, so a new field of Qos gets into the record without a line here.
     plain_fields = {k: v for k, v in asdict(qos).items() if k not in {*durations, "at", "written"}}
-    return _drop_unknown(plain_fields | durations)
-
-
-def _record_timing(timing: Timing | None) -> dict[str, object] | None:
-    if timing is None:
-        return None
-    durations = ("period", "jitter", "wcet", "bcet", "throttle", "response")
-    trigger = timing.trigger
-    return _drop_unknown(
-        {
-            "behaviour": timing.behaviour,
-            "rate": _record_quantity(timing.rate, "Hz"),
-            **{key: _record_quantity(getattr(timing, key), "ns") for key in durations},
-            "trigger": _drop_unknown({"mode": trigger.mode, "inputs": list(trigger.inputs or ())}) if trigger else None,
-            "every": timing.every,
-            "outputs": {
-                name: _drop_unknown(
-                    {"conditional": o.conditional or None, "max_gap": _record_quantity(o.max_gap, "ns")}
-                )
-                for name, o in timing.outputs.items()
-            },
-            "calls": {name: _to_number(count) for name, count in timing.calls.items()},
-            "priority": timing.priority,
-            "core": timing.core,
-        }
-    )
+    return drop_unknown(plain_fields | durations)
 
 
 def _record_topics(lookup: Lookup) -> list[dict[str, object]]:
     return [
-        _drop_unknown(
+        drop_unknown(
             {
                 "name": topic.name,
                 "flow": topic.flow,
@@ -273,7 +245,7 @@ def _record_topics(lookup: Lookup) -> list[dict[str, object]]:
                 "types": list(topic.types),
                 "writers": list(dict.fromkeys(endpoint.node for endpoint in topic.writers)),
                 "readers": list(dict.fromkeys(endpoint.node for endpoint in topic.readers)),
-                "size": _record_quantity(topic.size, "B"),
+                "size": record_quantity(topic.size, "B"),
             }
         )
         for topic in lookup.architecture.topics.values()

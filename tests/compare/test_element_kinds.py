@@ -20,7 +20,7 @@ from archgen.compare.kinds.shared_keys import TIMING_KEYS
 from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
 from archgen.model.component import Component, Group, Input, Output
 from archgen.model.declared_timing import Timing
-from archgen.model.deployment import Container, Host, Link
+from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
 from archgen.views.elements.element_card import kinds_by_id, make_card
@@ -42,6 +42,7 @@ MODEL_CLASSES: Mapping[str, type] = {
     "node": Node,
     "host": Host,
     "container": Container,
+    "resource": Resource,
     "link": Link,
     "chain": Chain,
     "policy": Policy,
@@ -59,6 +60,7 @@ SECTIONS = {
     "node": "nodes",
     "host": "hosts",
     "container": "containers",
+    "resource": "resources",
     "link": "links",
     "chain": "chains",
     "policy": "policies",
@@ -103,6 +105,7 @@ MODEL_ONLY = {
     "component requirements_known": "only for rules",
     **dict.fromkeys(("input physical", "output physical"), "the key `medium`"),
     "node kinds": "the key `kind`",
+    "host core_scheduling": "the keys below `scheduling`",
     "node uses": "the kind `port`",
     **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
@@ -177,11 +180,15 @@ groups:
         role: source
         requirements: [R-1]
         performance: {p: {title: P, accuracy: 90 %, execution_time: 1 ms}}
-        timing: {rate: 10 Hz}
+        timing: {rate: 10 Hz, wcet: {max: 8 ms, p50: 2 ms, measured: true}, uses: {gpu: {max: 2 ms, min: 1 ms}}, deadline: 9 ms, cores: [1, 2]}
         tags: [t]
         urls: {a: "https://a.eu"}
-        inputs: {i: {external: the world, type: T, medium: digital, optional: true, description: D}}
+        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, description: D}}
         outputs: {o: {type: T, external: the world, description: D}}
+      b:
+        inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
+        outputs: {p: T}
+        timing: {behaviour: event, trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, inputs: {k: {wcet: 1 ms, bcet: 0 ms}}}
 types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}, S: {request: T, response: T, feedback: T}}
 nodes:
   n:
@@ -197,14 +204,20 @@ nodes:
     plugin: p::P
     container: box
     host: pc
+    threads: 2
+    scheduling: ros2_executor
+    callback_groups: {fast: [a]}
+    reentrant: true
     status: planned
     parameters: {x: 1}
     parameter_files: [p.yaml]
     tags: [t]
     urls: {a: "https://a.eu"}
     publishes: {o: /o}
-hosts: {pc: {title: P, cores: 4, description: D, tags: [t]}, arm: }
-containers: {box: {title: B, host: pc, threads: 2}}
+  m: b
+hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, arm: {scheduling: {0: fifo}}}
+containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
+resources: {gpu: {title: G, host: pc, scheduling: fifo}}
 links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, layout: {direction: top-bottom}}}
@@ -241,7 +254,8 @@ def test_what_timing_can_be_written_is_compared() -> None:
     names = {key.name.partition(".")[0] for key in TIMING_KEYS}
     # A period is compared as the rate that it amounts to.
     assert set(SCHEMA["$defs"]["timing"]["properties"]) == names | {"period"}
-    assert {field.name for field in fields(Timing) if field.compare} == names | {"period"}
+    # Measured times are below `wcet`.
+    assert {field.name for field in fields(Timing) if field.compare} == names | {"period", "measured_times"}
 
 
 @pytest.fixture(scope="module")
@@ -324,9 +338,10 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
 def test_the_order_of_the_report() -> None:
     assert list(KIND_ORDER) == [
         *("project", "chapter", "partner", "use_case", "requirement", "group", "component", "output", "input"),
-        *("connection", "type", "message", "node", "port", "host", "container", "link", "chain", "policy", "view"),
+        *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "chain", "policy"),
+        "view",
     ]
-    assert list(KIND_ORDER.values()) == list(range(20))
+    assert list(KIND_ORDER.values()) == list(range(21))
 
 
 def test_whatever_refers_to_a_kind_names_one() -> None:
@@ -391,5 +406,6 @@ def test_a_key_that_no_kind_has_may_affect_everything() -> None:
     assert find_effect("host", "colour") is Effect.TIMING
     assert find_effect("partner", "colour") is Effect.SYSTEM
     assert find_key("component", "timing.wcet").name == "wcet"
-    assert find_key("component", "timing.outputs.x").name == "timing."
+    assert find_key("component", "timing.outputs.x").name == "outputs."
+    assert find_key("component", "timing.colour").name == "timing."
     assert find_key("port", "qos") is find_key("port", "qos.depth")

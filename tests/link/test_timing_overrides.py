@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.link.override_values import OverrideError
 from archgen.link.project_linking import link_project
-from archgen.link.timing_overrides import OverrideError, apply_overrides, read_override
+from archgen.link.timing_overrides import TimingOverride, apply_overrides, read_override
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Trigger
 from archgen.model.known_interfaces import Interfaces
@@ -83,17 +83,17 @@ def test_what_makes_no_sense_is_refused(architecture: Architecture, text: str, s
     [
         (
             "timing.wcet=3 ms",
-            "`timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms",
+            "`timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms, nor ELEMENT.KEY=VALUE, for instance sensor_box.threads=2",
         ),
         (
             ".timing.wcet=3 ms",
-            "`.timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms",
+            "`.timing.wcet=3 ms` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms, nor ELEMENT.KEY=VALUE, for instance sensor_box.threads=2",
         ),
         (
             "cam.timing.xyzzy=3 ms",
             (
-                "`timing` has no key `xyzzy` that can be set: use period, rate, jitter, wcet, bcet, throttle, response, every,"
-                " priority, core, behaviour, trigger"
+                "`timing` has no key `xyzzy` that can be set: use period, rate, jitter, wcet, bcet, throttle, response,"
+                " deadline, every, priority, core, cores, behaviour, trigger, dropped, inputs.INPUT.wcet, uses.RESOURCE"
             ),
         ),
         ("cam.timing.wcet=3", "`wcet` takes a duration such as 120 ms (units: ns us ms s min h), not `3`"),
@@ -164,7 +164,7 @@ def judged(text: str) -> Architecture:
 )
 def test_an_override_concerns_the_activities_of_its_element(element: str, activities: set[tuple[str, str]]) -> None:
     overrides = read_override(judged(NAMES), f" {element}.timing.priority= 7 ")
-    assert {(o.node, o.component) for o in overrides} == activities
+    assert {(o.node, o.component) for o in overrides if isinstance(o, TimingOverride)} == activities
     assert {str(o) for o in overrides} == {f"{node}.timing.priority=7" for node, _ in activities}
 
 
@@ -180,7 +180,7 @@ def test_a_name_that_a_node_has_twice_is_none_of_its_activities() -> None:
         ("every=999999999", "every", 999_999_999),
         ("core=0", "core", 0),
         ("behaviour=on_demand", "behaviour", "on_demand"),
-        ("trigger=all", "trigger", Trigger("all", None, NO_SPAN)),
+        ("trigger=all", "trigger", Trigger("all")),
         ("jitter=1.5 ms", "jitter", parse_quantity("1.5 ms", "duration")),
     ],
 )

@@ -17,7 +17,20 @@ ELEMENT_KINDS: dict[str, KindSpec] = {
 KIND_ORDER = {name: position for position, name in enumerate(ELEMENT_KINDS)}
 """The position of each kind in that order."""
 MATCHING_ORDER = (
-    *("partner", "group", "component", "output", "input", "type", "message", "node", "container", "host", "link"),
+    *(
+        "partner",
+        "group",
+        "component",
+        "output",
+        "input",
+        "type",
+        "message",
+        "node",
+        "container",
+        "host",
+        "resource",
+        "link",
+    ),
     *("chain", "requirement", "use_case", "view", "policy"),
 )
 """The kinds that are recognised under other ids, each after those that its features refer to: groups before components,

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from archgen.compare.compared_elements import MAPPED_KEY, SOME_PORTS
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.element_relations import ElementRelations, ports_of
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
+from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.shared_keys import (
     CO_OWNERS,
     DESCRIPTION,
@@ -222,6 +222,7 @@ INPUT = KindSpec(
         KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="expects"),
         *_PORT_KEYS,
         KeySpec("optional", lambda port, _: port.optional or None, Effect.SYSTEM),
+        KeySpec("freshness", worsening=Worsening.LESS, verb="must be no older than"),
     ),
     elements=lambda version: version.architecture.inputs,
     features=(

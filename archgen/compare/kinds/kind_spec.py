@@ -196,6 +196,10 @@ class KindSpec:
         return self.key_table[name]
 
 
+def _stands_for(key: KeySpec, name: str) -> bool:
+    return key.name == name or (key.name.endswith(".") and name.startswith(key.name))
+
+
 def _find_key(keys: Sequence[KeySpec], name: str) -> KeySpec:
     for key in keys:
         # "qos" stands for all keys below it: their changes are reported as one.
@@ -203,6 +207,6 @@ def _find_key(keys: Sequence[KeySpec], name: str) -> KeySpec:
             return key
         if key.name.endswith(".") and name.startswith(key.name):
             inner_name = name.removeprefix(key.name)
-            return next((inner for inner in key.inner if inner.name == inner_name), key)
+            return next((inner for inner in key.inner if _stands_for(inner, inner_name)), key)
     # A comparison made elsewhere may have any key: it may affect everything.
     return KeySpec(name)

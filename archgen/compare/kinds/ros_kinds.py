@@ -192,6 +192,18 @@ def _read_host(node: Node, context: ReadContext) -> str | None:
     return None if is_inherited else context.common_id("host", node.host)
 
 
+def _read_threads(node: Node, _context: ReadContext) -> int | None:
+    """Return the threads of a node, None for one thread: that is what counts where nothing is written."""
+    return None if node.threads == 1 else node.threads
+
+
+def _read_callback_groups(node: Node, context: ReadContext) -> Mapping[str, object]:
+    return {
+        name: unordered_values(context.matched_ids.common_id("component", component) for component in members)
+        for name, members in node.callback_groups.items()
+    }
+
+
 def _read_parameters(node: Node, _context: ReadContext) -> Mapping[str, object]:
     return {
         key: value for name, parameter in node.parameters.items() for key, value in parameter_leaves(name, parameter)
@@ -253,6 +265,10 @@ NODE = KindSpec(
             verb="runs on",
             new_verb="runs on",
         ),
+        KeySpec("threads", _read_threads, worsening=Worsening.ALWAYS),
+        KeySpec("scheduling", worsening=Worsening.ALWAYS),
+        KeySpec("reentrant", lambda node, _: node.reentrant or None, worsening=Worsening.ALWAYS),
+        KeySpec("callback_groups.", _read_callback_groups, worsening=Worsening.ALWAYS),
         KeySpec("status", effect=Effect.SYSTEM, verb="is"),
         KeySpec("parameter_files", effect=Effect.SYSTEM),
         TAGS,

@@ -91,6 +91,32 @@ def _read_calls(timing: Timing, context: ReadContext) -> Mapping[str, object]:
     return {last_part(context.matched_ids.common_id("input", port)): count for port, count in timing.calls.items()}
 
 
+def _read_input_timing(timing: Timing, context: ReadContext) -> Mapping[str, object]:
+    return {
+        f"{last_part(context.matched_ids.common_id('input', port))}.{key}": value
+        for port, input_timing in timing.inputs.items()
+        for key, value in (("wcet", input_timing.wcet), ("bcet", input_timing.bcet))
+    }
+
+
+def _read_uses(timing: Timing, context: ReadContext) -> Mapping[str, object]:
+    values: dict[str, object] = {}
+    for name, resource_time in timing.uses.items():
+        resource = context.matched_ids.common_id("resource", name)
+        values |= {resource: resource_time.max, f"{resource}.min": resource_time.min}
+    return values
+
+
+def _read_measured_times(timing: Timing, _context: ReadContext) -> Mapping[str, object]:
+    times = timing.measured_times
+    return {**times.percentiles, "measured": times.is_measured or None} if times else {}
+
+
+def _read_core(timing: Timing, _context: ReadContext) -> int | None:
+    """Return the only core: `core: 3` and `cores: [3]` mean the same."""
+    return timing.cores[0] if timing.core is None and timing.cores and len(timing.cores) == 1 else timing.core
+
+
 def last_part(path: str, part_count: int = 1) -> str:
     """Return the last parts of a path."""
     return ".".join(path.split(".")[-part_count:])
@@ -101,11 +127,26 @@ TIMING_KEYS = (
     KeySpec("rate", _read_rate, worsening=Worsening.ALWAYS, noun="rate"),
     KeySpec("jitter", worsening=Worsening.MORE),
     KeySpec("wcet", worsening=Worsening.MORE, noun="worst case execution time"),
+    KeySpec("wcet.", _read_measured_times, Effect.SYSTEM),
     KeySpec("bcet", worsening=Worsening.MORE, noun="best case execution time"),
     KeySpec("every", worsening=Worsening.LESS),
     KeySpec("throttle", worsening=Worsening.LESS),
+    KeySpec(
+        "dropped",
+        lambda timing, _: None if timing.dropped == "kept" else timing.dropped,
+        worsening=Worsening.ALWAYS,
+        noun="what becomes of dropped messages",
+    ),
     KeySpec("priority", worsening=Worsening.ALWAYS),
-    KeySpec("core", worsening=Worsening.ALWAYS),
+    # A more urgent one is served sooner, and others later.
+    KeySpec("deadline", worsening=Worsening.ALWAYS),
+    KeySpec("core", _read_core, worsening=Worsening.ALWAYS),
+    # Another set may be busier, even where it is larger.
+    KeySpec(
+        "cores",
+        lambda timing, _: timing.cores if timing.cores and len(timing.cores) > 1 else None,
+        worsening=Worsening.ALWAYS,
+    ),
     KeySpec("response", worsening=Worsening.MORE, noun="stated response time"),
     KeySpec("trigger", lambda timing, _: timing.trigger and timing.trigger.mode, worsening=Worsening.ALWAYS),
     KeySpec(
@@ -113,6 +154,9 @@ TIMING_KEYS = (
         lambda timing, context: context.common_ids("input", (timing.trigger and timing.trigger.inputs) or ()),
         worsening=Worsening.ALWAYS,
     ),
+    KeySpec("trigger.within", lambda timing, _: timing.trigger and timing.trigger.within, worsening=Worsening.ALWAYS),
+    KeySpec("inputs.", _read_input_timing, worsening=Worsening.MORE),
+    KeySpec("uses.", _read_uses, worsening=Worsening.MORE),
     KeySpec("outputs.", _read_output_timing, worsening=Worsening.ALWAYS),
     KeySpec("calls.", _read_calls, worsening=Worsening.ALWAYS),
 )

@@ -1,4 +1,4 @@
-"""What runs where (hosts, containers, links), and what the project says across all of it: chains, policies, views."""
+"""What runs where (hosts, containers, resources, links), and what the project says across all of it: chains, policies, views."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ from archgen.compare.kinds.shared_keys import (
     text_feature,
 )
 from archgen.model.architecture import Chain
-from archgen.model.deployment import Host
+from archgen.model.deployment import Host, Resource
 
 _HOST_OF = KeySpec(
     "host",
-    lambda container, context: context.common_id("host", container.host),
+    lambda element, context: context.common_id("host", element.host),
     worsening=Worsening.ALWAYS,
     refers_to="host",
     verb="runs on",
 )
+_SCHEDULING = KeySpec("scheduling", worsening=Worsening.ALWAYS)
 
 
 def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
@@ -38,7 +39,18 @@ def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
 HOST = KindSpec(
     "host",
     "Hosts",
-    (TITLE, KeySpec("cores", worsening=Worsening.LESS), DESCRIPTION, TAGS),
+    (
+        TITLE,
+        KeySpec("cores", worsening=Worsening.LESS),
+        _SCHEDULING,
+        KeySpec(
+            "scheduling.",
+            lambda host, _: {str(core): order for core, order in host.core_scheduling.items()},
+            worsening=Worsening.ALWAYS,
+        ),
+        DESCRIPTION,
+        TAGS,
+    ),
     elements=lambda version: version.architecture.hosts,
     features=(
         *NAME_FEATURES,
@@ -55,7 +67,7 @@ HOST = KindSpec(
 CONTAINER = KindSpec(
     "container",
     "Containers",
-    (TITLE, _HOST_OF, KeySpec("threads", worsening=Worsening.LESS)),
+    (TITLE, _HOST_OF, KeySpec("threads", worsening=Worsening.LESS), _SCHEDULING),
     elements=lambda version: version.architecture.containers,
     features=(
         *NAME_FEATURES,
@@ -68,6 +80,23 @@ CONTAINER = KindSpec(
         ),
         FeatureSpec("host", 1, lambda _, container: mark_values(container.host)),
         FeatureSpec("threads", 1, lambda _, container: mark_values(container.threads)),
+    ),
+)
+
+
+def _mark_users(relations: ElementRelations, resource: Resource) -> frozenset[str]:
+    return relations.common_ids("node", [node.id for node in relations.architecture.nodes_using(resource.id)])
+
+
+RESOURCE = KindSpec(
+    "resource",
+    "Resources",
+    (TITLE, _HOST_OF, _SCHEDULING),
+    elements=lambda version: version.architecture.resources,
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("users", 5, _mark_users),
+        FeatureSpec("host", 1, lambda _, resource: mark_values(resource.host)),
     ),
 )
 LINK = KindSpec(
@@ -164,4 +193,4 @@ VIEW = KindSpec(
     lambda version: version.architecture.views,
     (*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
 )
-SYSTEM_KINDS = (HOST, CONTAINER, LINK, CHAIN, POLICY, VIEW)
+SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, CHAIN, POLICY, VIEW)

@@ -27,6 +27,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "container.host": ("hosts",),
     "forbid.from": ("selectors",),
     "forbid.to": ("selectors",),
+    "group_components": ("implemented",),
     "input": ("sources",),
     "input.from": ("sources",),
     "link": ("hosts",),
@@ -38,6 +39,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "output": ("types",),
     "owners": ("partners",),
     "port_list": ("inputs",),
+    "resource": ("hosts",),
+    "resource.host": ("hosts",),
     "requirement.use_cases": ("use_cases",),
     "ros.distro": ("distros",),
     "tags": ("tags",),
@@ -58,14 +61,14 @@ _LISTED_KINDS = frozenset({"inputs", "waypoints"})
 
 _SECTIONS = (
     *("partners", "use_cases", "requirements", "groups", "nodes", "types", "hosts", "containers", "links", "chains"),
-    *("views", "policies"),
+    *("resources", "views", "policies"),
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 
 _QUANTITIES = frozenset({"bandwidth", "duration", "frequency", "size", "percentage", "latency"})
 """Definitions whose examples are offered: they show the form, and mean no element of another project."""
 
-_WORD_PATTERN = re.compile(r"\^\(\?:([a-z_|]+)\)\$\Z")
+_WORD_PATTERN = re.compile(r"\^\(\?:([a-z0-9_|]+)\)\$\Z")
 """A pattern that lists words, as in the short form of `qos`."""
 
 _PLAIN_TEXT = re.compile(r"(?![0-9.]+\Z)[A-Za-z0-9/](?:[^:#,\[\]{}\n]|:(?=\S))*\Z")
@@ -106,6 +109,7 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     definitions |= list_items
     for section in _SECTIONS:
         _offer_keys(definitions[section], names[section])
+    _offer_keys(definitions["timing_uses"], names["resources"])
     for part in list(_walk_parts(schema)):
         _explain_part(part, keeps_examples=any(part is definitions[name] for name in _QUANTITIES))
         if part is not schema:

@@ -9,6 +9,7 @@ from typing import get_args
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import dataclass
 from archgen.link import mapping_values
+from archgen.link.declare.callback_groups import EXECUTOR_KEYS, declare_callback_groups
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger
@@ -91,6 +92,10 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         plugin=mapping_values.get_text(body, "plugin"),
         container=container,
         host=host or (context.containers[container].host if container else None),
+        threads=mapping_values.get_integer(body, "threads"),
+        scheduling=mapping_values.get_order(body, "scheduling"),
+        callback_groups=declare_callback_groups(body, resolver, node_id, implements),
+        reentrant=mapping_values.get_flag(body, "reentrant"),
         status=_read_status(body),
         uses=tuple(_declare_uses(body, ports)),
         timing=context.timing_merger.merge_timing(
@@ -105,6 +110,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         name_at=mapping_values.get_span(body, "name"),
         kind_at=mapping_values.get_span(body, "kind"),
         container_at=mapping_values.get_span(body, "container"),
+        executor_places={key: mapping_values.get_span(body, key) for key in EXECUTOR_KEYS if key in body.entries},
     )
 
 

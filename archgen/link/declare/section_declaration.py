@@ -1,14 +1,13 @@
-"""Declare all sections but groups, nodes and types: project, partners, requirements, hosts, chains, views and so on."""
+"""Declare the sections of small elements: project, partners, requirements, chains, views, review and so on."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
-from archgen.model.deployment import Container, Host, Link
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode
 
@@ -64,72 +63,13 @@ def declare_requirements(root: MappingNode, resolver: ReferenceResolver) -> dict
             id=name,
             title=mapping_values.get_text(body, "title") or name,
             description=mapping_values.get_text(body, "description"),
-            use_cases=tuple(_resolve_plain_ids(body, "use_cases", "use case", resolver, name)),
+            use_cases=resolver.resolve_plain_ids(mapping_values.get_scalars(body, "use_cases"), "use case", name),
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "requirements")
     }
-
-
-def _resolve_plain_ids(
-    body: MappingNode, key: str, kind: str, resolver: ReferenceResolver, element_id: str
-) -> Iterator[str]:
-    """Return the plain ids in a list that are declared, each once; the others are reported."""
-    ids = (resolver.resolve_plain_id(scalar, kind, element_id) for scalar in mapping_values.get_scalars(body, key))
-    return iter(dict.fromkeys(name for name in ids if name))
-
-
-def declare_hosts(root: MappingNode) -> dict[str, Host]:
-    """Declare the hosts."""
-    return {
-        name: Host(
-            id=name,
-            title=mapping_values.get_title(body, name),
-            cores=mapping_values.get_integer(body, "cores"),
-            description=mapping_values.get_text(body, "description"),
-            tags=mapping_values.get_texts(body, "tags"),
-            at=entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "hosts")
-    }
-
-
-def declare_containers(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Container]:
-    """Declare the containers."""
-    return {
-        name: Container(
-            id=name,
-            title=mapping_values.get_title(body, name),
-            host=resolver.resolve_plain_id(mapping_values.get_scalar(body, "host"), "host", name),
-            threads=mapping_values.get_integer(body, "threads"),
-            at=entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "containers")
-    }
-
-
-def declare_links(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Link]:
-    """Declare the links between hosts."""
-    links_by_id: dict[str, Link] = {}
-    for name, entry, body in mapping_values.iterate_elements(root, "links"):
-        best, worst = sanity_checks.read_latency(
-            mapping_values.get_mapping(body, "latency"), name, resolver.diagnostics
-        )
-        connects = tuple(_resolve_plain_ids(body, "connects", "host", resolver, name))
-        links_by_id[name] = Link(
-            id=name,
-            title=mapping_values.get_title(body, name),
-            connects=connects,
-            bandwidth=sanity_checks.read_positive(body, "bandwidth", "bandwidth", name, resolver.diagnostics),
-            best=best,
-            worst=worst,
-            at=entry.key_span,
-            connects_at=mapping_values.get_span(body, "connects"),
-            unresolved=tuple(host for host in mapping_values.get_texts(body, "connects") if host not in connects),
-        )
-    return links_by_id
 
 
 def declare_chains(

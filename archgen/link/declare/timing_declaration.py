@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from typing import Literal
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values, sanity_checks
+from archgen.link.declare import execution_declaration
 from archgen.link.port_resolution import PortResolver
 from archgen.model.declared_timing import OutputTiming, Timing, Trigger
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
@@ -22,25 +24,36 @@ def declare_timing(owner_entry: MappingEntry, ports: PortResolver, diagnostics: 
     if entry is None or type(entry.value) is not MappingNode:
         return None
     body = entry.value
-    behaviour = mapping_values.get_text(body, "behaviour")
+    behaviour, dropped = mapping_values.get_text(body, "behaviour"), mapping_values.get_text(body, "dropped")
     calls = list(_read_calls(body, ports))
+    uses = execution_declaration.read_resource_times(body, ports, diagnostics)
     timing = Timing(
         behaviour=behaviour if behaviour in {"periodic", "event", "on_demand", "once"} else None,  # type: ignore[arg-type]
         period=mapping_values.get_quantity(body, "period", "duration"),
         rate=mapping_values.get_quantity(body, "rate", "frequency"),
         jitter=mapping_values.get_quantity(body, "jitter", "duration"),
-        wcet=mapping_values.get_quantity(body, "wcet", "duration"),
+        wcet=execution_declaration.read_wcet(body),
+        measured_times=execution_declaration.read_measured_times(body, ports.owner_id, diagnostics),
         bcet=mapping_values.get_quantity(body, "bcet", "duration"),
         trigger=_read_trigger(body, ports, diagnostics),
         every=mapping_values.get_integer(body, "every"),
         throttle=mapping_values.get_quantity(body, "throttle", "duration"),
+        dropped=dropped if dropped in {"kept", "forgotten"} else None,  # type: ignore[arg-type]
+        inputs=dict(execution_declaration.read_input_timing(body, ports, diagnostics)),
         outputs=dict(_read_output_timing(body, ports, diagnostics)),
         calls={port: count for port, count, _ in calls},
+        uses=uses,
         priority=mapping_values.get_integer(body, "priority"),
+        deadline=sanity_checks.read_positive(body, "deadline", "duration", ports.owner_id, diagnostics),
         core=mapping_values.get_integer(body, "core"),
+        cores=execution_declaration.read_cores(body, ports.owner_id, diagnostics),
         response=mapping_values.get_quantity(body, "response", "duration"),
-        # Positions by key; each call has its own, under a key that no YAML key can be (it holds a blank).
-        places={e.key: e.value.span for e in body} | {f"calls {port}": call_span for port, _, call_span in calls},
+        # Positions by key; each call and use has its own, under a key that no YAML key can be (it holds a blank).
+        places={
+            **{e.key: e.value.span for e in body},
+            **{f"calls {port}": call_span for port, _, call_span in calls},
+            **{f"uses {resource}": resource_time.at for resource, resource_time in uses.items()},
+        },
         at=entry.key_span,
     )
     return sanity_checks.drop_senseless(timing, ports.owner_id, diagnostics)
@@ -52,14 +65,20 @@ def _read_trigger(body: MappingNode, ports: PortResolver, diagnostics: list[Diag
         return None
     node = entry.value
     if type(node) is ScalarNode:
-        return Trigger(node.text, None, node.span) if node.text in {"any", "all"} else None  # type: ignore[arg-type]
+        return Trigger(node.text, at=node.span) if node.text in {"any", "all"} else None  # type: ignore[arg-type]
     if type(node) is SequenceNode:
         inputs = _resolve_inputs(body, "trigger", ports, diagnostics)
-        return None if inputs is None else Trigger("any", inputs, node.span)
-    if type(node) is MappingNode and node.get("all") is not None:
-        inputs = _resolve_inputs(node, "all", ports, diagnostics)
-        return None if inputs is None else Trigger("all", inputs, node.span)
-    return None
+        return None if inputs is None else Trigger("any", inputs, at=node.span)
+    if type(node) is not MappingNode:
+        return None
+    mode: Literal["all", "match"] = "all" if node.get("all") is not None else "match"
+    sanity_checks.report_mixed_trigger(node, ports.owner_id, diagnostics)
+    inputs = _resolve_inputs(node, mode, ports, diagnostics)
+    if inputs is None or mode == "all":
+        return None if inputs is None else Trigger(mode, inputs, at=node.span)
+    within = mapping_values.get_quantity(node, "within", "duration")
+    is_sound = sanity_checks.check_match(node, inputs, within, ports.owner_id, diagnostics)
+    return Trigger(mode, inputs, within, node.span) if is_sound else None
 
 
 def _resolve_inputs(

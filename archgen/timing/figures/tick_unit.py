@@ -45,7 +45,10 @@ def choose_tick_unit(architecture: Architecture) -> TickUnit:
     denominator = lcm(*(duration.denominator for duration in durations))
     # Work is divided by the number of cores (path_work): with this divisor such quotients are whole ticks.
     cores = lcm(*(host.cores or 1 for host in architecture.hosts.values()))
-    threads = lcm(*(container.threads or 1 for container in architecture.containers.values()))
+    threads = lcm(
+        *(container.threads or 1 for container in architecture.containers.values()),
+        *(node.threads or 1 for node in architecture.nodes.values()),
+    )
     core_divisor = lcm(cores, threads)
     if denominator.bit_length() + core_divisor.bit_length() > _MAX_DENOMINATOR_BITS:
         return TickUnit(Fraction(1, _FALLBACK_TICKS_PER_NS), exact=False)
@@ -68,6 +71,7 @@ def _collect_durations(architecture: Architecture) -> Iterator[Fraction]:
     for node in architecture.nodes.values():
         for timing in node.timing.values():
             yield from _timing_durations(timing)
+    yield from _quantity_values(port.freshness for port in architecture.inputs.values())
     for link in architecture.links.values():
         yield from _quantity_values((link.best, link.worst))
         if link.bandwidth is not None and link.bandwidth.value:
@@ -77,7 +81,12 @@ def _collect_durations(architecture: Architecture) -> Iterator[Fraction]:
 def _timing_durations(timing: Timing) -> Iterator[Fraction]:
     """Yield the durations of one `timing` mapping, in ns."""
     yield from _quantity_values((timing.jitter, timing.wcet, timing.bcet, timing.throttle, timing.response))
+    yield from _quantity_values((timing.deadline, timing.trigger.within if timing.trigger else None))
     yield from _quantity_values(output.max_gap for output in timing.outputs.values())
+    yield from _quantity_values(limit for each in timing.inputs.values() for limit in (each.wcet, each.bcet))
+    yield from _quantity_values(limit for each in timing.uses.values() for limit in (each.max, each.min))
+    if timing.measured_times is not None:
+        yield from _quantity_values(timing.measured_times.percentiles.values())
     timing_period = written_period(timing)
     if timing_period is not None:
         yield timing_period

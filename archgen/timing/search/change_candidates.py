@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.architecture import Architecture
-from archgen.model.timing_override import ArchitectureOverride, ThreadsOverride, TimingOverride
 from archgen.timing.analysis import Analysis
+from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.system.timing_system import Activity
 
 _MAX_PRIORITY = 99
@@ -15,7 +15,7 @@ _MAX_PRIORITY = 99
 
 def list_settings(
     architecture: Architecture, analysis: Analysis, elements: Iterable[Activity]
-) -> Iterator[ArchitectureOverride]:
+) -> Iterator[TriedChange]:
     """Yield the settings to try, one by one: for each element its priority, its core, and the threads that it waits for."""
     seen: set[str] = set()
     for activity in elements:
@@ -30,7 +30,7 @@ def list_settings(
                 yield setting
 
 
-def _raise_priority(analysis: Analysis, activity: Activity) -> Iterator[TimingOverride]:
+def _raise_priority(analysis: Analysis, activity: Activity) -> Iterator[TriedChange]:
     """Yield the priority above all others on an element's host."""
     if activity.host is None:
         return
@@ -44,7 +44,7 @@ def _raise_priority(analysis: Analysis, activity: Activity) -> Iterator[TimingOv
         yield _set_figure(activity, "priority", highest + 1)
 
 
-def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[TimingOverride]:
+def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[TriedChange]:
     """Yield the core on which least is pinned, as long as one is left for what is pinned to none."""
     core_count = analysis.system.cores.get(activity.host or "")
     if not core_count or core_count == 1:
@@ -64,7 +64,7 @@ def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[TimingOverr
         yield _set_figure(activity, "core", best_core)
 
 
-def _add_threads(architecture: Architecture, analysis: Analysis, activity: Activity) -> Iterator[ThreadsOverride]:
+def _add_threads(architecture: Architecture, analysis: Analysis, activity: Activity) -> Iterator[TriedChange]:
     """Yield more threads of the container that an element works in, up to one for each member."""
     container = architecture.containers.get(activity.container or "")
     if container is None or container.threads is None:
@@ -72,8 +72,8 @@ def _add_threads(architecture: Architecture, analysis: Analysis, activity: Activ
     member_count = sum(other.container == activity.container for other in analysis.system.activities.values())
     for threads in dict.fromkeys((container.threads + 1, member_count)):
         if threads > container.threads:
-            yield ThreadsOverride(container.id, "container", threads)
+            yield TriedChange(container.id, "threads", str(threads))
 
 
-def _set_figure(activity: Activity, key: str, value: int) -> TimingOverride:
-    return TimingOverride(activity.node, activity.component or "", key, value, activity.id)
+def _set_figure(activity: Activity, key: str, value: int) -> TriedChange:
+    return TriedChange(activity.id, f"timing.{key}", str(value))

@@ -10,12 +10,11 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.model.timing_override import ThreadsOverride, TimingOverride
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours, list_waiting_elements
 from archgen.timing.search.change_candidates import list_settings
-from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
+from archgen.timing.search.change_trials import Changes, ChangeTrials, TriedChange, TriesSpentError
 from archgen.timing.search.largest_step import find_largest_step
 from archgen.timing.search.tried_figures import TriedFigure, find_execution_time, find_own_period
 from archgen.timing.system.timing_system import Activity
@@ -61,8 +60,8 @@ class _FigureRange:
         steps = -(-share * self.figure.written_step // 1) - 1
         return max(0, min(int(steps), self.direction * (self.last_step - self.figure.written_step)))
 
-    def change_by(self, steps: int) -> TimingOverride:
-        """Return the override that changes the figure by some steps."""
+    def change_by(self, steps: int) -> TriedChange:
+        """Return the change that changes the figure by some steps."""
         return self.figure.change_to(self.figure.written_step + self.direction * steps)
 
 
@@ -115,10 +114,8 @@ class _RemedySearch:
 
     def _try(self, changes: Changes) -> Fraction | None:
         """Return the slack that some changes leave, and note the last one as tried."""
-        last = changes[-1]
-        kind, name = ("threads", last.element) if isinstance(last, ThreadsOverride) else (last.key, last.activity)
         slack = self.trials.find_slack(self.result.id, changes)
-        self.tried.setdefault(kind, {})[name] = None
+        self.tried.setdefault(changes[-1].kind, {})[changes[-1].element] = None
         return slack
 
     def _proves(self, slack: Fraction | None, changes: Changes) -> bool:

@@ -6,10 +6,9 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.quantity import Quantity
-from archgen.model.timing_override import TimingOverride
 from archgen.timing.figures.figure_wording import write_exact_duration
 from archgen.timing.figures.tick_unit import written_period
+from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.system.timing_system import Activity
 
 _TICK = 1_000
@@ -43,15 +42,13 @@ class TriedFigure:
         """Return what is written times a factor, in ns; not less than it can be."""
         return max(self.written * factor, self.least)
 
-    def change_to(self, step: int) -> TimingOverride:
-        """Return the override that sets the figure to a number of ticks."""
+    def change_to(self, step: int) -> TriedChange:
+        """Return the change that sets the figure to a number of ticks."""
         return self.change_to_duration(Fraction(step * self.tick))
 
-    def change_to_duration(self, duration: Fraction) -> TimingOverride:
-        """Return the override that sets the figure to a duration in ns."""
-        activity = self.activity
-        quantity = Quantity(duration, write_exact_duration(duration))
-        return TimingOverride(activity.node, activity.component or "", self.key, quantity, activity.id)
+    def change_to_duration(self, duration: Fraction) -> TriedChange:
+        """Return the change that sets the figure to a duration in ns."""
+        return TriedChange(self.activity.id, f"timing.{self.key}", write_exact_duration(duration))
 
 
 def find_execution_time(architecture: Architecture, activity: Activity) -> TriedFigure | None:

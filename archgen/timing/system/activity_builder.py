@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import ActivityBehaviour, Timing
+from archgen.model.declared_timing import ActivityBehaviour, InputTiming, MeasuredTimes, Timing
 from archgen.model.node import Endpoint, Node
 from archgen.timing.figures.tick_unit import TickUnit, written_period
-from archgen.timing.system.timing_system import Activity
+from archgen.timing.system.timing_system import Activity, ResourceUse, StoringCallback
 
 ActivityNames = Mapping[tuple[str, str | None], str]
 """The activity's id, by node id and component id."""
 _NO_TIMING = Timing()
+_NO_INPUT_TIMING = InputTiming()
 _WRITING_USES = frozenset({"publishes", "serves"})
 
 
@@ -102,7 +103,9 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
     timing, node = part.timing, part.node
     behaviour = timing.behaviour or _infer_behaviour(part)
     period_ns = written_period(timing)
-    container = node.container
+    input_keys = tuple(dict.fromkeys([*_endpoint_keys(part, writes=False), *part.outside_inputs]))
+    triggers = tuple(_trigger_inputs(part)) if behaviour == "event" else ()
+    measured_times = timing.measured_times or MeasuredTimes()
     return Activity(
         id=part.name,
         node=node.id,
@@ -115,24 +118,73 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
         bcet=tick_unit.quantity_to_ticks(timing.bcet),
         response=tick_unit.quantity_to_ticks(timing.response),
         mode=_trigger_mode(timing),
-        triggers=tuple(_trigger_inputs(part)) if behaviour == "event" else (),
+        triggers=triggers,
+        within=tick_unit.quantity_to_ticks(timing.trigger.within) if timing.trigger else None,
         every=max(timing.every or 1, 1),
         throttle=tick_unit.quantity_to_ticks(timing.throttle) or 0,
+        keeps_dropped=timing.dropped != "forgotten",
         conditional=frozenset(port for port, output in timing.outputs.items() if output.conditional),
         max_gaps={port: tick_unit.ns_to_ticks(o.max_gap.value) for port, o in timing.outputs.items() if o.max_gap},
         calls=dict(timing.calls),
         priority=timing.priority,
+        deadline=tick_unit.quantity_to_ticks(timing.deadline),
         host=node.host,
-        container=container,
-        cores=() if timing.core is None else (timing.core,),
-        inputs=tuple(dict.fromkeys([*_endpoint_keys(part, writes=False), *part.outside_inputs])),
+        container=node.container,
+        cores=(timing.cores or ()) if timing.core is None else (timing.core,),
+        executor=executor_key(node),
+        callback_group=_find_callback_group(part),
+        storing=dict(_storing_callbacks(part, triggers, tick_unit)),
+        uses={
+            resource: ResourceUse(tick_unit.ns_to_ticks(use.max.value), tick_unit.quantity_to_ticks(use.min) or 0)
+            for resource, use in timing.uses.items()
+        },
+        freshness=dict(_demanded_freshness(part.architecture, input_keys, tick_unit)),
+        percentiles={name: tick_unit.ns_to_ticks(time.value) for name, time in measured_times.percentiles.items()},
+        wcet_measured=measured_times.is_measured,
+        inputs=input_keys,
         outputs=tuple(dict.fromkeys(_endpoint_keys(part, writes=True))),
         at=_span_of_part(part),
         places=timing.places,
     )
 
 
-def _trigger_mode(timing: Timing) -> Literal["any", "all"]:
+def executor_key(node: Node) -> str:
+    """Return the key of the process that runs a node: its container, or itself."""
+    return f"container {node.container}" if node.container else f"node {node.id}"
+
+
+def _find_callback_group(part: _NodePart) -> str | None:
+    """Return the mutually exclusive group of an activity, None where its callbacks run at once."""
+    if part.node.reentrant:
+        return None
+    groups = part.node.callback_groups
+    own_group = next((name for name, members in groups.items() if part.component in members), None)
+    return f"{part.node.id}.{own_group}" if own_group else part.node.id
+
+
+def _storing_callbacks(
+    part: _NodePart, triggers: Collection[str], tick_unit: TickUnit
+) -> Iterator[tuple[str, StoringCallback]]:
+    """Yield the inputs that carry messages and fire nobody, each with the callback that stores them."""
+    for endpoint in part.endpoints:
+        key = endpoint_key(endpoint)
+        if endpoint.use == "subscribes" and key not in triggers:
+            times = part.timing.inputs.get(key, _NO_INPUT_TIMING)
+            wcet, bcet = map(tick_unit.quantity_to_ticks, (times.wcet, times.bcet))
+            yield key, StoringCallback(wcet or 0, bcet or 0)
+
+
+def _demanded_freshness(
+    architecture: Architecture, input_keys: Iterable[str], tick_unit: TickUnit
+) -> Iterator[tuple[str, int]]:
+    """Yield the inputs at which the reader limits the age of what it reads."""
+    for key in input_keys:
+        port = architecture.inputs.get(key)
+        if port is not None and port.freshness is not None:
+            yield key, tick_unit.ns_to_ticks(port.freshness.value)
+
+
+def _trigger_mode(timing: Timing) -> Literal["any", "all", "match"]:
     return timing.trigger.mode if timing.trigger else "any"
 
 

@@ -5,12 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
 from archgen.timing.analysis import Reason
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
-from archgen.timing.system.activity_builder import activity_of_endpoint, build_activities, endpoint_key, name_activities
+from archgen.timing.system.activity_builder import (
+    activity_of_endpoint,
+    build_activities,
+    endpoint_key,
+    executor_key,
+    name_activities,
+)
 from archgen.timing.system.arc_builder import build_arcs
-from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
+from archgen.timing.system.timing_system import Activity, Executor, SharedResource, TimingSystem, group_arcs
 
 _BITS_PER_BYTE = 8
 
@@ -36,6 +43,17 @@ def build_system(architecture: Architecture) -> tuple[TimingSystem, tuple[Reason
         optional_inputs=frozenset(port.id for port in architecture.inputs.values() if port.optional),
         cores={host.id: host.cores for host in architecture.hosts.values()},
         threads={container.id: container.threads for container in architecture.containers.values()},
+        executors={executor.id: executor for executor in _build_executors(architecture)},
+        resources={
+            resource.id: SharedResource(resource.id, resource.host, resource.scheduling)
+            for resource in architecture.resources.values()
+        },
+        host_orders={host.id: host.scheduling for host in architecture.hosts.values() if host.scheduling},
+        core_orders={
+            (host.id, core): order
+            for host in architecture.hosts.values()
+            for core, order in host.core_scheduling.items()
+        },
         bandwidths={
             link.id: link.bandwidth.value / _BITS_PER_BYTE if link.bandwidth else None
             for link in architecture.links.values()
@@ -55,6 +73,25 @@ def build_system(architecture: Architecture) -> tuple[TimingSystem, tuple[Reason
         topic_sizes=message_sizes.find_topic_sizes(architecture),
     )
     return timing_system, notes
+
+
+def _build_executors(architecture: Architecture) -> Iterator[Executor]:
+    """Yield the processes: each container, and each node outside of one."""
+    for container in architecture.containers.values():
+        executor_id = f"container {container.id}"
+        yield Executor(
+            executor_id, container.threads, _find_container_host(architecture, container), container.scheduling
+        )
+    for node in architecture.nodes.values():
+        if not node.container:
+            # What `rclcpp::spin(node)` is: one thread.
+            yield Executor(executor_key(node), node.threads or 1, node.host, node.scheduling)
+
+
+def _find_container_host(architecture: Architecture, container: Container) -> str | None:
+    """Return the host of a container: its own, or the one that its nodes name, where they agree."""
+    node_hosts = {node.host for node in architecture.nodes.values() if node.container == container.id}
+    return container.host or (next(iter(node_hosts)) if len(node_hosts) == 1 else None)
 
 
 def _external_inputs(

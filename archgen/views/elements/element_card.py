@@ -44,6 +44,7 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "partner": a.partners,
         "host": a.hosts,
         "container": a.containers,
+        "resource": a.resources,
         "link": a.links,
         "chain": a.chains,
         "view": a.views,
@@ -185,6 +186,7 @@ def _port_card(lookup: Lookup, port: Input | Output) -> ElementCard:
         facts.append(("message", lookup.architecture.message_of(port) or ("" if port.physical else "?")))
         readers = ("readers", tuple(_list_readers(lookup, port)))
         return ElementCard("output", port.id, port.name, port.at, _known_facts(facts), (readers,))
+    facts.append(("freshness", _format_fact(port.freshness)))
     return ElementCard(
         "input",
         port.id,
@@ -206,6 +208,10 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         ("executable", node.executable or ""),
         ("host", node.host or "?"),
         ("container", node.container or ""),
+        ("threads", _format_fact(node.threads)),
+        ("scheduling", node.scheduling or ""),
+        ("callback_groups", inline_text.format_callback_groups(node)),
+        ("reentrant", "yes" if node.reentrant else ""),
         (
             "timing",
             "; ".join(filter(None, (inline_text.format_short_timing(timing) for timing in node.timing.values()))),
@@ -259,6 +265,7 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             "host",
             "cores",
             "threads",
+            "scheduling",
             "connects",
             "bandwidth",
             "deadline",
@@ -287,10 +294,14 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             if (owned_ids := _owned_elements(elements.values(), element_id))
         ]
     elif kind in {"host", "container"}:
+        if kind == "host":
+            facts.append(("scheduling", inline_text.format_core_orders(element)))
         # `kind` names the node's field here: `Node.host` or `Node.container`.
         lists.append(
             ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
         )
+    elif kind == "resource":
+        lists.append(("used by", tuple(node.id for node in architecture.nodes_using(element_id))))
     elif kind == "chain":
         chain = architecture.chains[element_id]
         facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]
