@@ -1,4 +1,4 @@
-"""Changes that may prove a chain without touching a program: priorities, cores, and threads of containers."""
+"""Changes that may prove a chain without touching a program: priorities, cores, threads and callback groups."""
 
 from __future__ import annotations
 
@@ -6,31 +6,31 @@ from collections.abc import Iterable, Iterator
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis
-from archgen.timing.search.change_trials import TriedChange
+from archgen.timing.search.change_trials import Changes, TriedChange
 from archgen.timing.system.timing_system import Activity
 
 _MAX_PRIORITY = 99
 """The most urgent priority of SCHED_FIFO."""
 
 
-def list_settings(
-    architecture: Architecture, analysis: Analysis, elements: Iterable[Activity]
-) -> Iterator[TriedChange]:
-    """Yield the settings to try, one by one: for each element its priority, its core, and the threads that it waits for."""
-    seen: set[str] = set()
-    for activity in elements:
-        settings = (
+def list_settings(architecture: Architecture, analysis: Analysis, elements: Iterable[Activity]) -> list[Changes]:
+    """Return the settings to try, those of one change first.
+
+    They are for each element its priority, its core, the threads and the callback group for which it waits.
+    """
+    settings = dict.fromkeys(
+        setting
+        for activity in elements
+        for setting in (
             *_raise_priority(analysis, activity),
             *_choose_core(analysis, activity),
-            *_add_threads(architecture, analysis, activity),
+            *_separate_callbacks(architecture, analysis, activity),
         )
-        for setting in settings:
-            if str(setting) not in seen:
-                seen.add(str(setting))
-                yield setting
+    )
+    return sorted(settings, key=len)
 
 
-def _raise_priority(analysis: Analysis, activity: Activity) -> Iterator[TriedChange]:
+def _raise_priority(analysis: Analysis, activity: Activity) -> Iterator[Changes]:
     """Yield the priority above all others on an element's host."""
     if activity.host is None:
         return
@@ -44,7 +44,7 @@ def _raise_priority(analysis: Analysis, activity: Activity) -> Iterator[TriedCha
         yield _set_figure(activity, "priority", highest + 1)
 
 
-def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[TriedChange]:
+def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[Changes]:
     """Yield the core on which least is pinned, as long as one is left for what is pinned to none."""
     core_count = analysis.system.cores.get(activity.host or "")
     if not core_count or core_count == 1:
@@ -64,16 +64,40 @@ def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[TriedChange
         yield _set_figure(activity, "core", best_core)
 
 
-def _add_threads(architecture: Architecture, analysis: Analysis, activity: Activity) -> Iterator[TriedChange]:
-    """Yield more threads of the container that an element works in, up to one for each member."""
-    container = architecture.containers.get(activity.container or "")
-    if container is None or container.threads is None:
+def _separate_callbacks(architecture: Architecture, analysis: Analysis, activity: Activity) -> Iterator[Changes]:
+    """Yield what lets an element work beside others of its process: more threads, a callback group of its own, both."""
+    process = analysis.system.executors.get(activity.executor)
+    if process is None or process.threads is None:
         return
-    member_count = sum(other.container == activity.container for other in analysis.system.activities.values())
-    for threads in dict.fromkeys((container.threads + 1, member_count)):
-        if threads > container.threads:
-            yield TriedChange(container.id, "threads", str(threads))
+    section, _, process_id = process.id.partition(" ")
+    members = [other for other in analysis.system.activities.values() if other.executor == activity.executor]
+    groups = {(other.callback_group, None if other.callback_group else other.id) for other in members}
+    more_threads = [count for count in dict.fromkeys((process.threads + 1, len(members))) if count > process.threads]
+    is_ambiguous = process_id in architecture.nodes and process_id in architecture.containers
+    thread_changes = [
+        TriedChange(f"{section}s.{process_id}" if is_ambiguous else process_id, "threads", str(count))
+        for count in more_threads
+    ]
+    own_groups = list(_find_own_groups(architecture, activity, members))
+    # With one group, or one thread, only one callback works at a time: then both have to change.
+    yield from ((change,) for change in thread_changes if len(groups) > 1)
+    yield from ((change,) for change in own_groups if process.threads > 1)
+    yield from (
+        (change, own_group) for change in thread_changes[:1] for own_group in own_groups if process.threads == 1
+    )
 
 
-def _set_figure(activity: Activity, key: str, value: int) -> TriedChange:
-    return TriedChange(activity.id, f"timing.{key}", str(value))
+def _find_own_groups(
+    architecture: Architecture, activity: Activity, members: Iterable[Activity]
+) -> Iterator[TriedChange]:
+    """Yield how an element can leave the callback group that it shares with others of its node."""
+    shares_group = any(other.callback_group == activity.callback_group and other.id != activity.id for other in members)
+    if activity.callback_group is not None and activity.component is not None and shares_group:
+        name = activity.component.rpartition(".")[2]
+        if name not in architecture.nodes[activity.node].callback_groups:
+            yield TriedChange(activity.node, f"callback_groups.{name}", activity.component)
+        yield TriedChange(activity.node, "reentrant", "true")
+
+
+def _set_figure(activity: Activity, key: str, value: int) -> Changes:
+    return (TriedChange(activity.id, f"timing.{key}", str(value)),)

@@ -125,8 +125,8 @@ class _RemedySearch:
     def _find_setting(self, elements: list[Activity], base: Changes = ()) -> Changes:
         """Return the first setting that proves the chain, on top of others; empty where none does."""
         for setting in list_settings(self.trials.architecture, self.trials.analysis, elements):
-            changes = (*base, setting)
-            if setting not in base and self._proves(self._try(changes), changes):
+            changes = (*base, *setting)
+            if base[-len(setting) :] != setting and self._proves(self._try(changes), changes):
                 return changes
         return ()
 
@@ -135,7 +135,7 @@ class _RemedySearch:
         base: Changes = ()
         for _ in range(1, _MAX_SETTINGS):
             settings = list_settings(self.trials.architecture, self.trials.analysis, elements)
-            tried_changes = [(*base, setting) for setting in settings if setting not in base]
+            tried_changes = [(*base, *setting) for setting in settings if not set(setting) & set(base)]
             slacks = [(slack, changes) for changes in tried_changes if (slack := self._try(changes)) is not None]
             if not slacks:
                 break
