@@ -11,7 +11,7 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.figures.figure_wording import format_number
 from archgen.timing.figures.value_arithmetic import add_values
 from archgen.timing.load.host_loads import activity_share
-from archgen.timing.system.core_placement import find_unplaced_containers
+from archgen.timing.system.core_placement import find_unplaced_pools
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -81,10 +81,11 @@ def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fr
 def _find_overloaded_containers(
     architecture: Architecture, analysis: Analysis, limit: Fraction
 ) -> Iterator[Diagnostic]:
-    """Yield a finding for each overloaded container that has no host and fewer threads than members."""
+    """Yield a finding for each overloaded process that has no host and fewer threads than members."""
     # With a host, the host's utilisation counts the members already.
-    for name, members in find_unplaced_containers(analysis.system).items():
-        threads = analysis.system.threads.get(name) or 1
+    for pool, members in find_unplaced_pools(analysis.system).items():
+        kind, _, name = pool.key.partition(" ")
+        threads = pool.threads or 1
         utilisation = add_values(
             activity_share(analysis.system, member.id, analysis.paces[member.id]) for member in members
         ).value
@@ -93,7 +94,7 @@ def _find_overloaded_containers(
             yield Diagnostic(
                 "overloaded-host",
                 f"`{name}` is {_describe_excess(utilisation / threads)}: what runs there takes {format_number(100 * utilisation / threads)} % of {threads_phrase}",
-                architecture.containers[name].at,
+                (architecture.containers if kind == "container" else architecture.nodes)[name].at,
                 help="give it more threads, move something out, or let it run less often",
                 element=name,
             )

@@ -7,51 +7,49 @@ from __future__ import annotations
 
 from heapq import heappop, heappush
 
+from archgen.simulation.executor_state import BY_DEADLINE, FAVOURED_OTHERS, FIXED_RANKS
 from archgen.simulation.job_activation import read_inputs
-from archgen.simulation.run_state import FIXED_RANKS
+from archgen.simulation.resource_use import grant_resource, plan_steps
 from archgen.simulation.simulation_run import JOB_END, LOAD_ONLY, SimulationRun
-from archgen.simulation.thread_scheduling import choose_job
+from archgen.simulation.thread_scheduling import feed_threads
 
 
 def dispatch_threads(run: SimulationRun, now: int) -> None:
-    """Choose the next job of each woken thread, then give out the cores of every changed processor."""
-    threads = run.threads
-    while run.woken_threads:
-        thread = run.woken_threads.pop()
-        if threads.is_idle[thread]:
-            choose_job(run, thread)
+    """Let woken executors choose what to do, give out idle resources, then the cores of every changed processor."""
+    processors = run.processors
+    while run.woken_executors:
+        feed_threads(run, run.woken_executors.pop())
+    while run.changed_resources:
+        grant_resource(run, now, run.changed_resources.pop())
     while run.changed_processors:
         processor = run.changed_processors.pop()
-        ready, running = threads.ready[processor], threads.running[processor]
-        if threads.has_pinned[processor]:
-            _assign_pinned(run, now, processor)
+        ready, running = processors.ready[processor], processors.running[processor]
+        if processors.has_masks[processor]:
+            _assign_allowed_cores(run, now, processor)
             continue
         while ready:
-            if len(running) < threads.cores[processor]:
+            if len(running) < processors.cores[processor]:
                 _start_thread(run, now, heappop(ready)[2], running)
-            elif not threads.is_preemptive[processor] or not _preempt_least_urgent(run, now, ready, running):
+            elif not processors.is_preemptive[processor] or not _preempt_least_urgent(run, now, ready, running):
                 break
 
 
-def _assign_pinned(run: SimulationRun, now: int, processor: int) -> None:
-    """Assign cores where some threads are pinned and others are not, the most urgent first."""
-    threads = run.threads
-    running = threads.running[processor]
-    candidates = sorted(threads.ready[processor])
+def _assign_allowed_cores(run: SimulationRun, now: int, processor: int) -> None:
+    """Assign cores where some threads may use only some of them, the most urgent first."""
+    threads, processors = run.threads, run.processors
+    running = processors.running[processor]
+    candidates = sorted(processors.ready[processor])
     # Preemptive: all cores are given out anew, running threads included. Otherwise running threads keep theirs.
-    if threads.is_preemptive[processor]:
+    if processors.is_preemptive[processor]:
         candidates = sorted([*candidates, *((threads.urgency[t], threads.ready_order[t], t) for t in running)])
         thread_by_core: dict[int, int] = {}
     else:
         thread_by_core = {threads.last_core[t]: t for t in running}
+    all_cores = range(processors.cores[processor])
     for _, _, thread in candidates:
-        pinned_core, last_core = threads.affinity[thread], threads.last_core[thread]
-        # An unpinned thread that is running prefers the core it has, so that it is not moved without need.
-        cores = (
-            [pinned_core]
-            if pinned_core >= 0
-            else [*([last_core] if thread in running else []), *range(threads.cores[processor])]
-        )
+        allowed_cores = threads.allowed_cores[thread] or all_cores
+        # A thread that is running prefers the core it has, so that it is not moved without need.
+        cores = [threads.last_core[thread], *allowed_cores] if thread in running else allowed_cores
         core = next((candidate for candidate in cores if candidate not in thread_by_core), None)
         if core is not None:
             thread_by_core[core] = thread
@@ -61,7 +59,7 @@ def _assign_pinned(run: SimulationRun, now: int, processor: int) -> None:
 def _apply_assignment(run: SimulationRun, now: int, processor: int, thread_by_core: dict[int, int]) -> None:
     """Take threads that lost their core off it, and start those that got one."""
     threads = run.threads
-    running, ready = threads.running[processor], threads.ready[processor]
+    running, ready = run.processors.running[processor], run.processors.ready[processor]
     for thread in [t for t in running if t not in thread_by_core.values()]:
         running.remove(thread)
         # The job's end is already on the heap: the new version makes `end_thread` ignore it.
@@ -76,32 +74,50 @@ def _apply_assignment(run: SimulationRun, now: int, processor: int, thread_by_co
 
 
 def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int]) -> None:
-    """Start or resume a thread at time `now`, and schedule the end of its job."""
-    threads, activities = run.threads, run.activities
-    remaining = threads.time_left[thread]
+    """Start or resume a thread at time `now`, and schedule its end, or that of its time slice."""
+    threads = run.threads
     # -1: the job has not started yet. A preempted thread comes back with the time that it has left.
+    remaining = threads.time_left[thread]
     if remaining < 0:
-        activity = threads.current_activity[thread]
-        job = activities.pending[activity].popleft()
-        wire = job[1]
-        # Calls are not counted in a queue: they never replace one another.
-        if wire >= 0 and not run.wires.is_request[wire]:
-            run.wires.waiting_count[run.wires.queue[wire]] -= 1
-        activities.job_activation[activity] = job[0]
-        activities.firing_wire[activity] = wire
-        if wire != LOAD_ONLY:
-            read_inputs(run, now, activity, job)
-        spread = activities.time_spread[activity]
-        remaining = (
-            run.draw_time(activity, activities.shortest_time[activity], spread)
-            if spread
-            else activities.shortest_time[activity]
-        )
-        run.threads.busy_time[threads.processor[thread]] += remaining
-        threads.time_left[thread] = remaining
+        remaining = _begin_callback(run, now, thread)
+    slice_time = run.processors.slice_time[threads.processor[thread]]
+    if slice_time:
+        threads.time_after_slice[thread] = max(remaining - slice_time, 0)
+        remaining = min(remaining, slice_time)
     running.append(thread)
     threads.end_time[thread] = now + remaining
     heappush(run.heap, (now + remaining << 2 | JOB_END, thread, threads.end_version[thread]))
+
+
+def _begin_callback(run: SimulationRun, now: int, thread: int) -> int:
+    """Begin what a thread has taken on, and return how long it works until it ends or uses a resource."""
+    threads, callbacks = run.threads, run.callbacks
+    callback = threads.callback[thread]
+    activity = callbacks.activity[callback]
+    callbacks.claim_count[callback] -= 1
+    run.executors.waiting_count[callbacks.executor[callback]] -= 1
+    job = callbacks.pending[callback].popleft()
+    wire = job[1]
+    threads.job_activation[thread] = job[0]
+    threads.firing_wire[thread] = wire
+    if callbacks.is_storing[callback]:
+        threads.job_number[thread] = job[2]
+    else:
+        # Calls are not counted in a queue: they never replace one another.
+        if wire >= 0 and not run.wires.is_request[wire]:
+            run.wires.waiting_count[run.wires.queue[wire]] -= 1
+        if wire != LOAD_ONLY:
+            threads.job_number[thread] = run.activities.started[activity]
+            read_inputs(run, now, activity, job)
+    spread = callbacks.time_spread[callback]
+    remaining = callbacks.shortest_time[callback]
+    if spread:
+        remaining = run.draw_time(activity, remaining, spread)
+    run.processors.busy_time[threads.processor[thread]] += remaining
+    if run.resources.uses[activity] and not callbacks.is_storing[callback]:
+        remaining = plan_steps(run, thread, activity, remaining)
+    threads.time_left[thread] = remaining
+    return remaining
 
 
 def _preempt_least_urgent(run: SimulationRun, now: int, ready: list[tuple[int, int, int]], running: list[int]) -> bool:
@@ -111,7 +127,8 @@ def _preempt_least_urgent(run: SimulationRun, now: int, ready: list[tuple[int, i
     urgency = ready[0][0]
     # Keys below zero are written priorities, which always preempt. Other threads preempt only under fixed ranks.
     if urgency >= threads.urgency[least_urgent] or (
-        urgency >= 0 and threads.scheduler[threads.processor[least_urgent]] != FIXED_RANKS
+        urgency >= 0
+        and run.processors.scheduler[threads.processor[least_urgent]] not in (FIXED_RANKS, FAVOURED_OTHERS, BY_DEADLINE)
     ):
         return False
     running.remove(least_urgent)

@@ -18,6 +18,7 @@ from archgen.simulation.core_dispatch import dispatch_threads
 from archgen.simulation.job_activation import fire_activity, passes_gate
 from archgen.simulation.job_completion import end_thread, finish_declared_job
 from archgen.simulation.plan_builder import PublishPauses, build_plan
+from archgen.simulation.resource_use import leave_resource
 from archgen.simulation.run_totals import RunTotals
 from archgen.simulation.sample_arrival import deliver_sample, enqueue_sample
 from archgen.simulation.simulation_plan import ONCE, PERIODIC, SimulationPlan
@@ -68,13 +69,14 @@ def process_events(run: SimulationRun, horizon: int) -> None:
     # A key holds the time in its upper bits and the order within a moment in its lowest two, so that comparing one
     # integer orders two events.
     heap = run.heap
+    activity_count = len(run.plan.activities)
     now = event_count = dispatch_rounds = 0
     while heap:
         key = heap[0][0]
         if key >> 2 > now:
             # All events of this moment are processed: dispatch before time goes on. A job that takes no time ends at
             # this very moment, so the heap is looked at again.
-            if run.woken_threads or run.changed_processors:
+            if run.woken_executors or run.changed_processors or run.changed_resources:
                 dispatch_threads(run, now)
                 dispatch_rounds += 1
                 if dispatch_rounds > MAX_IDLE_ROUNDS:
@@ -94,11 +96,13 @@ def process_events(run: SimulationRun, horizon: int) -> None:
         elif order == ACTIVITY_RELEASE:
             _release_activity(run, now, subject, detail)
         # A negative subject is the end of a job with a declared response, which belongs to an activity and not to a
-        # thread.
+        # thread, or that of the use of a resource.
         elif subject >= 0:
             end_thread(run, now, subject, detail)
-        else:
+        elif subject >= -activity_count:
             finish_declared_job(run, now, -1 - subject)
+        else:
+            leave_resource(run, -1 - activity_count - subject)
     # Job starts and direct deliveries skip the heap, and count as events too.
     run.event_count = event_count + sum(run.activities.started) + run.wires.sent_count
 
@@ -110,6 +114,8 @@ def _prepare_start(run: SimulationRun) -> None:
             for output in planned.outputs:
                 for wire in output.wires:
                     run.wires.newest_job[wire] = run.wires.arrived_job[wire] = 0
+                    if run.activities.matchers[run.wires.target[wire]] is not None and run.wires.slot[wire] >= 0:
+                        deliver_sample(run, 0, wire, 0)
         elif planned.kind == PERIODIC:
             run.heap.append((run.activities.phase[activity] << 2 | ACTIVITY_RELEASE, activity, CLOCK_TICK))
     heapify(run.heap)
@@ -121,7 +127,7 @@ def _release_activity(run: SimulationRun, now: int, activity: int, release_kind:
     if release_kind == HELD_FIRING:
         wire, sample = activities.held_firings[activity].popleft()
         if wire == ALL_WIRES:
-            fire_activity(run, now, activity, wire, sample)
+            fire_activity(run, now, activity, activities.joint_callback[activity], wire, sample)
         else:
             enqueue_sample(run, now, wire, sample)
         return
@@ -136,7 +142,7 @@ def _release_activity(run: SimulationRun, now: int, activity: int, release_kind:
                 heappush(run.heap, (now + delay << 2 | ACTIVITY_RELEASE, activity, LATE_TICK))
                 return
     if not activities.is_gated[activity] or passes_gate(run, now, activity):
-        fire_activity(run, now, activity, NO_WIRE, 0)
+        fire_activity(run, now, activity, activities.clock_callback[activity], NO_WIRE, 0)
 
 
 _SECOND = 10**9

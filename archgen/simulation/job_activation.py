@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from heapq import heappush
 from typing import Any
 
@@ -41,8 +41,8 @@ def hold_firing(run: SimulationRun, now: int, activity: int, wire: int, sample: 
     heappush(run.heap, (release_time << 2 | ACTIVITY_RELEASE, activity, HELD_FIRING))
 
 
-def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
-    """Activate an activity: queue a job for its thread.
+def fire_activity(run: SimulationRun, now: int, activity: int, callback: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+    """Activate an activity: queue a job for its executor.
 
     With a declared response the job begins at once and ends on time; only its load is queued.
     """
@@ -54,16 +54,23 @@ def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample
     if activities.declared_response[activity] is not None:
         _start_declared_job(run, now, activity, wire, sample)
         wire = LOAD_ONLY
-    activities.pending[activity].append((now, wire, sample))
-    thread = activities.thread[activity]
-    if run.threads.is_idle[thread]:
-        run.woken_threads.append(thread)
+    queue_callback(run, callback, (now, wire, sample, run.sequence))
+
+
+def queue_callback(run: SimulationRun, callback: int, job: Job) -> None:
+    """Queue what a callback has to do, and wake its executor if it has a thread free."""
+    run.sequence += 1
+    run.callbacks.pending[callback].append(job)
+    executor = run.callbacks.executor[callback]
+    run.executors.waiting_count[executor] += 1
+    if run.executors.free_count[executor]:
+        run.woken_executors.append(executor)
 
 
 def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
     """Start a job with a declared response: it ends within the declared time whatever the load."""
     activities = run.activities
-    job = (now, wire, sample)
+    job = (now, wire, sample, run.sequence)
     if wire >= 0 and not run.wires.is_request[wire]:
         run.wires.waiting_count[run.wires.queue[wire]] -= 1
     read_inputs(run, now, activity, job)
@@ -81,27 +88,51 @@ def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, 
 def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
-    _, wire, sample = job
-    fired_by: Iterable[tuple[int, int]] = ((wire, sample),) if wire >= 0 else ()
-    if wire == ALL_WIRES:
-        fired_by = zip(run.plan.activities[activity].captured_wires, sample, strict=True)
-    # What `every` or `throttle` dropped since then came after the samples of this job, and stays for the next one.
-    later_samples: list[tuple[int, int]] = []
-    for input_wire, job_number in fired_by:
-        if wires.newest_job[input_wire] > job_number:
-            later_samples.append((input_wire, wires.newest_job[input_wire]))
-        wires.newest_job[input_wire] = job_number
+    _, wire, sample, _ = job
+    if wire >= 0:
+        take_newest(run, wire, sample)
+    elif wire == ALL_WIRES:
+        for input_wire, job_number in zip(run.plan.activities[activity].captured_wires, sample, strict=True):
+            if job_number >= 0:
+                take_newest(run, input_wire, job_number)
+        if activities.matchers[activity] is not None:
+            _record_fusion(run, now, activity, sample)
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
     # Requests that came before this start are answered at its end; later ones wait for the next job.
     if activities.waiting_requests[activity]:
-        activities.accepted_requests[activity] += activities.waiting_requests[activity]
+        activities.accepted_requests[activity].append(
+            (activities.started[activity], activities.waiting_requests[activity])
+        )
         activities.waiting_requests[activity] = []
+    newest_job, largest_age = wires.newest_job, wires.largest_age
+    for input_wire, source_ends in run.aged_wires[activity]:
+        job_number = newest_job[input_wire]
+        if job_number >= 0 and now - source_ends[job_number] > largest_age[input_wire]:
+            largest_age[input_wire] = now - source_ends[job_number]
     if activities.is_watched[activity]:
         activities.job_starts[activity].append(now)
         activities.job_activations[activity].append(job[0])
         for input_wire in wires.logged_wires[activity]:
             wires.source_log[input_wire].append(wires.newest_job[input_wire])
     activities.started[activity] += 1
-    for input_wire, job_number in later_samples:
-        wires.newest_job[input_wire] = job_number
+
+
+def take_newest(run: SimulationRun, wire: int, sample: int) -> None:
+    """Make a sample the newest of its wire, unless a newer one was stored already while its job waited."""
+    if sample > run.wires.newest_job[wire] or not run.wires.keeps_order[wire]:
+        run.wires.newest_job[wire] = sample
+
+
+def stamp_of(run: SimulationRun, wire: int, sample: int) -> int:
+    """Return the stamp of a sample: when the job that sent it was activated; 0 for what is published once."""
+    activations = run.activities.job_activations[run.wires.source[wire]]
+    return activations[sample] if activations else 0
+
+
+def _record_fusion(run: SimulationRun, now: int, activity: int, samples: Sequence[int]) -> None:
+    """Record how old and how far apart the samples are that a job with matched inputs has taken."""
+    activities, wires = run.activities, run.plan.activities[activity].captured_wires
+    stamps = [stamp_of(run, wire, sample) for wire, sample in zip(wires, samples, strict=True) if sample >= 0]
+    activities.fused_age[activity] = max(activities.fused_age[activity], now - min(stamps))
+    activities.fused_spread[activity] = max(activities.fused_spread[activity], max(stamps) - min(stamps))

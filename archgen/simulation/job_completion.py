@@ -2,51 +2,63 @@
 
 from __future__ import annotations
 
-from archgen.simulation.run_state import Job
+from archgen.simulation.resource_use import enter_resource
+from archgen.simulation.sample_arrival import store_sample
 from archgen.simulation.sample_sending import send_sample
 from archgen.simulation.simulation_run import LOAD_ONLY, SimulationRun
-from archgen.simulation.thread_scheduling import leave_pool
+from archgen.simulation.thread_scheduling import queue_thread
 
 
 def end_thread(run: SimulationRun, now: int, thread: int, version: int) -> None:
-    """End the job of a thread, unless the thread was preempted after this end was scheduled."""
-    threads = run.threads
+    """End what a thread has begun, its time slice, or its work up to the use of a resource; not if it was preempted
+    after this end was scheduled.
+    """
+    threads, processors = run.threads, run.processors
     if threads.end_version[thread] != version:
         return
     threads.end_version[thread] += 1
     processor = threads.processor[thread]
-    threads.running[processor].remove(thread)
-    if threads.ready[processor]:
+    processors.running[processor].remove(thread)
+    if processors.ready[processor]:
         run.changed_processors.add(processor)
-    _complete_job(run, now, threads.current_activity[thread])
+    if threads.time_after_slice[thread]:
+        threads.time_left[thread] = threads.time_after_slice[thread]
+        queue_thread(run, thread)
+    elif threads.later_steps[thread]:
+        enter_resource(run, now, thread)
+    else:
+        _complete_callback(run, now, thread)
 
 
-def _complete_job(run: SimulationRun, now: int, activity: int) -> None:
-    """Complete a job that ran on its thread: publish its results and let the thread go on."""
-    activities = run.activities
-    wire = activities.firing_wire[activity]
+def _complete_callback(run: SimulationRun, now: int, thread: int) -> None:
+    """Complete what ran on a thread: publish its results, or store its sample, and let the thread go on."""
+    threads, callbacks, executors = run.threads, run.callbacks, run.executors
+    callback = threads.callback[thread]
+    activity, wire = callbacks.activity[callback], threads.firing_wire[thread]
+    if callbacks.is_storing[callback]:
+        store_sample(run, wire, threads.job_number[thread])
     # A load-only job stands for the work of an activity with a declared response: its results were published
     # separately.
-    if wire != LOAD_ONLY:
-        _publish_results(
-            run, now, activity, (activities.job_activation[activity], wire, activities.started[activity] - 1)
-        )
-    thread = activities.thread[activity]
-    run.threads.is_idle[thread] = True
-    if run.threads.pool[thread] >= 0:
-        leave_pool(run, run.threads.pool[thread])
-    if run.threads.is_shared[thread] or activities.pending[activity]:
-        run.woken_threads.append(thread)
+    elif wire != LOAD_ONLY:
+        _publish_results(run, now, activity, (threads.job_activation[thread], wire, threads.job_number[thread]))
+    executor = callbacks.executor[callback]
+    callbacks.is_group_busy[callbacks.group[callback]] = False
+    executors.free_count[executor] += 1
+    executors.idle_threads[executor].append(thread)
+    if executors.waiting_count[executor]:
+        run.woken_executors.append(executor)
 
 
-def _publish_results(run: SimulationRun, now: int, activity: int, job: Job) -> None:
+def _publish_results(run: SimulationRun, now: int, activity: int, job: tuple[int, int, int]) -> None:
     """Record a finished job's response, make its calls, publish its outputs and answer its requests.
 
-    The third field of the job is the job's own number here, not the number of a sample.
+    `job` is its activation, the wire that fired it, and its number.
     """
     activation, wire, job_number = job
     activities = run.activities
     _record_response(run, now, activity, now - activation)
+    if activities.is_watched[activity]:
+        _record_end(activities.job_ends[activity], job_number, now)
     if run.calls[activity]:
         for request in _requests_due(run, activity):
             _log_forwarding(run, request, job_number)
@@ -63,8 +75,15 @@ def _publish_results(run: SimulationRun, now: int, activity: int, job: Job) -> N
         _log_forwarding(run, run.answer_wires[wire], job_number)
         send_sample(run, now, run.answer_wires[wire], job_number)
     if activities.accepted_requests[activity]:
-        requests, activities.accepted_requests[activity] = activities.accepted_requests[activity], []
-        for request in requests:
+        _answer_accepted(run, now, activity, job_number)
+
+
+def _answer_accepted(run: SimulationRun, now: int, activity: int, job_number: int) -> None:
+    """Answer the requests that had waited when a job started."""
+    accepted = run.activities.accepted_requests[activity]
+    run.activities.accepted_requests[activity] = [entry for entry in accepted if entry[0] != job_number]
+    for accepting_job, requests in accepted:
+        for request in requests if accepting_job == job_number else ():
             _log_forwarding(run, run.answer_wires[request], job_number)
             send_sample(run, now, run.answer_wires[request], job_number)
 
@@ -86,8 +105,16 @@ def _record_response(run: SimulationRun, now: int, activity: int, response: int)
         activities.end_gap[activity] = now - previous_end
     activities.last_end[activity] = now
     activities.finished[activity] += 1
-    if activities.is_watched[activity]:
-        activities.job_ends[activity].append(now)
+
+
+def _record_end(job_ends: list[int], job_number: int, end: int) -> None:
+    """Record when a job ended; -1 stands for those that began before it and have not ended."""
+    missing_count = job_number - len(job_ends)
+    if missing_count < 0:
+        job_ends[job_number] = end
+        return
+    job_ends.extend([-1] * missing_count)
+    job_ends.append(end)
 
 
 def _requests_due(run: SimulationRun, activity: int) -> list[int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from archgen.simulation.callback_numbering import CallbackNumbering
 from archgen.simulation.simulation_plan import (
     INACTIVE,
     MAX_UNIT_NS,
@@ -12,9 +13,12 @@ from archgen.simulation.simulation_plan import (
     PERIODIC,
     SLOT_ANY,
     SLOT_SAMPLED,
+    SUBSCRIPTION,
+    TIMER,
     TRIGGERED,
     PlannedActivity,
     PlannedOutput,
+    PlannedResource,
     PlannedWire,
     SimulationPlan,
 )
@@ -22,6 +26,8 @@ from archgen.simulation.thread_placement import ThreadPlacement
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_selective_arc
 
 _SECOND = 10**9
+_MATCH_DEPTH = 10
+"""How many samples wait for partners of the same time where no depth is known: the default of ROS 2."""
 PublishPauses = Mapping[tuple[str, str], Fraction]
 """The longest time between two chances to publish an output, in ns, by activity and output key."""
 
@@ -50,12 +56,11 @@ def build_plan(system: TimingSystem, pauses: PublishPauses | None = None) -> Sim
         system.tick / builder.scale,
         activities,
         wires,
+        tuple(builder.activity_numbers[arc.source] for arc in system.arcs),
         system.arcs,
-        tuple(builder.placement.processor_of_thread),
-        tuple(map(tuple, builder.placement.members)),
-        tuple(builder.placement.affinity),
-        tuple(builder.placement.pool_of_thread),
-        tuple(builder.placement.pools),
+        tuple(builder.callbacks.planned),
+        tuple(builder.placement.executors),
+        tuple(PlannedResource(resource.id, resource.order) for resource in system.resources.values()),
         tuple(builder.placement.processors),
         tuple(builder.links),
         tuple(builder.queues),
@@ -74,7 +79,9 @@ class _PlanBuilder:
         # Rounded up: a unit is at most MAX_UNIT_NS ns long.
         self.scale = max(1, -(-system.tick.numerator // (system.tick.denominator * MAX_UNIT_NS)))
         self.activity_numbers = {key: index for index, key in enumerate(system.activities)}
-        self.placement = ThreadPlacement(system, self.activity_numbers)
+        self.placement = ThreadPlacement(system)
+        self.callbacks = CallbackNumbering(system, self.activity_numbers, self.placement, self.scale)
+        self.resource_numbers = {key: index for index, key in enumerate(system.resources)}
         self.links: dict[str, int] = {}
         self.queues: dict[tuple[str, str, str], int] = {}
         self.unknown: dict[str, None] = {}
@@ -98,6 +105,7 @@ class _PlanBuilder:
     def plan_wire(self, arc: Arc) -> PlannedWire:
         """Plan the wire for an arc."""
         reader = self.system.activities[arc.target]
+        slot = _slot_of(reader, arc)
         best = self.ticks_to_units(arc.best or 0)
         # A latency that the analysis computed for a queued link is not a declared one: the simulation must be free to
         # exceed it, or it would prove nothing.
@@ -114,7 +122,7 @@ class _PlanBuilder:
             queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
         return PlannedWire(
             target=self.activity_numbers[arc.target],
-            slot=_slot_of(reader, arc),
+            slot=slot,
             best=best if declared is None else min(best, declared),
             worst=best if declared is None else declared,
             queue=queue,
@@ -123,6 +131,7 @@ class _PlanBuilder:
             transmission=transmission,
             declared_latency=declared,
             is_request=arc.role == "request",
+            callback=self.callbacks.callback_of_arc(reader, arc, is_sampled=slot == SLOT_SAMPLED) if slot < 0 else -1,
             is_selective=is_selective_arc(self.system, arc),
         )
 
@@ -133,8 +142,10 @@ class _PlanBuilder:
         # Here no execution time is needed, so it is not listed as unknown.
         if activity.wcet is None and (activity.response is not None or kind == ONCE):
             self.unknown.pop(f"execution time of {activity.id}", None)
-        needs_all = activity.mode == "all"
+        needs_all = activity.mode != "any"
         incoming = self.arcs_into.get(activity.id, [])
+        processor, allowed_cores = self.placement.processor_of(activity)
+        deadline = activity.deadline if activity.deadline is not None else activity.period
         return PlannedActivity(
             activity.id,
             kind,
@@ -151,10 +162,34 @@ class _PlanBuilder:
             tuple(wire_index for wire_index, _ in incoming),
             tuple(self.plan_output(activity, key) for key in self.output_keys(activity)),
             tuple(self.planned_calls(activity)),
-            self.placement.thread_of(activity),
+            processor,
+            allowed_cores,
             activity.priority,
+            None if deadline is None else self.ticks_to_units(deadline),
             activity.behaviour == "periodic",
+            self.clock_callback(activity) if kind == PERIODIC else -1,
+            self.callbacks.number_callback(activity, "", SUBSCRIPTION) if needs_all and activity.triggers else -1,
+            self.ticks_to_units(activity.within or 0) if activity.mode == "match" else None,
+            self.match_depths(activity) if activity.mode == "match" else (),
+            activity.keeps_dropped,
+            tuple(
+                (self.resource_numbers[key], self.ticks_to_units(use.best), self.ticks_to_units(use.worst))
+                for key, use in activity.uses.items()
+                if key in self.resource_numbers
+            ),
         )
+
+    def clock_callback(self, activity: Activity) -> int:
+        """Return the number of the callback that the clock of an activity starts, or the world outside."""
+        return self.callbacks.number_callback(
+            activity, "clock", TIMER if activity.behaviour == "periodic" else SUBSCRIPTION
+        )
+
+    def match_depths(self, activity: Activity) -> tuple[int, ...]:
+        """Return how many samples of each trigger wait for those with which they are matched."""
+        incoming = self.arcs_into.get(activity.id, [])
+        depths = ([arc.depth or _MATCH_DEPTH for _, arc in incoming if arc.input == key] for key in activity.triggers)
+        return tuple(max(input_depths, default=_MATCH_DEPTH) for input_depths in depths)
 
     def start_kind(self, activity: Activity) -> int:
         """Return what starts an activity, and note what is missing where nothing does."""
@@ -226,4 +261,4 @@ def _slot_of(reader: Activity, arc: Arc) -> int:
         return SLOT_SAMPLED if reader.behaviour == "periodic" else SLOT_ANY
     if arc.role == "answer" or arc.input not in reader.triggers:
         return SLOT_SAMPLED
-    return reader.triggers.index(arc.input) if reader.mode == "all" else SLOT_ANY
+    return reader.triggers.index(arc.input) if reader.mode != "any" else SLOT_ANY

@@ -48,7 +48,7 @@ class RunTotals:
             # A job's whole execution is counted when it starts, and may reach beyond the end of the run.
             [
                 min(busy, horizon * processor.cores)
-                for busy, processor in zip(run.threads.busy_time, self.plan.processors, strict=True)
+                for busy, processor in zip(run.processors.busy_time, self.plan.processors, strict=True)
             ]
         )
         self.link_wait = list(map(max, self.link_wait, run.wires.link_wait))

@@ -1,8 +1,8 @@
 """A system flattened to lists indexed by small integers, which the inner loop of the simulation reads quickly.
 
-Threads are what a scheduler sees: each activity has one of its own, except that those of a single-threaded container
-share one. Processors are what threads run on: a pinned core, the other cores of a host, or one of its own for a thread
-without a host.
+Callbacks are what executors run: one for each clock, subscription, service or client of an activity. An executor has
+threads, which are what the scheduler of a host sees. Processors are what threads run on: a pinned core, the other cores
+of a host, all of them where some thread may use a set, or cores of its own for an executor without a host.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.system.timing_system import Arc
 
 PERIODIC, TRIGGERED, ONCE, INACTIVE = range(4)
@@ -19,6 +20,10 @@ data are kept), or nothing that is known.
 """
 SLOT_SAMPLED, SLOT_ANY = -2, -1
 """Slots of wires that fire nobody, and of those that fire by themselves."""
+TIMER, SUBSCRIPTION, SERVICE, CLIENT = range(4)
+"""Kinds of callbacks, in the order in which a wait set of rclcpp lists them."""
+REENTRANT = -1
+"""The group of callbacks that exclude nobody, not even themselves."""
 MAX_UNIT_NS = 1000
 """The longest unit of time in ns: phases and execution times must be able to fall between the written figures."""
 
@@ -44,6 +49,10 @@ class PlannedWire:
     which is the same) is what a sample needs in addition to its turn on the link.
     """
     is_request: bool
+    callback: int = -1
+    """What a sample starts on arrival: a job, or the callback that stores it; -1 where it is stored at once, or waits for
+    samples of other inputs.
+    """
     is_selective: bool = False
     """Whether some jobs of its source may not send on it, without any promise: a conditional output without `max_gap`,
     less than one call for each activation, or an answer for one of several callers.
@@ -83,19 +92,67 @@ class PlannedActivity:
     wires: tuple[int, ...]
     outputs: tuple[PlannedOutput, ...]
     calls: tuple[tuple[Fraction, tuple[int, ...]], ...]
-    thread: int
+    processor: int
+    allowed_cores: tuple[int, ...]
+    """The cores of its processor that it may run on; empty for any."""
     priority: int | None
+    deadline: int | None
+    """How long after its activation it should end, for a scheduler that looks at that."""
     samples_world: bool
     """Whether it samples the world; if not, its activation is itself the event."""
+    clock_callback: int = -1
+    joint_callback: int = -1
+    """The callback that several inputs start together."""
+    within: int | None = None
+    """How far apart the stamps of samples may be that are matched; None where they are not matched by time."""
+    match_depths: tuple[int, ...] = ()
+    """How many samples wait for their partners, by slot."""
+    keeps_dropped: bool = True
+    uses: tuple[tuple[int, int, int], ...] = ()
+    """The resources it uses: number, shortest and longest time."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedCallback:
+    """What one entity of an executor starts: a job of its activity, or the storing of a sample (`is_storing`)."""
+
+    activity: int
+    kind: int
+    executor: int
+    group: int
+    """Callbacks of one group exclude one another; REENTRANT excludes nobody."""
+    is_storing: bool
+    bcet: int
+    wcet: int
+    depth: int = 0
+    """How many samples wait to be stored; 0 for any number."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedExecutor:
+    """Threads that run callbacks. `order` is the order in which they take them, None for any."""
+
+    id: str
+    threads: int
+    order: SchedulingOrder | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedResource:
+    """Something that works on one use at a time, such as a GPU. `order` is None for any."""
+
+    id: str
+    order: SchedulingOrder | None
 
 
 @dataclass(frozen=True, slots=True)
 class Processor:
-    """Cores that share one queue of threads. `host` is None for a thread without a host."""
+    """Cores that share one queue of threads. `host` is None for threads without a host; `order` is None for any."""
 
     name: str
     host: str | None
     cores: int
+    order: SchedulingOrder | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,17 +162,11 @@ class SimulationPlan:
     unit: Fraction
     activities: tuple[PlannedActivity, ...]
     wires: tuple[PlannedWire, ...]
+    wire_sources: tuple[int, ...]
     arcs: tuple[Arc, ...]
-    threads: tuple[int, ...]
-    """The processor of each thread."""
-    thread_members: tuple[tuple[int, ...], ...]
-    """The activities of each thread."""
-    affinity: tuple[int, ...]
-    """The core that each thread must have, among those of its processor; -1 for any."""
-    pool_of_thread: tuple[int, ...]
-    """The container whose threads it shares, -1 for none."""
-    pool_sizes: tuple[int, ...]
-    """The number of threads of each such container."""
+    callbacks: tuple[PlannedCallback, ...]
+    executors: tuple[PlannedExecutor, ...]
+    resources: tuple[PlannedResource, ...]
     processors: tuple[Processor, ...]
     links: tuple[str, ...]
     queues: tuple[tuple[str, str, str], ...]

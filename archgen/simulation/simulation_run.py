@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection
 from random import Random
 
-from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, ThreadStates, WireStates
+from archgen.simulation.executor_state import (
+    CallbackStates,
+    ExecutorStates,
+    ProcessorStates,
+    ResourceStates,
+    ThreadStates,
+    find_last_turn,
+)
+from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, SimulationPlan
 
 JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
@@ -17,25 +25,31 @@ NO_WIRE, ALL_WIRES, LOAD_ONLY = -1, -2, -3
 
 
 class SimulationRun:
-    """One run with one seed. Read `activities`, `wires`, `threads` and `event_count` when it is over."""
+    """One run with one seed. Read `activities`, `wires`, `processors` and `event_count` when it is over."""
 
     __slots__ = (
         "activities",
+        "aged_wires",
         "answer_wires",
+        "callbacks",
         "calls",
         "changed_processors",
+        "changed_resources",
         "draw_share",
         "event_count",
+        "executors",
         "heap",
         "is_critical",
         "outputs",
         "plan",
         "priority",
+        "processors",
         "publish_share",
+        "resources",
         "sequence",
         "threads",
         "wires",
-        "woken_threads",
+        "woken_executors",
         "worst_share",
     )
 
@@ -48,11 +62,17 @@ class SimulationRun:
         self.is_critical = seed % CRITICAL_INTERVAL == 0
         self.activities = ActivityStates(plan, dice, watched)
         self.wires = WireStates(plan, logged)
-        self.threads = ThreadStates(plan, dice)
+        last_turn = find_last_turn(seed)
+        self.callbacks = CallbackStates(plan)
+        self.executors = ExecutorStates(plan, dice, last_turn)
+        self.threads = ThreadStates()
+        self.processors = ProcessorStates(plan, dice, last_turn)
+        self.resources = ResourceStates(plan, dice, last_turn)
         if self.is_critical:
             self.activities.phase = [0] * len(plan.activities)
         # Drawn for each run and activity: some runs see mostly the longest times, others mostly what lies below.
-        self.worst_share = [1.0 if self.is_critical else dice.choice((0.2, 0.6, 0.9)) for _ in plan.activities]
+        shares = (1.0,) if self.is_critical else (0.9,) if last_turn is not None else (0.2, 0.6, 0.9)
+        self.worst_share = [dice.choice(shares) for _ in plan.activities]
         self.publish_share = [dice.choice((0.1, 0.5, 0.9)) for _ in plan.activities]
         self.priority = [planned.priority for planned in plan.activities]
         self.calls = [planned.calls for planned in plan.activities]
@@ -67,10 +87,17 @@ class SimulationRun:
         ]
         self.heap: list[tuple[int, int, int]] = []
         """Events: key (time and order), subject, detail."""
-        self.woken_threads: list[int] = []
-        """Threads that got something to do at this moment."""
+        self.aged_wires = [
+            tuple((wire, self.activities.job_ends[self.wires.source[wire]]) for wire in aged_wires)
+            for aged_wires in self.wires.aged_wires
+        ]
+        """The wires of which the age of what is read is recorded, each with the ends of its source's jobs."""
+        self.woken_executors: list[int] = []
+        """Executors that got something to do at this moment, or a thread free."""
         self.changed_processors: set[int] = set()
         """Processors with a free core or a newly ready thread at this moment."""
+        self.changed_resources: set[int] = set()
+        """Resources that somebody left at this moment, or waits for."""
         self.sequence = 0
         self.answer_wires = [plan.answers.get(wire_index, -1) for wire_index in range(len(plan.wires))]
         self.event_count = 0

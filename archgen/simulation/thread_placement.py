@@ -1,106 +1,122 @@
-"""Place activities on threads, and threads on processors, for a simulation plan."""
+"""Place activities on executors, and their threads on processors, for a simulation plan."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from archgen.simulation.simulation_plan import Processor
-from archgen.timing.system.core_placement import find_pins
+from archgen.model.declared_timing import SchedulingOrder
+from archgen.simulation.simulation_plan import PlannedExecutor, Processor
 from archgen.timing.system.timing_system import Activity, TimingSystem
+
+_ORDERS_BY_THREADS: dict[int | None, SchedulingOrder] = {None: "fifo", 1: "ros2_executor"}
+"""The order of an executor of which only the number of threads is known, or nothing."""
 
 
 class ThreadPlacement:
-    """Threads and processors, numbered as activities ask for them. `activity_numbers` is the number of each activity by
-    id.
-    """
+    """Executors and processors, numbered as activities ask for them."""
 
-    def __init__(self, system: TimingSystem, activity_numbers: Mapping[str, int]) -> None:
+    def __init__(self, system: TimingSystem) -> None:
         self.system = system
-        self.activity_numbers = activity_numbers
+        self.executors: list[PlannedExecutor] = []
         self.processors: list[Processor] = []
-        self.shared_processors: dict[tuple[str, int | None], int] = {}
-        self.processor_of_thread: list[int] = []
-        self.members: list[list[int]] = []
-        self.executor_threads: dict[str, int] = {}
-        self.pools: list[int] = []
-        self.pool_numbers: dict[str, int] = {}
-        self.pool_of_thread: list[int] = []
-        self.affinity: list[int] = []
-        self.pinned_cores: dict[str, list[int]] = {}
-        self.core_of_activity: dict[str, int | None] = {}
-        self.hosts_with_unpinned: set[str] = set()
-        for host in dict.fromkeys(a.host for a in system.activities.values() if a.host is not None):
-            # `pins` is the analysis's own placement, so that bounds and simulation agree on who may run where.
-            for activity_ids, core in find_pins(
-                system, [a for a in system.activities.values() if a.host == host]
-            ).items():
-                self.core_of_activity |= dict.fromkeys(activity_ids, core)
-                if core is None:
-                    self.hosts_with_unpinned.add(host)
-                elif core not in self.pinned_cores.setdefault(host, []):
-                    self.pinned_cores[host].append(core)
+        self.members: dict[str, list[Activity]] = {}
+        self.executor_numbers: dict[str, int] = {}
+        self.processor_numbers: dict[tuple[str | None, tuple[int, ...]], int] = {}
+        for activity in system.activities.values():
+            self.members.setdefault(_executor_key(system, activity), []).append(activity)
+        self.placed_cores = {activity.id: self._placed_cores(activity) for activity in system.activities.values()}
+        self.cores_of_host = {host: self._cores_of_host(host) for host in self._hosts()}
 
     def cores_by_host(self) -> dict[str, int]:
         """Return the number of cores of each host that something runs on; 1 where it is unknown."""
-        used_hosts = dict.fromkeys(processor.host for processor in self.processors if processor.host is not None)
-        return {host: self.system.cores.get(host) or 1 for host in used_hosts}
+        return {host: self._core_count(host) for host in self._hosts()}
 
-    def thread_of(self, activity: Activity) -> int:
-        """Return the number of an activity's thread: its own, or the one of its single-threaded container."""
-        container = activity.container
-        threads = self.system.threads.get(container) if container is not None else None
-        if container is not None and threads == 1:
-            if container not in self.executor_threads:
-                container_activities = [a for a in self.system.activities.values() if a.container == container]
-                self.executor_threads[container] = self.add_thread(container_activities, -1)
-            return self.executor_threads[container]
-        pool = -1
-        if container is not None and threads is not None:
-            if container not in self.pool_numbers:
-                self.pool_numbers[container] = len(self.pools)
-                self.pools.append(threads)
-            pool = self.pool_numbers[container]
-        return self.add_thread([activity], pool)
+    def executor_of(self, activity: Activity) -> int:
+        """Return the number of the executor that runs an activity."""
+        key = _executor_key(self.system, activity)
+        if key not in self.executor_numbers:
+            self.executor_numbers[key] = len(self.executors)
+            threads, order = self._threads_and_order(key, activity)
+            self.executors.append(PlannedExecutor(key, threads, order))
+        return self.executor_numbers[key]
 
-    def add_thread(self, members: list[Activity], pool: int) -> int:
-        """Add a thread on the cores where its members run, and return its number."""
-        self.members.append([self.activity_numbers[activity.id] for activity in members])
-        core = self.core_of_activity.get(members[0].id)
-        self.processor_of_thread.append(self.processor_of(members[0], core))
-        self.affinity.append(self.pinned_position(members[0].host, core))
-        self.pool_of_thread.append(pool)
-        return len(self.members) - 1
-
-    def processor_of(self, activity: Activity, core: int | None) -> int:
-        """Return the number of the processor that a thread may run on.
-
-        A core to which something is pinned is a processor of its own; the other cores of a host form one together.
+    def processor_of(self, activity: Activity) -> tuple[int, tuple[int, ...]]:
+        """Return the number of the processor on which an activity runs, and the cores there that it may use (empty for
+        any).
         """
-        host = activity.host
-        if host is None:
-            self.processors.append(Processor(activity.id, None, 1))
-            return len(self.processors) - 1
-        cores = self.system.cores.get(host) or 1
-        if cores == 1 or self.has_no_free_core(host):
-            core = None
-        if (host, core) not in self.shared_processors:
-            self.shared_processors[host, core] = len(self.processors)
-            free = (
-                max(cores - len(self.pinned_cores.get(host, ())), 1)
-                if cores > 1 and not self.has_no_free_core(host)
-                else cores
-            )
-            name = host if core is None else f"{host} core {core}"
-            self.processors.append(Processor(name, host, free if core is None else 1))
-        return self.shared_processors[host, core]
+        if activity.host is None:
+            executor = self.executors[self.executor_of(activity)]
+            return self._number(None, (self.executor_of(activity),), Processor(executor.id, None, executor.threads)), ()
+        host, cores = activity.host, self.placed_cores[activity.id]
+        count = self._core_count(host)
+        all_cores = tuple(range(count))
+        shared_cores, is_joint = self.cores_of_host[host]
+        allowed = cores or shared_cores
+        if is_joint:
+            # Everything competes in one queue: sets of cores may overlap in any way.
+            processor = Processor(host, host, count, self._order_of(host, all_cores))
+            return self._number(host, (), processor), () if allowed == all_cores else allowed
+        if cores and count > 1:
+            name = f"{host} core {cores[0]}"
+            return self._number(host, cores, Processor(name, host, 1, self._order_of(host, cores))), ()
+        order = self._order_of(host, shared_cores)
+        return self._number(host, (), Processor(host, host, len(shared_cores), order)), ()
 
-    def has_no_free_core(self, host: str) -> bool:
-        """Return whether pins leave no core for the unpinned activities of a host, which then run on any core."""
-        cores = self.system.cores.get(host) or 1
-        return 1 < cores <= len(self.pinned_cores.get(host, ())) and host in self.hosts_with_unpinned
+    def _number(self, host: str | None, cores: tuple[int, ...], processor: Processor) -> int:
+        if (host, cores) not in self.processor_numbers:
+            self.processor_numbers[host, cores] = len(self.processors)
+            self.processors.append(processor)
+        return self.processor_numbers[host, cores]
 
-    def pinned_position(self, host: str | None, core: int | None) -> int:
-        """Return the core that a pinned thread must have on a host where no core is left; -1 for any."""
-        if host is None or core is None or not self.has_no_free_core(host):
-            return -1
-        return self.pinned_cores[host].index(core) % (self.system.cores.get(host) or 1)
+    def _hosts(self) -> list[str]:
+        hosts = [activity.host for activity in self.system.activities.values() if activity.host is not None]
+        return list(dict.fromkeys(hosts))
+
+    def _core_count(self, host: str) -> int:
+        return self.system.cores.get(host) or 1
+
+    def _order_of(self, host: str, cores: tuple[int, ...]) -> SchedulingOrder | None:
+        """Return the order that all of some cores have; None where they differ, or none is written."""
+        host_order = self.system.host_orders.get(host)
+        orders = {self.system.core_orders.get((host, core), host_order) for core in cores}
+        return orders.pop() if len(orders) == 1 else None
+
+    def _placed_cores(self, activity: Activity) -> tuple[int, ...]:
+        """Return the cores to which an activity is pinned, as far as its host has them; one thread runs where its first
+        pinned member is.
+        """
+        key = _executor_key(self.system, activity)
+        threads, _ = self._threads_and_order(key, activity)
+        candidates = self.members[key] if threads == 1 else [activity]
+        pins = (
+            tuple(core for core in member.cores if member.host is not None and core < self._core_count(member.host))
+            for member in candidates
+            if member.host == activity.host
+        )
+        return next((cores for cores in pins if cores), ())
+
+    def _cores_of_host(self, host: str) -> tuple[tuple[int, ...], bool]:
+        """Return the cores on which what is not pinned runs, and whether all threads of the host share one queue."""
+        placements = [self.placed_cores[a.id] for a in self.system.activities.values() if a.host == host]
+        all_cores = tuple(range(self._core_count(host)))
+        # A core is kept for what is pinned to it alone; a set of cores keeps nobody away.
+        kept_cores = {cores[0] for cores in placements if len(cores) == 1}
+        free_cores = tuple(core for core in all_cores if core not in kept_cores)
+        has_sets = any(len(cores) > 1 for cores in placements)
+        is_crowded = not free_cores and any(not cores for cores in placements)
+        return free_cores or all_cores, len(all_cores) > 1 and (has_sets or is_crowded)
+
+    def _threads_and_order(self, key: str, activity: Activity) -> tuple[int, SchedulingOrder | None]:
+        """Return an executor's number of threads and order."""
+        executor = self.system.executors.get(activity.executor)
+        if executor is not None:
+            # Where nobody wrote how many threads a container has, there is one for each member.
+            return executor.threads or len(self.members[key]), executor.order
+        threads = self.system.threads.get(activity.container or "")
+        return threads or 1, _ORDERS_BY_THREADS.get(threads)
+
+
+def _executor_key(system: TimingSystem, activity: Activity) -> str:
+    """Return the executor's key; without one, that of its container if its threads are known, else of the activity."""
+    if activity.executor in system.executors:
+        return activity.executor
+    is_shared = activity.container is not None and system.threads.get(activity.container) is not None
+    return f"container {activity.container}" if is_shared else f"activity {activity.id}"

@@ -1,84 +1,154 @@
-"""Choose what each thread does next, as executors and containers do, and how urgent that is."""
+"""Choose what the threads of an executor do next, and how urgent that is on their host."""
 
 from __future__ import annotations
 
 from heapq import heappush
 
-from archgen.simulation.run_state import FIRST_FIRST, LAST_FIRST, RANDOM_ORDER
+from archgen.simulation.executor_state import (
+    BY_DEADLINE,
+    BY_PRIORITY,
+    FAVOURED_OTHERS,
+    FIRST_FIRST,
+    FIXED_RANKS,
+    LAST_FIRST,
+    RANDOM_ORDER,
+    TAKE_TURNS,
+    WAIT_SET,
+)
 from archgen.simulation.simulation_run import SimulationRun
 
 _LARGEST_KEY = 1 << 61
 
 
-def choose_job(run: SimulationRun, thread: int) -> None:
-    """Let an idle thread take its next job, if it has one, and queue the thread for a core."""
-    threads, activities = run.threads, run.activities
-    activity = _next_callback(run, thread) if threads.is_shared[thread] else threads.members[thread][0]
-    if activity < 0 or not activities.pending[activity]:
-        return
-    if threads.pool[thread] >= 0 and not _enter_pool(run, thread):
-        return
-    threads.is_idle[thread] = False
-    threads.current_activity[thread] = activity
-    threads.time_left[thread] = -1
+def feed_threads(run: SimulationRun, executor: int) -> None:
+    """Let the free threads of an executor take callbacks, as long as some are ready."""
+    executors, callbacks, threads = run.executors, run.callbacks, run.threads
+    while executors.free_count[executor] and executors.waiting_count[executor]:
+        callback = executors.only_callback[executor]
+        if callback < 0:
+            callback = _next_callback(run, executor)
+            if callback < 0:
+                return
+        executors.free_count[executor] -= 1
+        callbacks.claim_count[callback] += 1
+        callbacks.is_group_busy[callbacks.group[callback]] = True
+        idle_threads = executors.idle_threads[executor]
+        thread = idle_threads.pop() if idle_threads else threads.add_thread()
+        activity = callbacks.activity[callback]
+        threads.callback[thread] = callback
+        threads.time_left[thread] = -1
+        threads.processor[thread] = run.processors.of_activity[activity]
+        threads.allowed_cores[thread] = run.processors.allowed_cores[activity]
+        # The job that a thread has taken on is the oldest that no other thread has.
+        threads.job_activation[thread] = callbacks.pending[callback][callbacks.claim_count[callback] - 1][0]
+        queue_thread(run, thread)
+
+
+def queue_thread(run: SimulationRun, thread: int) -> None:
+    """Let a thread wait for a core."""
+    threads, processors = run.threads, run.processors
     processor = threads.processor[thread]
+    activity = run.callbacks.activity[threads.callback[thread]]
     run.sequence += 1
     priority = run.priority[activity]
     # The heap pops the smallest key first, and a larger priority is more urgent.
-    urgency = _draw_urgency(run, activity, thread, processor) if priority is None else -1 - priority
-    threads.urgency[thread], threads.ready_order[thread] = urgency, run.sequence
-    heappush(threads.ready[processor], (urgency, run.sequence, thread))
+    urgency = (
+        -1 - priority
+        if priority is not None and processors.uses_priority[processor]
+        else _draw_urgency(run, activity, thread, processor)
+    )
+    order = run.sequence
+    if processors.victim[processor] == activity and processors.scheduler[processor] == FAVOURED_OTHERS:
+        # Of equal priorities too it comes last.
+        order += _LARGEST_KEY
+    threads.urgency[thread], threads.ready_order[thread] = urgency, order
+    heappush(processors.ready[processor], (urgency, order, thread))
     run.changed_processors.add(processor)
 
 
 def _draw_urgency(run: SimulationRun, activity: int, thread: int, processor: int) -> int:
     """Return the urgency of a thread without a written priority: at least 0, so after all threads that have one."""
-    scheduler = run.threads.scheduler[processor]
+    scheduler = run.processors.scheduler[processor]
     if scheduler == FIRST_FIRST:
-        return run.activities.pending[activity][0][0]
+        return run.threads.job_activation[thread]
     if scheduler == LAST_FIRST:
         return _LARGEST_KEY - run.sequence
-    return int(run.draw_share() * _LARGEST_KEY) if scheduler == RANDOM_ORDER else run.threads.rank[thread]
+    if scheduler == RANDOM_ORDER:
+        return int(run.draw_share() * _LARGEST_KEY)
+    if scheduler == FIXED_RANKS:
+        return run.processors.rank[activity]
+    if scheduler == FAVOURED_OTHERS:
+        return int(activity == run.processors.victim[processor])
+    if scheduler == BY_DEADLINE:
+        deadline = run.plan.activities[activity].deadline
+        return _LARGEST_KEY if deadline is None else run.threads.job_activation[thread] + deadline
+    return 0
 
 
-def _enter_pool(run: SimulationRun, thread: int) -> bool:
-    """Take one of a container's threads, or wait for one; return whether one was free."""
-    threads = run.threads
-    pool = threads.pool[thread]
-    if threads.free_count[pool]:
-        threads.free_count[pool] -= 1
-        return True
-    if not threads.is_queued[thread]:
-        threads.is_queued[thread] = True
-        threads.pool_queue[pool].append(thread)
-    return False
+def _next_callback(run: SimulationRun, executor: int) -> int:
+    """Choose the next callback of an executor; -1 for none."""
+    callbacks, executors = run.callbacks, run.executors
+    pending, members = callbacks.pending, executors.callbacks[executor]
+    if not executors.excludes[executor]:
+        # One thread: nothing else of this executor runs now.
+        ready = [callback for callback in members if pending[callback]]
+    else:
+        ready = [
+            callback
+            for callback in members
+            if len(pending[callback]) > callbacks.claim_count[callback]
+            and (callbacks.group[callback] < 0 or not callbacks.is_group_busy[callbacks.group[callback]])
+        ]
+    order = executors.order[executor]
+    if order == WAIT_SET:
+        return _next_of_wait_set(run, executor, ready)
+    if not ready:
+        return -1
+    if order == TAKE_TURNS:
+        return _next_in_turn(run, executor, ready)
+    if len(ready) == 1:
+        return ready[0]
+    return min(ready, key=lambda callback: _callback_key(run, executor, order, callback))
 
 
-def leave_pool(run: SimulationRun, pool: int) -> None:
-    """Return one of a container's threads to its pool, and wake the thread that has waited longest for one."""
-    threads = run.threads
-    threads.free_count[pool] += 1
-    if threads.pool_queue[pool]:
-        thread = threads.pool_queue[pool].popleft()
-        threads.is_queued[thread] = False
-        # `woken_threads` is a stack: at its bottom the thread comes after those that woke by themselves at this moment.
-        run.woken_threads.insert(0, thread)
+def _next_of_wait_set(run: SimulationRun, executor: int, ready: list[int]) -> int:
+    """Choose as an executor of rclcpp does: it serves each callback that it last saw ready once, then looks again."""
+    wait_set = run.executors.wait_set[executor]
+    if not ready:
+        return -1
+    for callback in tuple(wait_set):
+        if callback in ready:
+            wait_set.remove(callback)
+            return callback
+    # What is left was served meanwhile, or belongs to a group that is busy: the new wait set is made without it.
+    wait_set.clear()
+    wait_set.extend(ready)
+    return wait_set.popleft()
 
 
-def _next_callback(run: SimulationRun, thread: int) -> int:
-    """Choose the next callback as a ROS 2 single-threaded executor does: it serves all that it last saw ready."""
-    activities, threads = run.activities, run.threads
-    executor_round = threads.executor_round[thread]
-    while executor_round:
-        activity = executor_round.popleft()
-        if activities.pending[activity]:
-            return activity
-    members = [activity for activity in threads.members[thread] if activities.pending[activity]]
-    # The wait set of rclcpp lists timers before subscriptions.
-    timers = [activity for activity in members if activities.period[activity]]
-    executor_round.extend(timers)
-    for activity in members:
-        if not activities.period[activity]:
-            # One turn for each subscription with data, not for each sample.
-            executor_round.extend([activity] * len({wire for _, wire, _ in activities.pending[activity]}))
-    return executor_round.popleft() if executor_round else -1
+def _next_in_turn(run: SimulationRun, executor: int, ready: list[int]) -> int:
+    """Choose the first ready callback after the one that was served last, going round."""
+    last_turn = run.executors.last_turn[executor]
+    chosen = next((callback for callback in sorted(ready) if callback > last_turn), min(ready))
+    run.executors.last_turn[executor] = chosen
+    return chosen
+
+
+def _callback_key(run: SimulationRun, executor: int, order: int, callback: int) -> tuple[float, float]:
+    """Return how urgent a ready callback is within its executor; the smallest comes first."""
+    callbacks = run.callbacks
+    job = callbacks.pending[callback][callbacks.claim_count[callback]]
+    activity = callbacks.activity[callback]
+    if order == LAST_FIRST:
+        return (-job[3], 0)
+    if order == RANDOM_ORDER:
+        return (run.draw_share(), 0)
+    if order == FIXED_RANKS:
+        return (run.executors.ranks[callback], 0)
+    if order == BY_PRIORITY:
+        priority = run.priority[activity]
+        return (1 if priority is None else -priority, job[3])
+    if order == BY_DEADLINE:
+        deadline = run.plan.activities[activity].deadline
+        return (_LARGEST_KEY if deadline is None else job[0] + deadline, job[3])
+    return (int(order == FAVOURED_OTHERS and activity == run.executors.victim[executor]), job[3])

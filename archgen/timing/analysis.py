@@ -193,6 +193,8 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
+    storing_waits: Mapping[str, TimingValue] = field(default_factory=dict)
+    """How long a message may wait to be stored while its reader is activated, by reader, in ns."""
     notes: tuple[Reason, ...] = ()
     searched_terms: int = field(default=0, compare=False, repr=False)
     """How many terms the searches looked at: what the analysis has cost, on whatever computer."""

@@ -6,7 +6,12 @@ from operator import attrgetter
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason
-from archgen.timing.load.host_loads import build_response_times, build_run_responses, find_host_loads
+from archgen.timing.load.host_loads import (
+    build_response_times,
+    build_run_responses,
+    build_storing_waits,
+    find_host_loads,
+)
 from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
@@ -99,6 +104,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         ),
         derived=rates.derived,
         services=find_service_loads(state, rates.paces, responses),
+        storing_waits=build_storing_waits(state),
         notes=notes,
         searched_terms=state.searched_terms,
     )

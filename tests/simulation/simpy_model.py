@@ -188,12 +188,16 @@ class Model:
         while True:
             clocks = [one for one in members if one.waiting and one.task.period]
             others = [one for one in members if one.waiting and not one.task.period]
-            turns = clocks + [one for one in others for _ in {wire for _, wire, _ in one.waiting}]
+            # A subscription has one turn, and takes the oldest of its own.
+            turns = [(one, -1) for one in clocks]
+            turns += [(one, wire) for one in others for wire in sorted({wire for _, wire, _ in one.waiting})]
             if not turns:
                 yield self.bells[name]
                 continue
-            for one in turns:
-                if one.waiting:
+            for one, wire in turns:
+                place = next((at for at, job in enumerate(one.waiting) if job[1] == wire), None)
+                if place is not None:
+                    one.waiting.insert(0, one.waiting.pop(place))
                     started, reads = self.now, self._start(one)
                     yield self.env.timeout(one.task.cost)
                     self._end(one, started, reads)

@@ -9,8 +9,8 @@ from fractions import Fraction
 import pytest
 
 from archgen.simulation.event_loop import process_events
+from archgen.simulation.executor_state import FIRST_FIRST
 from archgen.simulation.plan_builder import build_plan
-from archgen.simulation.run_state import FIRST_FIRST
 from archgen.simulation.simulation_run import SimulationRun
 from archgen.timing.system.timing_system import Activity, TimingSystem
 from tests.simulation.simpy_model import Job, Model, Task, Wire
@@ -94,10 +94,13 @@ def ours(tasks: list[Task], cores: dict[str, str]) -> dict[str, list[Job]]:
     run = SimulationRun(plan, 0, range(len(plan.activities)), range(len(plan.wires)))
     run.activities.phase = [task.phase for task in tasks]
     run.activities.every_counter = [0] * len(tasks)
-    run.threads.members = list(plan.thread_members)
-    run.threads.scheduler = [FIRST_FIRST] * len(plan.processors)
-    ranked = {plan.threads[step.thread] for step in plan.activities if step.priority is not None}
-    run.threads.is_preemptive = [at in ranked for at in range(len(plan.processors))]
+    run.executors.callbacks = [
+        tuple(sorted(members, key=lambda one: (plan.callbacks[one].kind, plan.callbacks[one].activity, one)))
+        for members in run.executors.callbacks
+    ]
+    run.processors.scheduler = [FIRST_FIRST] * len(plan.processors)
+    ranked = {step.processor for step in plan.activities if step.priority is not None}
+    run.processors.is_preemptive = [at in ranked for at in range(len(plan.processors))]
     process_events(run, UNTIL)
     return {
         step.id: [

@@ -17,7 +17,7 @@ from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, is_known_bound, name_missing_element, sum_bounds
-from archgen.timing.system.timing_system import Activity, Arc, is_selective_arc
+from archgen.timing.system.timing_system import Activity, Arc, is_sampled, is_selective_arc
 
 _SELECTIVE_ASSUMPTIONS = {
     "data": "{0} publishes {1} for this very input",
@@ -86,7 +86,11 @@ class StepDelays:
         if reader.behaviour is None or reader.behaviour == "once":
             return _undefined_delay(reader)
         verb_text = "takes the answer of" if arc.role == "answer" else "reads"
-        why = f"{verb_text} {arc.topic}{_gap_text(self.arrivals.activation_gap(reader.id))}"
+        gap_text, storing_text = (
+            _gap_text(self.arrivals.activation_gap(reader.id)),
+            _storing_text(self.storing_wait(arc)),
+        )
+        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}"
         return StepDelay(value, why, _span_of_keys(reader, "period", "rate"))
 
     def holding_age(self, arc: Arc) -> TimingValue:
@@ -94,7 +98,8 @@ class StepDelays:
         reader = self.analysis.system.activities[arc.target]
         gap = self.arrivals.sent_gap(arc)
         if not self.arrivals.fires_reader(arc):
-            return gap
+            storing_wait = self.storing_wait(arc)
+            return gap if storing_wait is ZERO_VALUE else sum_bounds((gap, storing_wait))
         jitter_wait = self.arrivals.duration_value(reader.jitter) if arc.role == "data" else ZERO_VALUE
         # All-of uses a sample once, when the set is complete: it is no older than the gap of its output (a newer one
         # would have replaced it), nor than the wait for the others. Calls make it work again with the same set, so that
@@ -186,7 +191,17 @@ class StepDelays:
             )
             return others_gap if thinning_wait is ZERO_VALUE else sum_bounds((others_gap, thinning_wait))
         # Of what works once, or nobody knows when, the gap is unbounded or unknown as well.
-        return self.arrivals.activation_gap(reader.id)
+        gap, storing_wait = self.arrivals.activation_gap(reader.id), self.storing_wait(arc)
+        return gap if storing_wait is ZERO_VALUE else sum_bounds((gap, storing_wait))
+
+    def storing_wait(self, arc: Arc) -> TimingValue:
+        """Return how long a message that has arrived may wait to be stored while its reader is activated.
+
+        `ZERO_VALUE` (the very object: callers compare with `is`) where it is there at once.
+        """
+        if not is_sampled(self.analysis.system.activities[arc.target], arc):
+            return ZERO_VALUE
+        return self.analysis.storing_waits.get(arc.target, ZERO_VALUE)
 
     def _condition_wait(self, arc: Arc) -> TimingValue:
         """Return what an output that is not always published adds: its promised gap, or an assumption."""
@@ -218,6 +233,13 @@ def _gap_text(gap: TimingValue) -> str:
         if gap.value is not None and is_known_bound(gap)
         else ""
     )
+
+
+def _storing_text(wait: TimingValue) -> str:
+    """Return the words for the time that a message may wait to be stored."""
+    if wait.value is None or not wait.value:
+        return ""
+    return f", which may wait {figure_wording.format_duration(wait.value)} to be stored"
 
 
 def _thinning_text(activity: Activity) -> str:

@@ -34,15 +34,17 @@ class CorePath:
     the steps wait for, with the number of those that can work at once. Of the other threads only those count that may be
     as urgent. `held_jobs` are the jobs among theirs that may wait though a core is idle: of what is foreign, and behind
     something less urgent. `lanes_of_origin` says which of the other threads, or containers, what comes of an origin may wait
-    for. `start_cost` is the work of a step that works only at the start, and so has no events.
+    for; `lane_widths`, how many cores each of them may use at once. `own_cost` is the work of steps that is in no thread's
+    jobs: of one that works only at the start, and so has no events, and of those that are reentrant.
     """
 
     cost: int
-    start_cost: int
+    own_cost: int
     last_step: LastStep | None
     own_jobs: tuple[tuple[int, WayKey | None], ...]
     crowds: tuple[tuple[list[int], int], ...]
     other_lanes: tuple[list[int], ...]
+    lane_widths: tuple[int, ...]
     held_jobs: frozenset[int]
     lanes_of_origin: Mapping[Origin, list[int]]
     lane_count: int
@@ -70,14 +72,16 @@ class CorePaths:
 
     def _build_path(self, steps: tuple[str, ...]) -> CorePath:
         cores = self.cores
-        units = dict.fromkeys(cores.unit_of[step] for step in steps)
-        level = min((cores.threads[unit].lowest_priority for unit in units), key=urgency_of)
+        all_units = dict.fromkeys(cores.unit_of[step] for step in steps)
+        level = min((cores.threads[unit].lowest_priority for unit in all_units), key=urgency_of)
+        # What is reentrant waits for no thread of its own: other activations of it are a crowd's work.
+        units = {unit: None for unit in all_units if unit not in cores.reentrant_units}
         crowds = self._find_crowds(steps, units)
         # What holds the threads of a container does so k at a time, with k threads: that counts for more than the cores.
         other_units = [
             unit
             for unit, numbers in cores.job_numbers.items()
-            if unit not in units
+            if unit not in all_units
             and (numbers or cores.origins_of_unit[unit])
             and self._counts_at(unit, level)
             and cores.crowd_of.get(unit[0]) not in crowds
@@ -92,7 +96,7 @@ class CorePaths:
         costs = [cores.system.activities[step].wcet or 0 for step in steps]
         return CorePath(
             sum(costs),
-            costs[-1] if steps[-1] in cores.inner_triggers.silent_ids and last_step is None else 0,
+            self._find_own_cost(steps, last_step),
             last_step,
             tuple(
                 (number, self._find_way_before(cores.jobs[number], units))
@@ -102,6 +106,7 @@ class CorePaths:
             ),
             tuple((numbers, min(threads, cores.core_count)) for (_, threads), numbers in crowds.items()),
             tuple(cores.job_numbers[unit] for unit in other_units if cores.job_numbers[unit]),
+            tuple(cores.reentrant_units.get(unit, 1) for unit in other_units if cores.job_numbers[unit]),
             frozenset(number for number in other_jobs if self._is_held(number, units, level)),
             lanes_of_origin,
             len(waiting_lanes),
@@ -112,7 +117,7 @@ class CorePaths:
         cores, name = self.cores, steps[-1]
         cost, ways = cores.system.activities[name].wcet, cores.ways_to[name]
         is_only_way = len(steps) == 1 or len(ways) == 1
-        if not cost or len(cores.unit_of[name]) > 1 or not is_only_way:
+        if not cost or len(cores.unit_of[name]) > 1 or not is_only_way or cores.unit_of[name] in cores.reentrant_units:
             return None
         if not all(cores.cascades.volumes.get(way.entry) for way in ways):
             return None
@@ -127,6 +132,16 @@ class CorePaths:
                 )
                 for number, way in enumerate(ways)
             ),
+        )
+
+    def _find_own_cost(self, steps: tuple[str, ...], last_step: LastStep | None) -> int:
+        """Return the work of the steps of a path that is among no thread's jobs, each counted once."""
+        cores = self.cores
+        starts_only = steps[-1] in cores.inner_triggers.silent_ids and last_step is None
+        return sum(
+            cores.system.activities[step].wcet or 0
+            for step in steps
+            if cores.unit_of[step] in cores.reentrant_units or (starts_only and step == steps[-1])
         )
 
     def _find_crowds(self, steps: Iterable[str], units: Mapping[ThreadUnit, None]) -> dict[tuple[str, int], list[int]]:

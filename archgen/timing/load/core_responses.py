@@ -31,6 +31,7 @@ from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import LevelCascades, Origin
 from archgen.timing.load.run_ways import EntryWay, Priority
+from archgen.timing.load.storing_waits import hold_before_activation
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -43,10 +44,11 @@ _MAX_JOBS_IN_ROUND = 20_000
 
 
 class CoreResponses(NamedTuple):
-    """The responses of what a core runs, and the ways to each activity with their delays."""
+    """The responses of what a core runs, the ways to each activity with their delays, and how long storing waits."""
 
     response_of: dict[str, WorstResponse]
     ways_to: dict[str, tuple[EntryWay, ...]]
+    storing_waits: dict[str, WorstResponse]
 
 
 class _LevelBound(NamedTuple):
@@ -115,7 +117,27 @@ class _CoreSolver:
                     response = response._replace(value=longest)
             responses[name] = response
             ways_to[name] = tuple(ways)
-        return CoreResponses(responses, ways_to)
+        waits = {
+            name: self._find_storing_wait(name)
+            for name in self.core.inner_triggers.order
+            if self.core.system.activities[name].storing
+        }
+        return CoreResponses(responses, ways_to, waits)
+
+    def _find_storing_wait(self, name: str) -> WorstResponse:
+        """Return how long a message that an activity only stores may wait until an activation that does not read it."""
+        busy_period, cause, demand = self.bounds[self.core.thread_of[name].lowest_priority]
+        if busy_period is None:
+            return WorstResponse(None, "host", cause)
+        origin = Origin("activity", name)
+        if not self._enters(name) or self._is_idle(name) or not demand.level.volumes.get(origin):
+            return WorstResponse(busy_period, "host")
+        streams, volume = demand.streams_of(origin), demand.level.volumes[origin]
+        try:
+            hold = hold_before_activation(demand.demand_function(), volume, streams, busy_period, self.budget)
+        except DivergedError:
+            return WorstResponse(busy_period, "host")
+        return WorstResponse(hold, "host")
 
     def _bound_level(self, level: Priority, cascades: LevelCascades) -> _LevelBound:
         """Return the busy period of a level, or why there is none."""
@@ -154,7 +176,7 @@ class _CoreSolver:
         start_work = sum(self.core.system.activities[each].wcet or 0 for each in thread.unit if self._is_idle(each))
         if start_work:
             return WorstResponse(self._extend_busy_period(bound, start_work), tier)
-        if level is None or len(thread.unit) > 1:
+        if level is None or len(thread.unit) > 1 or thread.is_reentrant:
             return WorstResponse(bound.busy_period, tier)
         return WorstResponse(self._response_by_activation(name, bound), tier)
 
@@ -217,7 +239,8 @@ class _CoreSolver:
             return None
         level = self._level_of_steps(ways[0].steps)
         bound = self.bounds.get(level)
-        if level is None or bound is None or bound.busy_period is None or len(self.core.thread_of[name].unit) > 1:
+        thread = self.core.thread_of[name]
+        if level is None or bound is None or bound.busy_period is None or len(thread.unit) > 1 or thread.is_reentrant:
             return None
         if ways[0].entry.kind == "activity" and not self._enters(str(ways[0].entry.key)):
             return None

@@ -32,11 +32,11 @@ class CoreShares:
 
     def fills_thread(self, unit: ThreadUnit) -> bool:
         """Whether a thread is busy all the time."""
-        return self._unit_shares[unit] >= 1
+        return self._unit_shares[unit] >= self.cores.reentrant_units.get(unit, 1)
 
     def fills_core(self, steps: tuple[str, ...], path: CorePath) -> bool:
         """Whether the threads of some steps, and what keeps all cores busy beside them, fill a core in the long run."""
-        units = dict.fromkeys(self.cores.unit_of[step] for step in steps)
+        units = {unit: None for step in steps if (unit := self.cores.unit_of[step]) not in self.cores.reentrant_units}
         core_count = self.cores.core_count
         rough_share = sum([self._rough_shares[unit] for unit in units])
         if not path.crowds and rough_share * (core_count - 1) + self._rough_total < core_count << _SHARE_BITS:
@@ -47,7 +47,11 @@ class CoreShares:
                 *(self._sum_jobs(numbers) / threads for numbers, threads in path.crowds),
             ]
         )
-        other_shares = [self._unit_shares[self.cores.jobs[lane[0]].unit] for lane in path.other_lanes]
+        other_shares = [
+            self._unit_shares[self.cores.jobs[lane[0]].unit] / width
+            for lane, width in zip(path.other_lanes, path.lane_widths, strict=True)
+            for _ in range(width)
+        ]
         if path.crowds:
             return own_share + sum_fractions([Fraction(0), *other_shares]) / core_count >= 1
         numerator, denominator = find_blocked_time(other_shares, Fraction(0), core_count)

@@ -22,6 +22,7 @@ from archgen.timing.load.event_streams import (
 )
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
+from archgen.timing.system.thread_pools import is_reentrant
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, calls_per_activation
 from archgen.timing.system.trigger_graph import TriggerGraph
 
@@ -38,6 +39,8 @@ class PropagationState:
     event_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
     responses: dict[str, WorstResponse] = field(default_factory=dict)
     diverged: set[str] = field(default_factory=set)
+    storing_waits: dict[str, WorstResponse] = field(default_factory=dict)
+    """How long a message that an activity only stores may wait for that while the activity is activated."""
     ways_to: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
     """The ways on which events reach each activity of a core with triggers inside."""
     run_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
@@ -169,7 +172,7 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
         ways = ()
     if not ways:
         # Up to R - B later than activations.
-        return _complete_streams(source, event_model, calls, response.value)
+        return _complete_streams(state, source, event_model, calls, response.value)
     streams: list[EventStream] = []
     for way in ways:
         entering = entering_model(state, way)
@@ -180,7 +183,7 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
             entering if calls is None else streams_of_calls(entering, calls),
             max((way.delay or 0) - way.best_before - _best_case(source, calls), 0),
         )
-    return _keep_completions_apart(source, merge_streams(streams), calls)
+    return _keep_completions_apart(state, source, merge_streams(streams), calls)
 
 
 def entering_model(state: PropagationState, way: EntryWay) -> EventStreams | UnknownCause:
@@ -192,10 +195,13 @@ def entering_model(state: PropagationState, way: EntryWay) -> EventStreams | Unk
     return state.event_models[str(way.entry.key)]
 
 
-def _complete_streams(source: Activity, streams: EventStreams, calls: Fraction | None, response: int) -> EventStreams:
+def _complete_streams(
+    state: PropagationState, source: Activity, streams: EventStreams, calls: Fraction | None, response: int
+) -> EventStreams:
     """Return the event model of completions, or of calls: up to R - B later than activations."""
     sent = streams if calls is None else streams_of_calls(streams, calls)
-    return _keep_completions_apart(source, delay_streams(sent, max(response - _best_case(source, calls), 0)), calls)
+    sent = delay_streams(sent, max(response - _best_case(source, calls), 0))
+    return _keep_completions_apart(state, source, sent, calls)
 
 
 def _best_case(source: Activity, calls: Fraction | None) -> int:
@@ -203,10 +209,14 @@ def _best_case(source: Activity, calls: Fraction | None) -> int:
     return (source.bcet or 0) if calls is None else 0
 
 
-def _keep_completions_apart(source: Activity, streams: EventStreams, calls: Fraction | None) -> EventStreams:
-    """Keep completions at least B apart."""
+def _keep_completions_apart(
+    state: PropagationState, source: Activity, streams: EventStreams, calls: Fraction | None
+) -> EventStreams:
+    """Keep completions at least B apart, where one activation ends before the next begins."""
     # A declared response may rest on several executions at once: its completions are not known to be B apart.
-    return keep_events_apart(streams, _best_case(source, calls)) if source.response is None else streams
+    if source.response is not None or is_reentrant(state.system, source):
+        return streams
+    return keep_events_apart(streams, _best_case(source, calls))
 
 
 def _downstream_cause(cause: UnknownCause) -> UnknownCause:

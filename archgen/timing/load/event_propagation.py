@@ -7,26 +7,28 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import solve_inner_core
 from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
-from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.event_streams import EventStreams, delay_streams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.load_system import build_load_system
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
+from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
 from archgen.timing.system.timing_system import Arc, TimingSystem
-from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
+from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
 _MAX_SWEEPS = 300
 """Sweeps over a loop before it is given up as diverged."""
@@ -41,9 +43,18 @@ def propagate_events(
 
     A caller that propagates several times passes the same budgets to all runs.
     """
-    return _Propagation(
-        PropagationState(system, triggers), find_resources(system), group_budgets or GroupBudgets()
+    load_system = build_load_system(system)
+    load_triggers = triggers if load_system is system else find_triggers(load_system)
+    state = _Propagation(
+        PropagationState(load_system, load_triggers), find_resources(load_system), group_budgets or GroupBudgets()
     ).run_to_fixed_point()
+    # What is asked of the state later is about the activities that somebody wrote.
+    state.system, state.triggers = system, triggers
+    for name in load_system.activities.keys() - system.activities.keys():
+        for table in (state.event_models, state.responses, state.ways_to, state.run_arcs, state.storing_waits):
+            table.pop(name, None)
+        state.diverged.discard(name)
+    return state
 
 
 class _Propagation:
@@ -67,6 +78,11 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.roaming_ids = {
+            key: frozenset(name for unit in resource.roaming_units for name in unit)
+            for key, resource in self.resources.items()
+            if resource.roaming_units
+        }
         self.inner_cores: dict[str, InnerCore] = {}
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
@@ -105,7 +121,35 @@ class _Propagation:
                 self._update_step(steps[0])
             else:
                 self._iterate_steps(steps)
+        self._find_storing_waits()
         return self.state
+
+    def _find_storing_waits(self) -> None:
+        """Find how long storing callbacks may wait, where the responses on a core were found without them."""
+        state = self.state
+        readers = {name for name, activity in state.system.activities.items() if activity.storing}
+        for step, resource in self.resources.items():
+            names = [name for name in resource.members if name in readers]
+            if names and step not in self.inner_triggers:
+                models = self._models_of(step)
+                state.storing_waits |= find_core_waits(state.system, resource, models, names, self.budget_of[step])
+        for name in readers.difference(self.resources_of):
+            own_core = ProcessingResource(name, None, 1, ((name,),))
+            state.storing_waits |= find_core_waits(
+                state.system, own_core, state.event_models, (name,), self.budget_of[name]
+            )
+
+    def _models_of(self, step: str) -> Mapping[str, EventStreams | UnknownCause]:
+        """Return the event models as a resource sees them."""
+        roaming_ids = self.roaming_ids.get(step, frozenset())
+        return {**self.state.event_models, **{name: self._model_of_roaming(name) for name in roaming_ids}}
+
+    def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:
+        """Return the event model of work that another core may have begun: what comes here came up to a response ago."""
+        event_model, response = self.state.event_models[name], self.state.responses[name]
+        if isinstance(event_model, UnknownCause) or not event_model:
+            return event_model
+        return response.cause if response.value is None else delay_streams(event_model, response.value)
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
@@ -125,8 +169,9 @@ class _Propagation:
         """Add what the responses on each resource rest on."""
         for step, resource in self.resources.items():
             for name in (name for unit in resource.foreign_units for name in unit):
-                for foreign_step in self.resources_of.get(name, ()) if resource.cores > 1 else ():
-                    successors[foreign_step].append(step)
+                if resource.cores > 1 or name in self.roaming_ids.get(step, ()):
+                    for foreign_step in self.resources_of.get(name, ()):
+                        successors[foreign_step].append(step)
         for name in self.state.system.activities:
             successors[name] += (step for step in self.disturbed_resources.get(name, ()) if self._rests_on(step, name))
         for step, inner_triggers in self.inner_triggers.items():
@@ -213,7 +258,7 @@ class _Propagation:
             new_responses = find_responses(
                 state.system,
                 self.resources[step],
-                state.event_models,
+                self._models_of(step) if step in self.roaming_ids else state.event_models,
                 AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
             )
             new_responses = {
@@ -240,13 +285,15 @@ class _Propagation:
 
         def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
-                return state.event_models[str(origin.key)]
+                name = str(origin.key)
+                is_roaming = step in self.inner_cores and name in self.roaming_ids.get(step, ())
+                return self._model_of_roaming(name) if is_roaming else state.event_models[name]
             key = id(entry_arc.arc)
             if key not in entering_models:
                 entering_models[key] = arriving_model(state, entry_arc.arc)
             return entering_models[key]
 
-        new_responses, new_ways = (
+        new_responses, new_ways, new_waits = (
             solve_inner_core(self.inner_cores[step], find_model, self.budget_of[step])
             if step in self.inner_cores
             else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
@@ -262,6 +309,7 @@ class _Propagation:
         )
         state.responses.update(new_responses)
         state.ways_to.update(new_ways)
+        state.storing_waits.update(new_waits)
         return changed
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:

@@ -78,6 +78,21 @@ def build_run_responses(state: PropagationState, responses: Mapping[str, Respons
     return runs
 
 
+def build_storing_waits(state: PropagationState) -> dict[str, TimingValue]:
+    """Return how long a message may wait to be stored while its reader is activated, in ns, by reader."""
+    return {name: _build_storing_wait(state, name, wait) for name, wait in state.storing_waits.items()}
+
+
+def _build_storing_wait(state: PropagationState, name: str, wait: WorstResponse) -> TimingValue:
+    """Return one reader's wait, with what is missing; a declared response says that what it reads is stored in time."""
+    if wait.value is not None:
+        return TimingValue(wait.value * state.system.tick) if wait.value else ZERO_VALUE
+    if state.system.activities[name].response is not None:
+        return TimingValue(Fraction(0), assumptions=(f"what {name} reads is stored in time",))
+    missing = wait.cause.missing
+    return TimingValue(None, not missing, missing, wait.cause.notes)
+
+
 def _cores_text(resource: ProcessingResource | None) -> str:
     """Return the words for the cores whose work is counted."""
     if resource is None or not resource.joined:

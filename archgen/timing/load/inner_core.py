@@ -13,6 +13,7 @@ from archgen.timing.load.level_cascades import LevelCascades, build_level_cascad
 from archgen.timing.load.run_ways import EntryWay, Priority, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork, lower_crowded_threads
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import is_reentrant
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -70,7 +71,7 @@ def _build_plain_thread(system: TimingSystem, unit: tuple[str, ...]) -> ThreadWo
     written_priorities = [priority for priority in priorities if priority is not None]
     lowest = min(written_priorities) if len(written_priorities) == len(priorities) else None
     highest = max(written_priorities, default=None)
-    return ThreadWork(unit, (), None, lowest, highest, Fraction(0), system.activities[unit[0]].container)
+    return ThreadWork(unit, (), None, lowest, highest, Fraction(0), is_reentrant(system, system.activities[unit[0]]))
 
 
 def urgency_of(level: Priority) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from heapq import nlargest
 
 from archgen.timing.load.busy_cores import divide_among_cores
@@ -70,7 +70,7 @@ class PathWork:
 
     def _path_work(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
         """Return the work of the threads of a path in a window, as the time for which they can hold it up."""
-        total, jobs = path.start_cost, self.cores.jobs
+        total, jobs = path.own_cost, self.cores.jobs
         for number, way_before in path.own_jobs:
             _, origin, work, _, _ = jobs[number]
             # At t0 nothing waits in the threads of the path themselves.
@@ -110,16 +110,19 @@ class PathWork:
             lane_works.append(lane_work)
             pending_works.append(pending_work)
         if not any(pending_works) and not path.crowds:
-            return divide_among_cores(lane_works, 0, core_count)
+            return divide_among_cores(_split_lanes(path, lane_works), 0, core_count)
         most_pending = held_work + self._most_waiting(path, pending_by_origin)
         blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
         if path.crowds:
             return blocked_time
         # All that each thread may have in the end: less, where a single one has most of it.
         all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
-        blocked_time = min(blocked_time, divide_among_cores(all_works, 0, core_count))
+        blocked_time = min(blocked_time, divide_among_cores(_split_lanes(path, all_works), 0, core_count))
         if max(lane_works) > blocked_time:
-            blocked_time = min(blocked_time, divide_among_cores(lane_works, self._most_pending(path), core_count))
+            most_pending = self._most_pending(path)
+            blocked_time = min(
+                blocked_time, divide_among_cores(_split_lanes(path, lane_works), most_pending, core_count)
+            )
         return blocked_time
 
     def _most_pending(self, path: CorePath) -> int:
@@ -147,6 +150,15 @@ class PathWork:
             for lane in path.lanes_of_origin[origin]:
                 waiting_works[lane] += work
         return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
+
+
+def _split_lanes(path: CorePath, lane_works: Sequence[int]) -> Sequence[int]:
+    """Return the work of each lane that one core at a time may do: what is reentrant counts as several lanes."""
+    if all(width == 1 for width in path.lane_widths):
+        return lane_works
+    return [
+        part for work, width in zip(lane_works, path.lane_widths, strict=True) for part in [-(-work // width)] * width
+    ]
 
 
 def _find_calm_time(stream: EventStream) -> int:

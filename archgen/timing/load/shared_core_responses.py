@@ -31,13 +31,16 @@ from archgen.timing.load.event_streams import (
     EventStreams,
     delay_streams,
     earliest_arrivals,
+    max_arrivals,
     streams_of_calls,
 )
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
+from archgen.timing.load.storing_waits import longest_busy_window
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
 
 _MAX_SWEEPS = 60
@@ -259,7 +262,50 @@ class _SharedCoreSolver:
             for name, ways in self.cores.ways_to.items()
         }
         return CoreResponses(
-            {name: self._build_response(name, ways_to[name]) for name in self.cores.inner_triggers.order}, ways_to
+            {name: self._build_response(name, ways_to[name]) for name in self.cores.inner_triggers.order},
+            ways_to,
+            {
+                name: self._find_storing_wait(name)
+                for name in self.cores.inner_triggers.order
+                if self.cores.system.activities[name].storing
+            },
+        )
+
+    def _find_storing_wait(self, name: str) -> WorstResponse:
+        """Return how long a message that an activity only stores may wait until an activation that does not read it."""
+        cause = self.cause_of.get(name)
+        if cause is not None:
+            return WorstResponse(None, "cores", cause)
+        try:
+            stored_ids = list_storing_ids(self.cores.system.activities[name])
+            waits = [self._hold_in_thread(each) for each in (name, *stored_ids)]
+        except DivergedError:
+            return WorstResponse(None, "cores", DIVERGED_CAUSE)
+        return WorstResponse(max(waits), "cores")
+
+    def _hold_in_thread(self, name: str) -> int:
+        """Return how long the thread of an activity may have work until an activation comes that is not part of it."""
+        path, spend = self.paths.look_up((name,)), self.budget.start_search()
+        last_step = path.last_step
+        if last_step is None:
+            return self._find_window(path, 0, max(path.cost, 1), spend, None)
+        streams = self._activation_streams(last_step)
+
+        def work_within(window: int) -> int:
+            return self.work.find_time_beside(path, window, spend) + last_step.cost * max_arrivals(streams, window)
+
+        window = 1
+        while (work := work_within(window)) > window:
+            window = work
+        # As in `storing_waits`: the last activation of the window comes at its end.
+        return longest_busy_window(
+            lambda window: (
+                work_within(window)
+                + last_step.cost * (max_arrivals(streams, window + 1) - 1 - max_arrivals(streams, window))
+            ),
+            window,
+            spend,
+            1,
         )
 
     def _build_response(self, name: str, ways: Sequence[EntryWay]) -> WorstResponse:

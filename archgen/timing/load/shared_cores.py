@@ -13,6 +13,7 @@ from archgen.timing.load.level_cascades import LevelCascades, Origin, build_leve
 from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
+from archgen.timing.system.thread_pools import find_crowded_pools, find_thread_count, is_reentrant
 from archgen.timing.system.timing_system import TimingSystem
 
 WayKey = tuple[str, int]
@@ -33,7 +34,7 @@ class ThreadJob(NamedTuple):
 class SharedCores:
     """Cores that share their work.
 
-    `crowd_of` is the container whose threads an activity waits for, with the number of its threads. `job_numbers` are the
+    `crowd_of` is the process for whose threads an activity waits, with the number of its threads. `job_numbers` are the
     places in `jobs` of what each thread does; `origins_of_unit` is what keeps a thread busy, or passes through it without
     any work.
     """
@@ -52,6 +53,8 @@ class SharedCores:
     jobs: tuple[ThreadJob, ...]
     job_numbers: Mapping[ThreadUnit, list[int]]
     origins_of_unit: Mapping[ThreadUnit, frozenset[Origin]]
+    reentrant_units: Mapping[ThreadUnit, int]
+    """Units of which several activations may run at once, with how many."""
 
 
 def prepare_shared_cores(
@@ -78,7 +81,7 @@ def prepare_shared_cores(
         ways_to,
         resource.units,
         unit_of,
-        _find_crowds(system, resource),
+        _find_crowds(system, resource.members, resource.cores),
         frozenset(foreign_ids),
         {thread.unit: thread for thread in rank_threads(system, all_units, inner_triggers.silent_ids)},
         jobs,
@@ -87,6 +90,11 @@ def prepare_shared_cores(
             # Also of what takes no time: an event that waits for its turn here has not led to what comes after.
             unit: frozenset(way.entry for name in unit for way in ways_to.get(name, ()))
             for unit in all_units
+        },
+        {
+            unit: min(find_thread_count(system, unit[0]) or resource.cores, resource.cores)
+            for unit in all_units
+            if is_reentrant(system, system.activities[unit[0]])
         },
     )
 
@@ -107,19 +115,17 @@ def _cut_crowded_ways(system: TimingSystem, inner_triggers: InnerTriggers) -> In
     )
 
 
-def _find_crowds(system: TimingSystem, resource: ProcessingResource) -> dict[str, tuple[str, int]]:
-    """Return the containers that have several threads, but fewer than members."""
-    members_by_container: dict[str, list[str]] = {}
-    for name in resource.members:
-        container = system.activities[name].container
-        if container is not None:
-            members_by_container.setdefault(container, []).append(name)
-    return {
-        name: (container, threads)
-        for container, names in members_by_container.items()
-        if 1 < (threads := system.threads.get(container) or 1) < len(names)
-        for name in names
-    }
+def _find_crowds(system: TimingSystem, names: Iterable[str], core_count: int) -> dict[str, tuple[str, int]]:
+    """Return for each activity that may wait for one of several threads the process, and how many it has.
+
+    What is reentrant and has as many threads as it asks for is a crowd of its own: its activations fill all cores.
+    """
+    activities = [system.activities[name] for name in names]
+    crowd_of = {name: (pool.key, pool.threads or 1) for name, pool in find_crowded_pools(system, activities).items()}
+    for activity in activities:
+        if is_reentrant(system, activity):
+            crowd_of.setdefault(activity.id, (f"activity {activity.id}", core_count))
+    return crowd_of
 
 
 def _list_jobs(

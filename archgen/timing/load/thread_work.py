@@ -14,6 +14,7 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, su
 from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, is_reentrant
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -59,7 +60,8 @@ class ThreadWork:
     lowest_priority: int | None
     highest_priority: int | None
     share: Fraction
-    container: str | None
+    is_reentrant: bool = False
+    """Whether several activations of its only activity may run at once."""
 
 
 def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
@@ -79,7 +81,7 @@ def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventMode
         _lowest_priority(system, unit),
         max(priorities, default=None),
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
-        system.activities[unit[0]].container,
+        is_reentrant(system, system.activities[unit[0]]),
     )
 
 
@@ -88,15 +90,13 @@ def lower_crowded_threads(
 ) -> list[ThreadWork]:
     """Lower the priority of threads that wait for work of less priority than their own.
 
-    In a container with fewer threads than members, each waits for the least urgent member too. And whatever is as
-    urgent as some of the container's members must let pass the work that piled up while its threads were held: more
+    In a process with fewer threads than it may ask for, each waits for the least urgent member too. And whatever is as
+    urgent as some of its members must let pass the work that piled up while its threads were held: more
     than what comes in a busy period of their priority, but no more than in one of the least urgent member's.
     """
-    lowest_by_container = _lowest_in_crowded(system, threads, event_models)
+    lowest_of = _lowest_in_crowded(system, threads, event_models)
     lowered_threads = [
-        replace(thread, lowest_priority=lowest_by_container[thread.container])
-        if thread.container and thread.container in lowest_by_container
-        else thread
+        replace(thread, lowest_priority=lowest_of[thread.unit[0]]) if thread.unit[0] in lowest_of else thread
         for thread in threads
     ]
     # Only threads whose priorities differ pass a delay on downwards.
@@ -118,19 +118,19 @@ def lower_crowded_threads(
 def _lowest_in_crowded(
     system: TimingSystem, threads: Sequence[ThreadWork], event_models: EventModels
 ) -> dict[str, int | None]:
-    """Return the least priority in each container that has fewer threads (but several) than members that ever work."""
-    members_by_container: dict[str, list[str]] = {}
-    for thread in threads:
-        if thread.container is not None:
-            members_by_container.setdefault(thread.container, []).extend(
-                name for name in thread.unit if event_models[name] != ()
-            )
-    return {
-        container: _lowest_priority(system, names)
-        for container, names in members_by_container.items()
-        # A single thread is one unit and needs no lowering: its members run one after the other anyway.
-        if 1 < (system.threads.get(container) or 1) < len(names)
-    }
+    """Return the least priority in the process of each activity that may wait for one of several threads there."""
+    # A single thread is one unit and needs no lowering: its members run one after the other anyway. Of what never works
+    # nobody has to wait for a thread.
+    working_ids = [name for thread in threads for name in thread.unit if event_models[name] != ()]
+    crowded_pools = find_crowded_pools(system, [system.activities[name] for name in working_ids])
+    members_by_pool: dict[ThreadPool, list[str]] = {}
+    for name, pool in crowded_pools.items():
+        members_by_pool.setdefault(pool, []).append(name)
+    lowest_by_pool = {pool: _lowest_priority(system, names) for pool, names in members_by_pool.items()}
+    pools = [
+        (thread.unit, crowded_pools.get(next((n for n in thread.unit if n in crowded_pools), ""))) for thread in threads
+    ]
+    return {unit[0]: lowest_by_pool[pool] for unit, pool in pools if pool is not None}
 
 
 def _lowest_reached(priority: int | None, priority_spans: Iterable[tuple[int | None, int | None]]) -> int | None:

@@ -1,7 +1,8 @@
-"""Who shares a processor with whom: activities in units (one thread each), units on cores.
+"""Who shares a processor with whom: activities in units (one thread, or one callback group, each), units on cores.
 
 A core to which something is pinned is kept for what is pinned there; everything else shares the remaining cores. Where
-none remains, what is not pinned may run anywhere, and interferes everywhere. On a host of which nobody wrote how many cores
+none remains, what is not pinned may run anywhere, and interferes everywhere. What is pinned to a set of cores shares them
+with all that may run on any of them. On a host of which nobody wrote how many cores
 it has, only what is pinned has a core that is known, and a single thread, which uses one however many there are.
 """
 
@@ -12,15 +13,27 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from archgen.model.graph_search import find_strong_components
+from archgen.timing.system.thread_pools import (
+    ThreadPool,
+    find_crowded_pools,
+    find_pool,
+    is_crowded,
+    is_reentrant,
+    name_lane,
+)
 from archgen.timing.system.timing_system import Activity, TimingSystem
 
 ThreadUnit = tuple[str, ...]
-"""Activities that one thread runs, one after the other."""
+"""Activities that one thread runs, or that a callback group keeps apart: one after the other."""
+CoreSet = tuple[int, ...]
+"""Numbers of the cores on which something may run."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessingResource:
     """Cores that some units share. `foreign_units` are analysed elsewhere, but may run here.
+
+    Those of them that may have begun on a core that is none of these are the `roaming_units`.
 
     `joined`: some unit here waits for a thread of a container that units on other cores hold. Then all that runs on any
     of these cores is foreign, for only one thing is sure: while one of them waits, one of the cores works.
@@ -32,6 +45,7 @@ class ProcessingResource:
     cores: int
     units: tuple[ThreadUnit, ...]
     foreign_units: tuple[ThreadUnit, ...] = ()
+    roaming_units: tuple[ThreadUnit, ...] = ()
     assumptions: tuple[str, ...] = ()
     joined: bool = False
     missing: tuple[str, ...] = ()
@@ -59,91 +73,129 @@ def find_resources(system: TimingSystem) -> tuple[ProcessingResource, ...]:
         for host, members in activities_by_host.items()
         for resource in _resources_of_host(system, host, members)
     )
-    return (*on_hosts, *_resources_of_containers(system))
+    return (*on_hosts, *_resources_of_pools(system))
 
 
 def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
     """Yield one core for each thread where there are cores enough for all of them, else the resource as it is."""
     if resource.cores == 1 or resource.joined or resource.foreign_units or len(resource.units) > resource.cores:
         return (resource,)
-    containers = [system.activities[name].container for name in resource.members]
-    is_crowded = any(
-        container is not None and 1 < (system.threads.get(container) or 1) < containers.count(container)
-        for container in containers
-    )
-    if is_crowded:
+    members = [system.activities[name] for name in resource.members]
+    if any(is_reentrant(system, activity) for activity in members) or find_crowded_pools(system, members):
         return (resource,)
     return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
 
 
-def find_unplaced_containers(system: TimingSystem) -> dict[str, list[Activity]]:
-    """Return the members of each container without a host that has fewer threads than members."""
-    members_by_container: dict[str, list[Activity]] = defaultdict(list)
-    for activity in system.activities.values():
-        if activity.host is None and activity.container is not None:
-            members_by_container[activity.container].append(activity)
+def find_unplaced_pools(system: TimingSystem) -> dict[ThreadPool, list[Activity]]:
+    """Return the members of each process without a host that has fewer threads than there may be asked for."""
     # Where `threads` is not written, there is one for each member, and none waits for another.
     return {
-        name: members
-        for name, members in members_by_container.items()
-        if len(members) > (system.threads.get(name) or len(members))
+        pool: members
+        for pool, members in _group_unplaced(system).items()
+        if (pool.threads == 1 and len(members) > 1) or (pool.threads != 1 and is_crowded(system, pool, members))
     }
 
 
-def _resources_of_containers(system: TimingSystem) -> Iterable[ProcessingResource]:
-    """Yield a resource for each crowded container without a host, with as many dedicated cores as it has threads."""
-    for name, members in find_unplaced_containers(system).items():
-        threads = system.threads.get(name) or 1
-        units = (
-            (tuple(activity.id for activity in members),)
-            if threads == 1
-            else tuple((activity.id,) for activity in members)
-        )
-        assumption = (
-            f"assuming {'a dedicated core' if threads == 1 else f'{threads} dedicated cores'} for container {name}"
-        )
-        yield ProcessingResource(name, None, threads, units, assumptions=(assumption,))
+def _group_unplaced(system: TimingSystem) -> dict[ThreadPool, list[Activity]]:
+    """Return the activities without a host by the process that runs them."""
+    members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
+    for activity in system.activities.values():
+        pool = find_pool(system, activity) if activity.host is None else None
+        if pool is not None:
+            members_by_pool[pool].append(activity)
+    return members_by_pool
+
+
+def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
+    """Yield a resource for each process without a host in which one may wait for another, with dedicated cores."""
+    unplaced_pools = find_unplaced_pools(system)
+    for pool, members in _group_unplaced(system).items():
+        units = _group_lanes(system, members)
+        if pool not in unplaced_pools and len(units) == len(members):
+            continue
+        cores = (pool.threads if pool in unplaced_pools else None) or len(units)
+        assumption = f"assuming {'a dedicated core' if cores == 1 else f'{cores} dedicated cores'} for {pool.key}"
+        name = pool.key.partition(" ")[2]
+        yield ProcessingResource(name, None, cores, units, assumptions=(assumption,))
+
+
+def _group_lanes(system: TimingSystem, members: Iterable[Activity]) -> tuple[ThreadUnit, ...]:
+    """Return the activities of each thread, or callback group."""
+    names_by_lane: dict[str, list[str]] = defaultdict(list)
+    for activity in members:
+        names_by_lane[name_lane(system, activity)].append(activity.id)
+    return tuple(map(tuple, names_by_lane.values()))
 
 
 def _resources_of_host(system: TimingSystem, host: str, members: Iterable[Activity]) -> Iterable[ProcessingResource]:
-    """Return the resources of a host: one for its only core, else one per pinned core and one for the rest."""
+    """Return the resources of a host: one for its only core, else one for each set of cores, and one for the rest."""
     cores = system.cores.get(host)
-    units = find_pins(system, members)
+    core_sets = find_core_sets(system, members)
     # One thread uses one core, however many there are.
-    if cores == 1 or (cores is None and _count_working(system, units) <= 1):
-        return (ProcessingResource(host, host, 1, tuple(units)),)
-    pinned_units: dict[int, list[ThreadUnit]] = defaultdict(list)
+    if cores == 1 or (cores is None and _count_working(system, core_sets) <= 1):
+        return (ProcessingResource(host, host, 1, tuple(core_sets)),)
+    pinned_units: dict[CoreSet, list[ThreadUnit]] = defaultdict(list)
     unpinned_units: list[ThreadUnit] = []
-    for unit, core in units.items():
-        (unpinned_units if core is None else pinned_units[core]).append(unit)
+    for unit, core_set in core_sets.items():
+        (pinned_units[core_set] if core_set else unpinned_units).append(unit)
     place_units = _pinned_and_shared if cores is not None else _pinned_and_open
     return _join_resources(system, tuple(place_units(system, host, pinned_units, tuple(unpinned_units))))
 
 
 def _count_working(system: TimingSystem, units: Iterable[ThreadUnit]) -> int:
     """Return how many threads need a core for some time."""
-    return sum(any(system.activities[name].wcet != 0 for name in unit) for unit in units)
+    # What is reentrant works on several cores at once.
+    return sum(
+        1 + is_reentrant(system, system.activities[unit[0]])
+        for unit in units
+        if any(system.activities[name].wcet != 0 for name in unit)
+    )
 
 
 def _pinned_and_open(
     system: TimingSystem,
     host: str,
-    pinned_units: Mapping[int, list[ThreadUnit]],
+    pinned_units: Mapping[CoreSet, list[ThreadUnit]],
     unpinned_units: tuple[ThreadUnit, ...],
 ) -> Iterable[ProcessingResource]:
     """Yield the resources of a host of which nobody wrote how many cores it has: only pinned cores are known."""
     missing = (name_missing_cores(host),) if unpinned_units else ()
     # A pin to core 3 says that there are cores 0 to 3. If one of them is left, what is not pinned runs there, or on others
     # that nobody wrote, and disturbs nothing that is pinned.
-    is_core_left = len(pinned_units) <= max(pinned_units, default=-1)
-    for core, units in pinned_units.items():
-        notes = tuple(_torn_thread_notes(system, units))
-        pinned_missing = () if is_core_left else missing
-        yield ProcessingResource(
-            f"{host} core {core}", host, 1, tuple(units), assumptions=notes, missing=pinned_missing
-        )
+    pinned_cores = {core for core_set in pinned_units for core in core_set}
+    is_core_left = len(pinned_cores) <= max(pinned_cores, default=-1)
+    for resource in _pinned_resources(system, host, pinned_units):
+        yield replace(resource, missing=() if is_core_left else missing)
     if unpinned_units:
         yield ProcessingResource(host, host, 1, unpinned_units, missing=missing)
+
+
+def _pinned_resources(
+    system: TimingSystem, host: str, units_by_set: Mapping[CoreSet, list[ThreadUnit]]
+) -> Iterable[ProcessingResource]:
+    """Yield the resource of each set of cores; what is foreign there are the units of all sets that share a core."""
+    for core_set, units in units_by_set.items():
+        foreign_units = tuple(
+            unit
+            for other_set, other_units in units_by_set.items()
+            if other_set != core_set and not set(core_set).isdisjoint(other_set)
+            for unit in other_units
+        )
+        yield ProcessingResource(
+            _name_cores(system, host, core_set),
+            host,
+            len(core_set),
+            tuple(units),
+            foreign_units,
+            foreign_units,
+            tuple(_torn_thread_notes(system, units)),
+        )
+
+
+def _name_cores(system: TimingSystem, host: str, core_set: CoreSet) -> str:
+    if len(core_set) == system.cores.get(host):
+        return host
+    return f"{host} core {core_set[0]}" if len(core_set) == 1 else f"{host} cores {', '.join(map(str, core_set))}"
 
 
 _MISSING_CORES = "cores of "
@@ -162,40 +214,42 @@ def is_missing_cores(missing_name: str) -> bool:
 def _pinned_and_shared(
     system: TimingSystem,
     host: str,
-    pinned_units: Mapping[int, list[ThreadUnit]],
+    pinned_units: Mapping[CoreSet, list[ThreadUnit]],
     unpinned_units: tuple[ThreadUnit, ...],
 ) -> Iterable[ProcessingResource]:
-    """Yield the pinned cores, then the cores that everything else shares."""
+    """Yield the cores to which something is pinned, then the cores that everything else shares."""
     cores = system.cores.get(host) or 1
-    free_cores = cores - len(pinned_units)
-    # With a pin on every core nothing is left for the unpinned units. They may land on any core, so they interfere on
-    # each one, and everything pinned interferes with them.
-    foreign_units = () if free_cores > 0 else unpinned_units
-    for core, units in pinned_units.items():
-        yield ProcessingResource(
-            f"{host} core {core}", host, 1, tuple(units), foreign_units, tuple(_torn_thread_notes(system, units))
-        )
-    if unpinned_units and free_cores > 0:
+    pinned_cores = {core for core_set in pinned_units for core in core_set}
+    free_cores = cores - len(pinned_cores)
+    units_by_set = dict(pinned_units)
+    if unpinned_units and not free_cores:
+        # With a pin on every core nothing is left for the unpinned units. They may land on any core, so they interfere
+        # on each one, and everything pinned interferes with them.
+        all_cores = tuple(range(cores))
+        units_by_set[all_cores] = [*units_by_set.pop(all_cores, ()), *unpinned_units]
+    yield from _pinned_resources(system, host, units_by_set)
+    if unpinned_units and free_cores:
         assumptions = ("cores to which something is pinned are kept for it",) if pinned_units else ()
         yield ProcessingResource(host, host, free_cores, unpinned_units, assumptions=assumptions)
-    elif unpinned_units:
-        yield ProcessingResource(
-            host, host, cores, unpinned_units, tuple(unit for units in pinned_units.values() for unit in units)
-        )
 
 
 def _torn_thread_notes(system: TimingSystem, units: Iterable[ThreadUnit]) -> Iterable[str]:
-    """Yield an assumption for each single-threaded container whose members are pinned to several cores."""
+    """Yield an assumption for each thread, or callback group, whose members are pinned to several cores."""
     for unit in units:
         activities = [system.activities[name] for name in unit]
-        if len({activity.core for activity in activities if _is_pinned(system, activity)}) > 1:
-            yield f"container {activities[0].container} has one thread: it runs where the first pinned member is"
+        if len({core_set for activity in activities if (core_set := _find_cores(system, activity))}) > 1:
+            pool = find_pool(system, activities[0])
+            key = pool.key if pool else activities[0].id
+            if pool and pool.threads == 1:
+                yield f"{key} has one thread: it runs where the first pinned member is"
+            else:
+                yield f"a callback group of {key} runs where the first pinned member is"
 
 
 def _join_resources(
     system: TimingSystem, host_resources: tuple[ProcessingResource, ...]
 ) -> Iterable[ProcessingResource]:
-    """Join the cores over which the members of a container with fewer threads than members are spread."""
+    """Join the cores over which the members of a process with fewer threads than it may ask for are spread."""
     # A member may wait for a thread that is held by a member on another core, and that one for its core: the wait
     # crosses cores, so that the work of all joined cores bounds it (tests/timing/test_shared_threads.py has an example
     # of 11 ms).
@@ -207,56 +261,59 @@ def _join_resources(
         if len(groups[position]) == 1:
             yield resource
             continue
-        joined_units = [
-            unit
-            for other_position in groups[position]
-            for unit in (*host_resources[other_position].units, *host_resources[other_position].foreign_units)
-        ]
-        foreign_units = tuple(unit for unit in dict.fromkeys(joined_units) if unit not in resource.units)
-        yield replace(resource, foreign_units=foreign_units, joined=True)
+        joined_resources = [host_resources[other_position] for other_position in groups[position]]
+        own_units = dict.fromkeys(unit for joined in joined_resources for unit in joined.units)
+        foreign_units = dict.fromkeys(
+            unit for joined in joined_resources for unit in (*joined.units, *joined.foreign_units)
+        )
+        yield replace(
+            resource,
+            foreign_units=tuple(unit for unit in foreign_units if unit not in resource.units),
+            roaming_units=tuple(unit for unit in foreign_units if unit not in own_units),
+            joined=True,
+        )
 
 
 def _cores_sharing_threads(
     system: TimingSystem, host_resources: tuple[ProcessingResource, ...]
 ) -> dict[int, list[int]]:
-    """Return for each resource, by position, those that share the threads of a container with it."""
-    positions_by_container: dict[str, list[int]] = defaultdict(list)
+    """Return for each resource, by position, those that share the threads of a process with it."""
+    members = [system.activities[name] for resource in host_resources for name in resource.members]
+    crowded_pools = find_crowded_pools(system, members)
+    positions_by_pool: dict[ThreadPool, dict[int, None]] = defaultdict(dict)
     for position, resource in enumerate(host_resources):
         for name in resource.members:
-            container = system.activities[name].container
-            if container is not None and system.threads.get(container) != 1:
-                positions_by_container[container].append(position)
+            if name in crowded_pools:
+                positions_by_pool[crowded_pools[name]][position] = None
     neighbours: dict[int, list[int]] = {position: [] for position in range(len(host_resources))}
-    for container, positions in positions_by_container.items():
-        if len(positions) > (system.threads.get(container) or len(positions)):
-            for position in positions:
-                neighbours[position] += [
-                    other_position for other_position in dict.fromkeys(positions) if other_position != position
-                ]
+    for positions in positions_by_pool.values():
+        for position in positions:
+            neighbours[position] += [other_position for other_position in positions if other_position != position]
     return neighbours
 
 
-def find_pins(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadUnit, int | None]:
-    """Return the units of some activities, each with the core it is pinned to, or None.
+def find_core_sets(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadUnit, CoreSet]:
+    """Return the units of some activities, each with the cores to which it is pinned, none where it is not.
 
-    A container with one thread is one unit, pinned where its first pinned member is; everything else is a unit by
-    itself. A pin to a core that does not exist counts as none.
+    A unit is pinned where its first pinned member is. A pin to a core that does not exist counts as none.
     """
-    # Keys are prefixed, since an activity and a container may have the same id.
-    activities_by_thread: dict[str, list[Activity]] = {}
-    for activity in members:
-        is_alone = activity.container is None or system.threads.get(activity.container) != 1
-        activities_by_thread.setdefault(
-            f"activity {activity.id}" if is_alone else f"container {activity.container}", []
-        ).append(activity)
     return {
-        tuple(member.id for member in thread_members): next(
-            (member.core for member in thread_members if _is_pinned(system, member)), None
+        unit: next(
+            (core_set for name in unit if (core_set := _find_cores(system, system.activities[name]))),
+            (),
         )
-        for thread_members in activities_by_thread.values()
+        for unit in _group_lanes(system, members)
     }
 
 
-def _is_pinned(system: TimingSystem, activity: Activity) -> bool:
+def find_pins(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadUnit, int | None]:
+    """Return the units of some activities, each with the only core on which it may run, or None."""
+    return {
+        unit: core_set[0] if len(core_set) == 1 else None for unit, core_set in find_core_sets(system, members).items()
+    }
+
+
+def _find_cores(system: TimingSystem, activity: Activity) -> CoreSet:
+    """Return the cores to which an activity is pinned, as far as its host has them."""
     cores = system.cores.get(activity.host or "")
-    return activity.core is not None and (cores is None or activity.core < cores)
+    return tuple(core for core in activity.cores if cores is None or core < cores)

@@ -221,3 +221,8 @@ def is_selective_arc(system: TimingSystem, arc: Arc) -> bool:
 def calls_per_activation(caller: Activity, request: Arc) -> Fraction:
     """Return how many calls a client makes in each of its activations."""
     return caller.calls.get(request.output, Fraction(1))
+
+
+def is_sampled(reader: Activity, arc: Arc) -> bool:
+    """Whether a message on an arc waits in its reader's executor until a callback stores it."""
+    return arc.input in reader.storing and arc.role != "request"

@@ -1,0 +1,109 @@
+"""How long a message that is only stored may wait for that while its reader is activated and reads what was there before.
+
+Let a message come, and a be the last activation whose job begins before the message is stored. The next activation reads
+it, so it waits a gap at most, and the time from its coming until a. In that time it is ready to be stored, and its thread
+or the cores are busy with other work: with the reader's own earlier jobs, but not with the one that a makes. So where s is
+the start of that busy time, all that is done from s to a came from s on, and of the reader's own jobs at least one fewer
+than can come in so long a window. The wait is no longer than the longest such window in which there is so much to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
+from archgen.timing.load.busy_windows import (
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    longest_busy_period,
+)
+from archgen.timing.load.event_streams import EventStreams, max_arrivals
+from archgen.timing.load.thread_work import (
+    DIVERGED_CAUSE,
+    OVERLOAD_CAUSE,
+    EventModels,
+    ThreadWork,
+    WorstResponse,
+    build_thread,
+    lower_crowded_threads,
+)
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.timing_system import TimingSystem
+
+
+def hold_before_activation(
+    demand: DemandFunction, own_cost: int, own_streams: EventStreams, busy_period: int, budget: SearchBudget
+) -> int:
+    """Return the longest time (ticks) for which work can go on until an activation comes that is not part of it.
+
+    `demand` includes `own_cost` for each event of `own_streams`.
+    """
+
+    def work_before(window: int) -> int:
+        # The activation itself comes at the end of the window: with it there are no more than in a longer one.
+        own_count = max_arrivals(own_streams, window) - max(max_arrivals(own_streams, window + 1) - 1, 0)
+        return demand.within(window) - own_cost * own_count
+
+    return longest_busy_window(work_before, busy_period, budget.start_search(), demand.term_count + 1)
+
+
+def longest_busy_window(
+    work_within: Callable[[int], int], longest: int, spend: Callable[[int], None], terms_per_look: int
+) -> int:
+    """Return the longest window, up to `longest`, in which there is as much work as it lasts; work grows with it."""
+    window = longest
+    while window > 0:
+        spend(terms_per_look)
+        work = work_within(window)
+        if work >= window:
+            break
+        window = max(work, 0)
+    return window
+
+
+def find_core_waits(
+    system: TimingSystem,
+    resource: ProcessingResource,
+    event_models: EventModels,
+    reader_ids: Iterable[str],
+    budget: SearchBudget,
+) -> dict[str, WorstResponse]:
+    """Return the waits on one core on which nothing fires anything else, or on cores that are joined."""
+    threads = lower_crowded_threads(
+        system,
+        [build_thread(system, unit, event_models) for unit in (*resource.units, *resource.foreign_units)],
+        event_models,
+    )
+    thread_of = {name: thread for thread in threads for name in thread.unit}
+    return {name: _find_core_wait(resource, threads, thread_of[name], name, budget) for name in reader_ids}
+
+
+def _find_core_wait(
+    resource: ProcessingResource, threads: Iterable[ThreadWork], thread: ThreadWork, name: str, budget: SearchBudget
+) -> WorstResponse:
+    level = thread.lowest_priority
+    counting_threads = [
+        each
+        for each in threads
+        if level is None or (each.highest_priority is not None and each.highest_priority >= level)
+    ]
+    causes = [each.cause for each in counting_threads if each.cause]
+    if resource.missing:
+        causes.append(UnknownCause(resource.missing))
+    share = sum_fractions([each.share for each in counting_threads])
+    if share > 1:
+        return WorstResponse(None, "host", OVERLOAD_CAUSE)
+    if causes:
+        return WorstResponse(None, "host", unite_causes(causes))
+    works = [work for each in counting_threads for work in each.works]
+    own_work = thread.works[thread.unit.index(name)]
+    demand = GrowingLoad(works).demand_function()
+    try:
+        busy_period = longest_busy_period(demand, budget)
+        return WorstResponse(
+            hold_before_activation(demand, own_work.cost, own_work.streams, busy_period, budget), "host"
+        )
+    except DivergedError:
+        return WorstResponse(None, "host", OVERLOAD_CAUSE if share == 1 else DIVERGED_CAUSE)

@@ -1,0 +1,88 @@
+"""What runs one after the other: the callbacks of a thread, or of a callback group; and the threads of each process."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from archgen.timing.system.timing_system import Activity, TimingSystem
+
+
+class ThreadPool(NamedTuple):
+    """The threads of a process, `threads` None where there are as many as are asked for."""
+
+    key: str
+    threads: int | None
+
+
+def find_pool(system: TimingSystem, activity: Activity) -> ThreadPool | None:
+    """Return the threads that may run an activity, None where it has one of its own."""
+    executor = system.executors.get(activity.executor)
+    if executor is not None:
+        return ThreadPool(executor.id, executor.threads)
+    # A system made without executors: what is in no container has a thread of its own.
+    if activity.container is None:
+        return None
+    return ThreadPool(f"container {activity.container}", system.threads.get(activity.container))
+
+
+def name_lane(system: TimingSystem, activity: Activity) -> str:
+    """Return a name that activities share exactly where one of them waits for the other: a thread's, or a group's."""
+    # Keys are prefixed, since an activity, a group and a container may have the same id.
+    pool = find_pool(system, activity)
+    if pool is not None and pool.threads == 1:
+        return pool.key
+    if pool is None or activity.executor not in system.executors or activity.callback_group is None:
+        return f"activity {activity.id}"
+    return f"group {activity.callback_group} in {pool.key}"
+
+
+def is_reentrant(system: TimingSystem, activity: Activity) -> bool:
+    """Whether several activations of an activity may run at once."""
+    executor = system.executors.get(activity.executor)
+    return executor is not None and executor.threads != 1 and activity.callback_group is None
+
+
+def find_thread_count(system: TimingSystem, name: str) -> int | None:
+    """Return how many threads may run an activity's process, None where there are as many as are asked for."""
+    pool = find_pool(system, system.activities[name])
+    return pool.threads if pool is not None else None
+
+
+def find_crowded_pools(system: TimingSystem, activities: Iterable[Activity]) -> dict[str, ThreadPool]:
+    """Return the pool of each of some activities that may have to wait for one of several threads, by their ids.
+
+    That is so where a process has fewer threads than lanes; a reentrant activity takes as many as there are.
+    """
+    members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
+    for activity in activities:
+        pool = find_pool(system, activity)
+        if pool is not None and pool.threads is not None and pool.threads > 1:
+            members_by_pool[pool].append(activity)
+    return {
+        activity.id: pool
+        for pool, members in members_by_pool.items()
+        if is_crowded(system, pool, members)
+        for activity in members
+    }
+
+
+def is_crowded(system: TimingSystem, pool: ThreadPool, members: Iterable[Activity]) -> bool:
+    """Whether some activities of a process may ask for more threads than it has."""
+    if pool.threads is None:
+        return False
+    member_list = list(members)
+    return len({name_lane(system, activity) for activity in member_list}) > pool.threads or any(
+        is_reentrant(system, activity) for activity in member_list
+    )
+
+
+def find_torn_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]:
+    """Return the nodes outside of containers that implement several components and have one thread, with these."""
+    members_by_node: dict[str, list[Activity]] = defaultdict(list)
+    for activity in system.activities.values():
+        pool = find_pool(system, activity)
+        if activity.container is None and pool is not None and pool.threads == 1:
+            members_by_node[activity.node].append(activity)
+    return {node: tuple(members) for node, members in members_by_node.items() if len(members) > 1}
