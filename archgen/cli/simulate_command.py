@@ -18,13 +18,16 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 @shared_options.project_argument
 @click.option("--seconds", type=click.IntRange(1, 86_400), default=60, show_default=True, help="Simulated time.")
 @click.option("--seeds", type=click.IntRange(1, 10_000), default=20, show_default=True, help="How many runs.")
+@click.option("--seed", type=click.IntRange(0), metavar="N", help="Only the run with this number, as one of --seeds.")
 @click.option("--chain", "asked", multiple=True, metavar="ID", help="Only this chain; may be repeated.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ...], form: str) -> None:
+def command(
+    project: Path | None, seconds: int, seeds: int, seed: int | None, asked: tuple[str, ...], form: str
+) -> None:
     """Simulate PROJECT: activities on their hosts, samples on their way, from random phases and execution times.
 
     What is seen is a lower bound on the worst case; `archgen timing` gives the bounds from above. The same seeds give
-    the same figures.
+    the same figures; --seed N repeats one run.
     """
     from archgen import simulation
     from archgen.diagnostics.safe_text import make_visible
@@ -48,7 +51,12 @@ def command(project: Path | None, seconds: int, seeds: int, asked: tuple[str, ..
     waypoints = {key: one.through for key, one in chain_results.items()}
     try:
         observations = simulation.simulate_system(
-            analysis.system, seconds, seeds, waypoints, analysis_bounds.find_publish_pauses(analysis)
+            analysis.system,
+            seconds,
+            seeds if seed is None else 1,
+            waypoints,
+            analysis_bounds.find_publish_pauses(analysis),
+            seed or 0,
         )
     except EventFloodError as flood:
         raise click.ClickException(_describe_flood(flood.gave_up_at)) from None

@@ -3,26 +3,20 @@
 At one moment jobs end first, then samples arrive, then activities are released; when all of that has happened, threads
 are dispatched to cores. The inner loop is written for speed: it works on lists indexed by small integers and creates no
 objects but tuples.
-
-`simulate_system` makes many runs of one system, with seeds from 0 on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 
-from archgen.simulation.chain_tracking import track_chain
 from archgen.simulation.core_dispatch import dispatch_threads
 from archgen.simulation.job_activation import fire_activity, passes_gate
 from archgen.simulation.job_completion import end_thread, finish_declared_job
-from archgen.simulation.plan_builder import PublishPauses, build_plan
 from archgen.simulation.resource_use import leave_resource
-from archgen.simulation.run_totals import RunTotals
 from archgen.simulation.sample_arrival import deliver_sample, enqueue_sample
 from archgen.simulation.simulation_plan import ONCE, PERIODIC, SimulationPlan
-from archgen.simulation.simulation_result import SimulationResult
 from archgen.simulation.simulation_run import (
     ACTIVITY_RELEASE,
     ALL_WIRES,
@@ -33,7 +27,6 @@ from archgen.simulation.simulation_run import (
     SAMPLE_ARRIVAL,
     SimulationRun,
 )
-from archgen.timing.system.timing_system import TimingSystem
 
 MAX_WAITING_EVENTS = 2_000_000
 """The most events that may wait on the heap: far more than any system that settles has."""
@@ -143,36 +136,3 @@ def _release_activity(run: SimulationRun, now: int, activity: int, release_kind:
                 return
     if not activities.is_gated[activity] or passes_gate(run, now, activity):
         fire_activity(run, now, activity, activities.clock_callback[activity], NO_WIRE, 0)
-
-
-_SECOND = 10**9
-
-
-def simulate_system(
-    system: TimingSystem,
-    seconds: int = 60,
-    seeds: int = 20,
-    chains: Mapping[str, Sequence[str]] | None = None,
-    pauses: PublishPauses | None = None,
-) -> SimulationResult:
-    """Simulate a system for `seconds` with each of `seeds` seeds.
-
-    `chains` give the ids of activities along arcs, by chain id. For `pauses` see `build_plan`: without them a
-    conditional output with a promised largest gap is published at each chance.
-    """
-    plan = build_plan(system, pauses)
-    # Only activities and wires on a chain are recorded: a trace grows with each job.
-    tracks = {
-        key: track
-        for key, activity_ids in (chains or {}).items()
-        if (track := track_chain(plan, activity_ids)) is not None
-    }
-    watched = {activity for activity_ids in tracks.values() for activity in activity_ids.activities}
-    logged = {
-        wire for activity_ids in tracks.values() for parallel_wires in activity_ids.wires for wire in parallel_wires
-    }
-    horizon = int(seconds * _SECOND / plan.unit)
-    totals = RunTotals(plan, tracks)
-    for seed in range(seeds):
-        totals.add_run(run_plan(plan, seed, horizon, watched, logged), horizon)
-    return totals.to_result(seconds, seeds, horizon, chains or {})

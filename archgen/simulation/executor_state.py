@@ -52,9 +52,7 @@ def _draw_orders(
 ) -> list[int]:
     """Return the orders that are written, and where none is, one that is drawn."""
     drawn = [dice.choice(choices) if last_turn is None else FAVOURED_OTHERS for _ in orders]
-    return [
-        drawn[index] if order is None else _WRITTEN_ORDERS[order] for index, order in enumerate(orders)
-    ]
+    return [drawn[index] if order is None else _WRITTEN_ORDERS[order] for index, order in enumerate(orders)]
 
 
 def _draw_victims(members: Sequence[Sequence[int]], dice: Random, last_turn: int | None) -> list[int]:
@@ -177,9 +175,7 @@ class ProcessorStates:
         self.victim = _draw_victims(members, dice, last_turn)
         self.uses_priority = [processor.order in _ORDERS_BY_PRIORITY for processor in processors]
         # Also where priorities count, something may have none, or the same one: for that an order is drawn.
-        other_orders = [
-            None if processor.order in _ORDERS_BY_PRIORITY else processor.order for processor in processors
-        ]
+        other_orders = [None if processor.order in _ORDERS_BY_PRIORITY else processor.order for processor in processors]
         self.scheduler = _draw_orders(other_orders, _ANY_SCHEDULER, dice, last_turn)
         self.is_preemptive = [
             _is_preemptive(processor, scheduler, has_priorities=index in ranked)

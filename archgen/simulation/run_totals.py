@@ -20,6 +20,8 @@ class RunTotals:
         count = len(plan.activities)
         self.jobs, self.worst_response, self.end_gap, self.activation_gap = ([0] * count for _ in range(4))
         self.best_response: list[int] = [-1] * count
+        self.fused_age, self.fused_spread = ([-1] * count for _ in range(2))
+        self.largest_age = [-1] * len(plan.wires)
         self.output_silence = [[0] * len(planned.outputs) for planned in plan.activities]
         self.drops = [0] * len(plan.queues)
         self.busy_by_run: list[list[int]] = []
@@ -40,6 +42,9 @@ class RunTotals:
         ]
         self.end_gap = list(map(max, self.end_gap, activities.end_gap))
         self.activation_gap = list(map(max, self.activation_gap, activities.activation_gap))
+        self.fused_age = list(map(max, self.fused_age, activities.fused_age))
+        self.fused_spread = list(map(max, self.fused_spread, activities.fused_spread))
+        self.largest_age = list(map(max, self.largest_age, run.wires.largest_age))
         self.output_silence = [
             list(map(max, old, new)) for old, new in zip(self.output_silence, activities.output_silence, strict=True)
         ]
@@ -57,14 +62,15 @@ class RunTotals:
             track.add_run(run)
 
     def to_result(
-        self, seconds: int, seeds: int, horizon: int, requested_chains: Mapping[str, Sequence[str]]
+        self, seconds: int, seeds: range, horizon: int, requested_chains: Mapping[str, Sequence[str]]
     ) -> SimulationResult:
         """Return the result, with the chains that were asked for by the ids of their activities."""
         plan, unit = self.plan, self.plan.unit
-        total_seconds = seconds * seeds
+        total_seconds = seconds * len(seeds)
         return SimulationResult(
             seconds,
-            seeds,
+            len(seeds),
+            seeds.start,
             self.event_count,
             {
                 planned.id: self._summarise_activity(index, total_seconds)
@@ -78,7 +84,7 @@ class RunTotals:
             },
             self._summarise_hosts(horizon),
             {
-                link: ObservedLink(self.link_wait[index] * unit, Fraction(self.link_busy[index], horizon * seeds))
+                link: ObservedLink(self.link_wait[index] * unit, Fraction(self.link_busy[index], horizon * len(seeds)))
                 for index, link in enumerate(plan.links)
             },
             {queue: count for queue, count in zip(plan.queues, self.drops, strict=True) if count},
@@ -99,7 +105,19 @@ class RunTotals:
                 for output, silence in zip(planned.outputs, self.output_silence[activity], strict=True)
                 if output.is_conditional
             },
+            self._read_ages(activity),
+            self.fused_age[activity] * unit if self.fused_age[activity] >= 0 else None,
+            self.fused_spread[activity] * unit if self.fused_spread[activity] >= 0 else None,
         )
+
+    def _read_ages(self, activity: int) -> dict[str, Fraction]:
+        """Return the largest age of what was read, by input, in ns; an input may have several wires."""
+        ages: dict[str, Fraction] = {}
+        for wire in self.plan.activities[activity].wires:
+            if self.largest_age[wire] >= 0:
+                key = self.plan.arcs[wire].input
+                ages[key] = max(ages.get(key, Fraction(0)), self.largest_age[wire] * self.plan.unit)
+        return ages
 
     def _summarise_hosts(self, horizon: int) -> dict[str, ObservedHost]:
         loads: dict[str, ObservedHost] = {}

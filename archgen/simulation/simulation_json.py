@@ -24,6 +24,7 @@ def simulation_to_json(
         "version": 1,
         "seconds": result.seconds,
         "seeds": result.seeds,
+        "first_seed": result.first_seed,
         "events": result.events,
         "note": "Seen, not bounded: each largest figure is a lower bound on the worst case.",
         "chains": {
@@ -127,6 +128,13 @@ def _activity_to_json(result: SimulationResult, analysis: Analysis, activity_id:
         "response_bound": _bound_in_ms(response.worst) if response else None,
         "largest_gap": _ns_to_ms(observed.activation_gap),
         "gap_bound": _bound_in_ms(rates.gap) if rates else None,
+        "read_ages": {key: _ns_to_ms(age) for key, age in observed.read_ages.items()},
+        "fused": {
+            "largest_age": _ns_to_ms(observed.fused_age),
+            "largest_spread": _ns_to_ms(observed.fused_spread),
+        }
+        if observed.fused_age is not None
+        else None,
     }
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 
@@ -62,6 +62,12 @@ class ObservedActivity:
     end_gap: Fraction | None
     output_silences: Mapping[str, Fraction]
     """The longest time between two publications, by conditional output."""
+    read_ages: Mapping[str, Fraction] = field(default_factory=dict)
+    """By input that fires nobody: the longest time from sending a message to the start of a job that read it."""
+    fused_age: Fraction | None = None
+    """The longest time since the oldest stamp among matched messages, at the start of a job; None if none was."""
+    fused_spread: Fraction | None = None
+    """The longest time between the stamps of matched messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +94,7 @@ class SimulationResult:
 
     seconds: int
     seeds: int
+    first_seed: int
     events: int
     activities: Mapping[str, ObservedActivity]
     chains: Mapping[str, ObservedChain]

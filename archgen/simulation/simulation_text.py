@@ -30,17 +30,25 @@ def format_simulation(
     lines = [
         title,
         "",
-        f"Simulated {result.seconds} s from each of {result.seeds} seeds: {result.events:,} events. What was seen is no bound: the worst",
+        f"Simulated {result.seconds} s from {_name_seeds(result)}: {result.events:,} events. What was seen is no bound: the worst",
         "case may be worse. Beside it stand the bounds of `archgen timing`, which the worst case cannot exceed.",
     ]
     if not any(observed.jobs for observed in result.activities.values()):
         return "\n".join([*lines[:2], *_NOTHING_RAN]) + "\n"
     lines += _chain_lines(result, analysis, chains)
     lines += _activity_lines(result, analysis)
+    lines += _fusion_lines(result, analysis)
+    lines += _freshness_lines(result, analysis)
     lines += _host_lines(result, analysis)
     lines += _drop_lines(result, analysis)
     lines += _assumption_lines(result, analysis)
     return "\n".join(lines) + "\n"
+
+
+def _name_seeds(result: SimulationResult) -> str:
+    if result.seeds > 1:
+        return f"each of {result.seeds} seeds"
+    return f"seed {result.first_seed}"
 
 
 def _wrap_sentence(sentence: str) -> Iterator[str]:
@@ -130,6 +138,31 @@ def _activity_lines(result: SimulationResult, analysis: Analysis) -> Iterator[st
     idle = [key for key, observed in result.activities.items() if not observed.jobs]
     if idle:
         yield from _wrap_sentence(f"  Never ran: {', '.join(idle)}.")
+
+
+def _fusion_lines(result: SimulationResult, analysis: Analysis) -> Iterator[str]:
+    """Yield how old and how far apart in time the messages were that elements have matched."""
+    fused = {key: observed for key, observed in result.activities.items() if observed.fused_age is not None}
+    if fused:
+        yield from ("", _format_row("Matched by time (ms)", "oldest", "apart", "within"))
+    for key, observed in fused.items():
+        within = analysis.system.activities[key].within or 0
+        yield _format_row(
+            key, *map(_format_ms, (observed.fused_age, observed.fused_spread, within * analysis.system.tick))
+        )
+
+
+def _freshness_lines(result: SimulationResult, analysis: Analysis) -> Iterator[str]:
+    """Yield how old messages were when they were read, where a reader says how old they may be."""
+    rows = [
+        (f"{key} <- {port}", observed.read_ages.get(port), limit * analysis.system.tick)
+        for key, observed in result.activities.items()
+        for port, limit in analysis.system.activities[key].freshness.items()
+    ]
+    if rows:
+        yield from ("", _format_row("Age of what was read (ms)", "oldest", "may be"))
+    for name, age, limit in rows:
+        yield _format_row(name, _format_ms(age), _format_ms(limit))
 
 
 def _host_lines(result: SimulationResult, analysis: Analysis) -> Iterator[str]:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.simulation.event_loop import run_plan
 from archgen.simulation.plan_builder import build_plan
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, Executor, StoringCallback, TimingSystem
 
 MS = 1000
 """Units of the engine in one ms."""
@@ -52,6 +52,21 @@ def system(
         ),
         **rest,  # type: ignore[arg-type]
     )
+
+
+def within(process: str, *activities: Activity, group: str | None = "one") -> list[Activity]:
+    """Put activities into a process and a callback group (None: reentrant)."""
+    return [replace(one, executor=process, callback_group=group) for one in activities]
+
+
+def process(name: str, threads: int = 1, order: str | None = None) -> dict[str, Executor]:
+    """Make a process with threads."""
+    return {name: Executor(name, threads, None, order)}  # type: ignore[arg-type]
+
+
+def stores(wcet: int = 0) -> StoringCallback:
+    """Make a callback that stores a message in always the same time."""
+    return StoringCallback(wcet, wcet)
 
 
 def jobs(of: TimingSystem, until: int, seed: int = 0) -> dict[str, list[tuple[float, float, float]]]:

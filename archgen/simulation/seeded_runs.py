@@ -1,0 +1,103 @@
+"""Run a system with many seeds: all of them, for what they show together, or until one run is late.
+
+A seed is a number, and one run: it decides all that is drawn. Of eight seeds in a row two begin with everything at once
+and always take the longest times, and three let some activity come after all its neighbours (`find_last_turn`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from archgen.simulation.chain_tracking import ChainTrack, track_chain
+from archgen.simulation.event_loop import EventFloodError, run_plan
+from archgen.simulation.plan_builder import PublishPauses, build_plan
+from archgen.simulation.run_totals import RunTotals
+from archgen.simulation.simulation_plan import SimulationPlan
+from archgen.simulation.simulation_result import DurationDistribution, SimulationResult
+from archgen.simulation.simulation_run import SimulationRun
+from archgen.timing.system.timing_system import TimingSystem
+
+_SECOND = 10**9
+
+
+def simulate_system(
+    system: TimingSystem,
+    seconds: int = 60,
+    seeds: int = 20,
+    chains: Mapping[str, Sequence[str]] | None = None,
+    pauses: PublishPauses | None = None,
+    first_seed: int = 0,
+) -> SimulationResult:
+    """Simulate a system for `seconds` with each of `seeds` seeds, which are numbered from `first_seed` on.
+
+    `chains` give the ids of activities along arcs, by chain id. For `pauses` see `build_plan`: without them a
+    conditional output with a promised largest gap is published at each chance.
+    """
+    plan = build_plan(system, pauses)
+    tracks = {
+        key: track
+        for key, activity_ids in (chains or {}).items()
+        if (track := track_chain(plan, activity_ids)) is not None
+    }
+    horizon = int(seconds * _SECOND / plan.unit)
+    totals = RunTotals(plan, tracks)
+    numbers = range(first_seed, first_seed + seeds)
+    for seed in numbers:
+        totals.add_run(_run_recorded(plan, seed, horizon, tuple(tracks.values())), horizon)
+    return totals.to_result(seconds, numbers, horizon, chains or {})
+
+
+@dataclass(frozen=True, slots=True)
+class LateRun:
+    """A run in which a chain took longer than its deadline: `seconds` from this seed show it again. Times are in ns."""
+
+    seed: int
+    seconds: int
+    reaction: Fraction | None
+    """The longest reaction time in this run; None if nothing passed along the whole chain."""
+    age: Fraction | None
+    """The largest data age in this run."""
+
+
+def find_late_run(
+    system: TimingSystem,
+    through: Sequence[str],
+    deadline: Fraction,
+    seconds: int = 10,
+    seeds: int = 24,
+    pauses: PublishPauses | None = None,
+) -> LateRun | None:
+    """Return the first run, by seeds from 0 on, in which the reaction or the data age of a chain exceeds `deadline` (ns).
+
+    `through` are the ids of activities along arcs. Only inputs count that each activity on the way sends on as soon as
+    it can, as in the bounds. Return None if no run is late, or the events multiply without end.
+    """
+    plan = build_plan(system, pauses)
+    for seed in range(seeds):
+        # Each run has a track of its own, so that its figures are its own.
+        track = track_chain(plan, through)
+        if track is None:
+            return None
+        try:
+            run = _run_recorded(plan, seed, int(seconds * _SECOND / plan.unit), (track,))
+        except EventFloodError:
+            return None
+        track.add_run(run)
+        figures = track.to_observed(through, plan.unit).bounded_figures
+        reaction, age = _largest(figures.reaction), _largest(figures.age)
+        if max(reaction or 0, age or 0) > deadline:
+            return LateRun(seed, seconds, reaction, age)
+    return None
+
+
+def _largest(distribution: DurationDistribution | None) -> Fraction | None:
+    return distribution.largest if distribution else None
+
+
+def _run_recorded(plan: SimulationPlan, seed: int, horizon: int, tracks: Sequence[ChainTrack]) -> SimulationRun:
+    """Run one seed; only activities and wires on a chain are recorded, for a trace grows with each job."""
+    watched = {activity for track in tracks for activity in track.activities}
+    logged = {wire for track in tracks for parallel_wires in track.wires for wire in parallel_wires}
+    return run_plan(plan, seed, horizon, watched, logged)
