@@ -12,7 +12,7 @@ from archgen.timing.figures.timing_values import TimingValue
 
 _CHAIN_VERDICTS = {
     "met": "the bound is not above the deadline",
-    "missed": "it can happen: the best case is above the deadline, or there is no bound at all",
+    "missed": "it can happen: the best case is above the deadline, a run was seen, or there is no bound at all",
     "not proven": "the bound is above the deadline, or none was found; the chain may still be in time",
     "open": "figures are missing",
 }

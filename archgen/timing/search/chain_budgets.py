@@ -99,9 +99,11 @@ def share_chain_budget(trials: ChangeTrials, result: ChainResult) -> SharedBudge
 class _BudgetSearch:
     def __init__(self, trials: ChangeTrials, result: ChainResult) -> None:
         if result.deadline is None or result.deadline.value is None:
-            raise UnknownBudgetError("it has no deadline")
+            msg = "it has no deadline"
+            raise UnknownBudgetError(msg)
         if result.verdict == "open" or not result.terms:
-            raise UnknownBudgetError("figures are missing")
+            msg = "figures are missing"
+            raise UnknownBudgetError(msg)
         self.trials, self.result, self.deadline = trials, result, result.deadline.value
         self.slack = result.slack if result.verdict == "met" else None
         architecture, self.elements = trials.architecture, list_chain_elements(trials.analysis, result)
