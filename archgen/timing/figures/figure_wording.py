@@ -25,13 +25,13 @@ def format_duration(ns: Fraction) -> str:
 
 
 def write_exact_duration(ns: Fraction) -> str:
-    """Write a duration (ns) as files and `--set` have it: without a space, and exact where it is a decimal fraction."""
+    """Write a duration (ns) as files have it: exact where it is a decimal fraction."""
     factor, unit = next(((factor, unit) for factor, unit in _DURATION_UNITS[1:] if abs(ns) >= factor), (1, "ns"))
     scaled, decimals = ns / factor, 0
     while scaled.denominator != 1 and decimals < _MAX_WRITTEN_DECIMALS:
         scaled, decimals = scaled * 10, decimals + 1
     digits = f"{int(scaled):0{decimals + 1}}"
-    return f"{digits[: len(digits) - decimals]}{'.' if decimals else ''}{digits[len(digits) - decimals :]}{unit}"
+    return f"{digits[: len(digits) - decimals]}{'.' if decimals else ''}{digits[len(digits) - decimals :]} {unit}"
 
 
 def format_rate(hertz: Fraction) -> str:

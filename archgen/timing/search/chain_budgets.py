@@ -18,7 +18,7 @@ from archgen.timing.search.tried_figures import TriedFigure, find_execution_time
 
 MAX_TRIES = 1_000
 """How many figures are tried for the budget of one chain."""
-MAX_SHARE_TRIES = 60
+MAX_SHARE_TRIES = 300
 """How many common factors are tried for the shares of one chain."""
 FACTOR_STEPS = 1_000
 """Factors are found in thousandths."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from fractions import Fraction
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis
@@ -49,14 +50,14 @@ def _choose_core(analysis: Analysis, activity: Activity) -> Iterator[Changes]:
     core_count = analysis.system.cores.get(activity.host or "")
     if not core_count or core_count == 1:
         return
-    loads = dict.fromkeys(range(core_count), 0)
+    loads = dict.fromkeys(range(core_count), Fraction(0))
     has_loose_work = False
     shares = dict(analysis.hosts[activity.host or ""].activity_shares)
     for other in analysis.system.activities.values():
         if other.host == activity.host and other.id != activity.id:
             has_loose_work = has_loose_work or not other.cores
             for core in other.cores:
-                loads[core] = loads.get(core, 0) + (shares[other.id].value or 0)
+                loads[core] = loads.get(core, Fraction(0)) + (shares[other.id].value or Fraction(0))
     busy_cores = {core for core, load in loads.items() if load}
     best_core = min(loads, key=lambda core: (loads[core], core))
     takes_last = has_loose_work and len(busy_cores | {best_core}) == core_count

@@ -48,7 +48,7 @@ class TriedFigure:
 
     def change_to_duration(self, duration: Fraction) -> TriedChange:
         """Return the change that sets the figure to a duration in ns."""
-        return TriedChange(self.activity.id, f"timing.{self.key}", write_exact_duration(duration))
+        return TriedChange(self.activity.id, f"timing.{self.key}", write_exact_duration(duration).replace(" ", ""))
 
 
 def find_execution_time(architecture: Architecture, activity: Activity) -> TriedFigure | None:
