@@ -69,7 +69,7 @@ def format_card(card: ElementCard, width: int | None = None) -> str:
     lines[-1:] = [joined_line] if has_room else [lines[-1], *wrap_line(make_visible(span_text), width)]
     for name, value in card.facts:
         lines += textwrap.wrap(
-            make_visible(value), text_width, initial_indent=f"  {name + ':':16}", subsequent_indent=" " * 18
+            make_visible(value), text_width, initial_indent=f"  {name + ':':15} ", subsequent_indent=" " * 18
         )
     for name, items in card.lists:
         lines.append(f"  {name}:" + ("" if items else " none"))

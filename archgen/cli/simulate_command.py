@@ -21,7 +21,7 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 @click.option("--seed", type=click.IntRange(0), metavar="N", help="Only the run with this number, as one of --seeds.")
 @click.option("--chain", "asked", multiple=True, metavar="ID", help="Only this chain; may be repeated.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
-def command(
+def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None, seconds: int, seeds: int, seed: int | None, asked: tuple[str, ...], form: str
 ) -> None:
     """Simulate PROJECT: activities on their hosts, samples on their way, from random phases and execution times.
@@ -53,10 +53,9 @@ def command(
         observations = simulation.simulate_system(
             analysis.system,
             seconds,
-            seeds if seed is None else 1,
+            seeds if seed is None else range(seed, seed + 1),
             waypoints,
             analysis_bounds.find_publish_pauses(analysis),
-            seed or 0,
         )
     except EventFloodError as flood:
         raise click.ClickException(_describe_flood(flood.gave_up_at)) from None

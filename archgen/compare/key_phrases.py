@@ -18,6 +18,7 @@ _NAMED_SECTIONS = {
     "defaults": "default of",
     "comments": "what is said of",
     "callback_groups": "callback group",
+    "scheduling": "order on core",
 }
 """What sentences call the keys of a section, by the section."""
 _ACCEPTED_PREFIX = "review.accepted."

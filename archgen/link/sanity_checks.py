@@ -76,6 +76,18 @@ def report_exchanged(
     return True
 
 
+def report_times_of_none(input_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> bool:
+    """Report execution times of a callback that there is not, as the input is stored at once; whether there are any."""
+    key = next((key for key in ("wcet", "bcet") if input_body.get(key) is not None), None)
+    if key is None:
+        return False
+    span = mapping_values.get_span(input_body, key)
+    message = f"`{key}` is the time of a callback that stores the input, and `stored: at_once` says that there is none"
+    label = Label(mapping_values.get_span(input_body, "stored"), "nothing has to be run")
+    diagnostics.append(_diagnose_senseless(message, span, "leave one of them out", element_id, label))
+    return True
+
+
 def report_falling_percentiles(
     wcet_body: MappingNode,
     percentiles: Mapping[str, Quantity],

@@ -52,10 +52,14 @@ class OutputTiming:
 
 @dataclass(frozen=True, slots=True)
 class InputTiming:
-    """How long the callback computes that only stores the messages of an input."""
+    """How long the callback computes that only stores the messages of an input.
+
+    With `stored_at_once` there is none: what has arrived can be read at once, as from a memory that is shared.
+    """
 
     wcet: Quantity | None = None
     bcet: Quantity | None = None
+    stored_at_once: bool = False
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 

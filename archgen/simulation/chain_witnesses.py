@@ -60,7 +60,9 @@ def _find_group_witnesses(
         for key, result in group.items()
         if result.deadline is not None and result.deadline.value is not None
     }
-    late_runs = find_late_runs(analysis.system, deadlines, seconds, runs, find_publish_pauses(analysis))
+    late_runs = find_late_runs(
+        analysis.system, deadlines, seconds=seconds, seeds=runs, pauses=find_publish_pauses(analysis)
+    )
     activities = analysis.system.activities
     return {
         key: ChainWitness(

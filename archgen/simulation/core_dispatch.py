@@ -9,6 +9,7 @@ from heapq import heappop, heappush
 
 from archgen.simulation.executor_state import BY_DEADLINE, FAVOURED_OTHERS, FIXED_RANKS
 from archgen.simulation.job_activation import read_inputs
+from archgen.simulation.job_completion import complete_callback
 from archgen.simulation.resource_use import grant_resource, plan_steps
 from archgen.simulation.simulation_run import JOB_END, LOAD_ONLY, SimulationRun
 from archgen.simulation.thread_scheduling import feed_threads
@@ -80,6 +81,12 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
     remaining = threads.time_left[thread]
     if remaining < 0:
         remaining = _begin_callback(run, now, thread)
+        if not remaining and run.callbacks.is_storing[threads.callback[thread]]:
+            # Most samples are stored in no time: then the heap, which is the most expensive part, need not know.
+            complete_callback(run, now, thread)
+            if run.processors.ready[threads.processor[thread]]:
+                run.changed_processors.add(threads.processor[thread])
+            return
     slice_time = run.processors.slice_time[threads.processor[thread]]
     if slice_time:
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)

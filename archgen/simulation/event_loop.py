@@ -62,7 +62,6 @@ def process_events(run: SimulationRun, horizon: int) -> None:
     # A key holds the time in its upper bits and the order within a moment in its lowest two, so that comparing one
     # integer orders two events.
     heap = run.heap
-    activity_count = len(run.plan.activities)
     now = event_count = dispatch_rounds = 0
     while heap:
         key = heap[0][0]
@@ -88,16 +87,21 @@ def process_events(run: SimulationRun, horizon: int) -> None:
             deliver_sample(run, now, subject, detail)
         elif order == ACTIVITY_RELEASE:
             _release_activity(run, now, subject, detail)
-        # A negative subject is the end of a job with a declared response, which belongs to an activity and not to a
-        # thread, or that of the use of a resource.
         elif subject >= 0:
             end_thread(run, now, subject, detail)
-        elif subject >= -activity_count:
-            finish_declared_job(run, now, -1 - subject)
         else:
-            leave_resource(run, -1 - activity_count - subject)
+            _end_without_thread(run, now, -1 - subject)
     # Job starts and direct deliveries skip the heap, and count as events too.
     run.event_count = event_count + sum(run.activities.started) + run.wires.sent_count
+
+
+def _end_without_thread(run: SimulationRun, now: int, subject: int) -> None:
+    """End a job with a declared response, which belongs to an activity and not to a thread, or the use of a resource."""
+    activity_count = len(run.plan.activities)
+    if subject < activity_count:
+        finish_declared_job(run, now, subject)
+    else:
+        leave_resource(run, subject - activity_count)
 
 
 def _prepare_start(run: SimulationRun) -> None:
@@ -120,7 +124,7 @@ def _release_activity(run: SimulationRun, now: int, activity: int, release_kind:
     if release_kind == HELD_FIRING:
         wire, sample = activities.held_firings[activity].popleft()
         if wire == ALL_WIRES:
-            fire_activity(run, now, activity, activities.joint_callback[activity], wire, sample)
+            fire_activity(run, now, activity, wire, sample)
         else:
             enqueue_sample(run, now, wire, sample)
         return
@@ -135,4 +139,4 @@ def _release_activity(run: SimulationRun, now: int, activity: int, release_kind:
                 heappush(run.heap, (now + delay << 2 | ACTIVITY_RELEASE, activity, LATE_TICK))
                 return
     if not activities.is_gated[activity] or passes_gate(run, now, activity):
-        fire_activity(run, now, activity, activities.clock_callback[activity], NO_WIRE, 0)
+        fire_activity(run, now, activity, NO_WIRE, 0)

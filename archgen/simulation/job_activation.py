@@ -13,6 +13,7 @@ from archgen.simulation.simulation_run import (
     HELD_FIRING,
     JOB_END,
     LOAD_ONLY,
+    NO_WIRE,
     SimulationRun,
 )
 
@@ -41,7 +42,7 @@ def hold_firing(run: SimulationRun, now: int, activity: int, wire: int, sample: 
     heappush(run.heap, (release_time << 2 | ACTIVITY_RELEASE, activity, HELD_FIRING))
 
 
-def fire_activity(run: SimulationRun, now: int, activity: int, callback: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
+def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample: Any) -> None:  # noqa: ANN401 - see Job
     """Activate an activity: queue a job for its executor.
 
     With a declared response the job begins at once and ends on time; only its load is queued.
@@ -51,6 +52,10 @@ def fire_activity(run: SimulationRun, now: int, activity: int, callback: int, wi
     if previous >= 0 and now - previous > activities.activation_gap[activity]:
         activities.activation_gap[activity] = now - previous
     activities.last_activation[activity] = now
+    if wire >= 0:
+        callback = run.wires.callback[wire]
+    else:
+        callback = activities.clock_callback[activity] if wire == NO_WIRE else activities.joint_callback[activity]
     if activities.declared_response[activity] is not None:
         _start_declared_job(run, now, activity, wire, sample)
         wire = LOAD_ONLY
@@ -88,34 +93,36 @@ def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, 
 def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
-    _, wire, sample, _ = job
-    if wire >= 0:
-        take_newest(run, wire, sample)
-    elif wire == ALL_WIRES:
-        for input_wire, job_number in zip(run.plan.activities[activity].captured_wires, sample, strict=True):
-            if job_number >= 0:
-                take_newest(run, input_wire, job_number)
-        if activities.matchers[activity] is not None:
-            _record_fusion(run, now, activity, sample)
+    if job[1] >= 0:
+        take_newest(run, job[1], job[2])
+    elif job[1] == ALL_WIRES:
+        _take_joint_samples(run, now, activity, job[2])
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
     # Requests that came before this start are answered at its end; later ones wait for the next job.
     if activities.waiting_requests[activity]:
-        activities.accepted_requests[activity].append(
-            (activities.started[activity], activities.waiting_requests[activity])
-        )
-        activities.waiting_requests[activity] = []
+        requests, activities.waiting_requests[activity] = activities.waiting_requests[activity], []
+        activities.accepted_requests[activity].append((activities.started[activity], requests))
     newest_job, largest_age = wires.newest_job, wires.largest_age
-    for input_wire, source_ends in run.aged_wires[activity]:
-        job_number = newest_job[input_wire]
-        if job_number >= 0 and now - source_ends[job_number] > largest_age[input_wire]:
-            largest_age[input_wire] = now - source_ends[job_number]
+    for wire, source_ends in run.aged_wires[activity]:
+        read_job = newest_job[wire]
+        if read_job >= 0 and now - source_ends[read_job] > largest_age[wire]:
+            largest_age[wire] = now - source_ends[read_job]
     if activities.is_watched[activity]:
         activities.job_starts[activity].append(now)
         activities.job_activations[activity].append(job[0])
-        for input_wire in wires.logged_wires[activity]:
-            wires.source_log[input_wire].append(wires.newest_job[input_wire])
+        for wire in wires.logged_wires[activity]:
+            wires.source_log[wire].append(newest_job[wire])
     activities.started[activity] += 1
+
+
+def _take_joint_samples(run: SimulationRun, now: int, activity: int, samples: Sequence[int]) -> None:
+    """Take the samples that fired a job together; -1 stands for a wire that brought none of them."""
+    for wire, sample in zip(run.plan.activities[activity].captured_wires, samples, strict=True):
+        if sample >= 0:
+            take_newest(run, wire, sample)
+    if run.activities.matchers[activity] is not None:
+        _record_fusion(run, now, activity, samples)
 
 
 def take_newest(run: SimulationRun, wire: int, sample: int) -> None:

@@ -27,10 +27,10 @@ def end_thread(run: SimulationRun, now: int, thread: int, version: int) -> None:
     elif threads.later_steps[thread]:
         enter_resource(run, now, thread)
     else:
-        _complete_callback(run, now, thread)
+        complete_callback(run, now, thread)
 
 
-def _complete_callback(run: SimulationRun, now: int, thread: int) -> None:
+def complete_callback(run: SimulationRun, now: int, thread: int) -> None:
     """Complete what ran on a thread: publish its results, or store its sample, and let the thread go on."""
     threads, callbacks, executors = run.threads, run.callbacks, run.executors
     callback = threads.callback[thread]

@@ -4,18 +4,9 @@ from __future__ import annotations
 
 from heapq import heappop, heappush
 
-from archgen.simulation.executor_state import (
-    BY_DEADLINE,
-    BY_PRIORITY,
-    FAVOURED_OTHERS,
-    FIXED_RANKS,
-    LAST_FIRST,
-    RANDOM_ORDER,
-)
+from archgen.simulation.executor_state import BY_PRIORITY
 from archgen.simulation.simulation_run import JOB_END, SimulationRun
-from archgen.simulation.thread_scheduling import queue_thread
-
-_LARGEST_KEY = 1 << 61
+from archgen.simulation.thread_scheduling import draw_urgency, queue_thread
 
 
 def plan_steps(run: SimulationRun, thread: int, activity: int, execution_time: int) -> int:
@@ -35,7 +26,13 @@ def enter_resource(run: SimulationRun, now: int, thread: int) -> None:
     """Let a thread wait for the resource that comes next in its job."""
     resource, use_time, run.threads.time_left[thread] = run.threads.later_steps[thread].pop()
     run.sequence += 1
-    heappush(run.resources.queue[resource], (_draw_urgency(run, now, thread, resource), run.sequence, thread, use_time))
+    activity, order = run.callbacks.activity[run.threads.callback[thread]], run.resources.order[resource]
+    if order == BY_PRIORITY:
+        priority = run.priority[activity]
+        urgency = 0 if priority is None else -1 - priority
+    else:
+        urgency = draw_urgency(run, order, activity, now, run.resources.victim[resource])
+    heappush(run.resources.queue[resource], (urgency, run.sequence, thread, use_time))
     run.changed_resources.add(resource)
 
 
@@ -53,20 +50,3 @@ def leave_resource(run: SimulationRun, resource: int) -> None:
     queue_thread(run, run.resources.user[resource])
     run.resources.user[resource] = -1
     run.changed_resources.add(resource)
-
-
-def _draw_urgency(run: SimulationRun, now: int, thread: int, resource: int) -> int:
-    """Return how urgent a use is; the smallest comes first."""
-    order, activity = run.resources.order[resource], run.callbacks.activity[run.threads.callback[thread]]
-    planned = run.plan.activities[activity]
-    if order == BY_PRIORITY:
-        return 0 if planned.priority is None else -1 - planned.priority
-    if order == BY_DEADLINE:
-        return _LARGEST_KEY if planned.deadline is None else run.threads.job_activation[thread] + planned.deadline
-    if order == LAST_FIRST:
-        return -run.sequence
-    if order == RANDOM_ORDER:
-        return int(run.draw_share() * _LARGEST_KEY)
-    if order == FIXED_RANKS:
-        return run.processors.rank[activity]
-    return now + (_LARGEST_KEY if order == FAVOURED_OTHERS and activity == run.resources.victim[resource] else 0)

@@ -33,7 +33,7 @@ def deliver_sample(run: SimulationRun, now: int, wire: int, sample: int) -> None
     elif slot == SLOT_ANY:
         activity = wires.target[wire]
         if wires.is_request[wire]:
-            fire_activity(run, now, activity, wires.callback[wire], wire, sample)
+            fire_activity(run, now, activity, wire, sample)
         # `every` and `throttle` come before jitter: a throttle measures from what it let through, not from when jitter
         # released it.
         elif activities.is_gated[activity] and not passes_gate(run, now, activity):
@@ -80,7 +80,7 @@ def enqueue_sample(run: SimulationRun, now: int, wire: int, sample: int) -> None
     if wires.waiting_count[queue] == wires.depth[wire] > 0:
         _drop_oldest(run, wires.callback[wire], queue)
     wires.waiting_count[queue] += 1
-    fire_activity(run, now, activity, wires.callback[wire], wire, sample)
+    fire_activity(run, now, activity, wire, sample)
 
 
 def _drop_oldest(run: SimulationRun, callback: int, queue: int) -> None:
@@ -133,7 +133,7 @@ def _fire_jointly(run: SimulationRun, now: int, activity: int, samples: Sequence
         if activities.jitter[activity]:
             hold_firing(run, now, activity, ALL_WIRES, tuple(samples))
         else:
-            fire_activity(run, now, activity, planned.joint_callback, ALL_WIRES, tuple(samples))
+            fire_activity(run, now, activity, ALL_WIRES, tuple(samples))
     elif planned.keeps_dropped:
         # A rejected activation still makes its samples the newest: a later call of the same reader reads them.
         for wire, sample in zip(planned.captured_wires, samples, strict=True):

@@ -25,12 +25,11 @@ _SECOND = 10**9
 def simulate_system(
     system: TimingSystem,
     seconds: int = 60,
-    seeds: int = 20,
+    seeds: int | range = 20,
     chains: Mapping[str, Sequence[str]] | None = None,
     pauses: PublishPauses | None = None,
-    first_seed: int = 0,
 ) -> SimulationResult:
-    """Simulate a system for `seconds` with each of `seeds` seeds, which are numbered from `first_seed` on.
+    """Simulate a system for `seconds` with each of `seeds`: a range, or how many from 0 on.
 
     `chains` give the ids of activities along arcs, by chain id. For `pauses` see `build_plan`: without them a
     conditional output with a promised largest gap is published at each chance.
@@ -43,7 +42,7 @@ def simulate_system(
     }
     horizon = int(seconds * _SECOND / plan.unit)
     totals = RunTotals(plan, tracks)
-    numbers = range(first_seed, first_seed + seeds)
+    numbers = range(seeds) if isinstance(seeds, int) else seeds
     for seed in numbers:
         totals.add_run(_run_recorded(plan, seed, horizon, tuple(tracks.values())), horizon)
     return totals.to_result(seconds, numbers, horizon, chains or {})
@@ -68,6 +67,7 @@ class LateRun:
 def find_late_runs(
     system: TimingSystem,
     deadlines: Mapping[str, tuple[Sequence[str], Fraction]],
+    *,
     seconds: int = 10,
     seeds: int = 24,
     pauses: PublishPauses | None = None,

@@ -4,6 +4,7 @@ itself.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +16,7 @@ from archgen.timing.system.timing_system import Activity, TimingSystem, is_selec
 
 NOT_SIMULATED = (
     "caches, migration, context switches and interrupts",
-    "the middleware's own threads, and what callbacks of inputs that do not fire take",
+    "the middleware's own threads",
     "lost packets",
     "drifting clocks",
     "start-up",
@@ -45,7 +46,20 @@ class DefaultFigure:
 def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
     """Return phrases for what each seed draws at random, as far as this system leaves it open."""
     activities, arcs = system.activities.values(), system.arcs
-    containers = [name for name, threads in system.threads.items() if threads == 1]
+    executors = {
+        activity.executor: system.executors[activity.executor]
+        for activity in activities
+        if activity.executor in system.executors
+    }
+    callback_counts = Counter(
+        key for activity in activities for key in (activity.executor, *(activity.executor for _ in activity.storing))
+    )
+    is_order_open = any(
+        executor.order is None and callback_counts[key] > 1 for key, executor in executors.items()
+    ) or any(threads == 1 for name, threads in system.threads.items() if f"container {name}" not in executors)
+    # In the wait set of rclcpp the order of creation counts, and nobody writes that.
+    is_creation_open = any(executor.order == "ros2_executor" for executor in executors.values())
+    used_resources = {key for activity in activities for key in activity.uses}
     choices = (
         (
             any(activity.period for activity in activities),
@@ -67,9 +81,19 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
         (any(activity.every > 1 for activity in activities), "where `every` begins to count"),
         (
             any(activity.host and activity.priority is None for activity in activities),
-            "who comes first among those without a priority",
+            "who comes first among those without a priority (in three of eight runs one comes after all others)",
         ),
-        (bool(containers), "the order in which an executor looks at its callbacks"),
+        (is_order_open, "the order in which an executor takes its callbacks"),
+        (is_creation_open, "the order in which an executor lists its subscriptions"),
+        (
+            any(resource.order is None for key, resource in system.resources.items() if key in used_resources),
+            "the order in which a resource serves those that wait",
+        ),
+        (bool(used_resources), "after which part of its work an activity uses a resource"),
+        (
+            "round_robin" in (*system.host_orders.values(), *system.core_orders.values()),
+            "how long a turn of round_robin is",
+        ),
         (
             any(activity.response is not None for activity in activities),
             "when what has a declared response ends, within it",

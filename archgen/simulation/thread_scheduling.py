@@ -17,7 +17,7 @@ from archgen.simulation.executor_state import (
 )
 from archgen.simulation.simulation_run import SimulationRun
 
-_LARGEST_KEY = 1 << 61
+LARGEST_KEY = 1 << 61
 
 
 def feed_threads(run: SimulationRun, executor: int) -> None:
@@ -52,37 +52,37 @@ def queue_thread(run: SimulationRun, thread: int) -> None:
     run.sequence += 1
     priority = run.priority[activity]
     # The heap pops the smallest key first, and a larger priority is more urgent.
+    scheduler, victim = processors.scheduler[processor], processors.victim[processor]
     urgency = (
         -1 - priority
         if priority is not None and processors.uses_priority[processor]
-        else _draw_urgency(run, activity, thread, processor)
+        else draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
     )
     order = run.sequence
-    if processors.victim[processor] == activity and processors.scheduler[processor] == FAVOURED_OTHERS:
+    if victim == activity and scheduler == FAVOURED_OTHERS:
         # Of equal priorities too it comes last.
-        order += _LARGEST_KEY
+        order += LARGEST_KEY
     threads.urgency[thread], threads.ready_order[thread] = urgency, order
     heappush(processors.ready[processor], (urgency, order, thread))
     run.changed_processors.add(processor)
 
 
-def _draw_urgency(run: SimulationRun, activity: int, thread: int, processor: int) -> int:
-    """Return the urgency of a thread without a written priority: at least 0, so after all threads that have one."""
-    scheduler = run.processors.scheduler[processor]
-    if scheduler == FIRST_FIRST:
-        return run.threads.job_activation[thread]
-    if scheduler == LAST_FIRST:
-        return _LARGEST_KEY - run.sequence
-    if scheduler == RANDOM_ORDER:
-        return int(run.draw_share() * _LARGEST_KEY)
-    if scheduler == FIXED_RANKS:
+def draw_urgency(run: SimulationRun, order: int, activity: int, since: int, victim: int) -> int:
+    """Return how urgent something is that waits since a moment, by an order without priorities: the smallest comes first,
+    none is below 0. `victim` comes last where its neighbours are favoured.
+    """
+    if order == FIRST_FIRST:
+        return since
+    if order == LAST_FIRST:
+        return LARGEST_KEY - run.sequence
+    if order == RANDOM_ORDER:
+        return int(run.draw_share() * LARGEST_KEY)
+    if order == FIXED_RANKS:
         return run.processors.rank[activity]
-    if scheduler == FAVOURED_OTHERS:
-        return int(activity == run.processors.victim[processor])
-    if scheduler == BY_DEADLINE:
+    if order == BY_DEADLINE:
         deadline = run.plan.activities[activity].deadline
-        return _LARGEST_KEY if deadline is None else run.threads.job_activation[thread] + deadline
-    return 0
+        return LARGEST_KEY if deadline is None else since + deadline
+    return int(order == FAVOURED_OTHERS and activity == victim)
 
 
 def _next_callback(run: SimulationRun, executor: int) -> int:
@@ -150,5 +150,5 @@ def _callback_key(run: SimulationRun, executor: int, order: int, callback: int) 
         return (1 if priority is None else -priority, job[3])
     if order == BY_DEADLINE:
         deadline = run.plan.activities[activity].deadline
-        return (_LARGEST_KEY if deadline is None else job[0] + deadline, job[3])
+        return (LARGEST_KEY if deadline is None else job[0] + deadline, job[3])
     return (int(order == FAVOURED_OTHERS and activity == run.executors.victim[executor]), job[3])

@@ -104,9 +104,11 @@ class ApproximateTimeMatcher:
             elif end - start < self._candidate_end() - self._candidate_start():
                 self._make_candidate()
             self._pass_first(first_slot)
-            if first_slot == self.pivot_slot or not self._may_improve(end):
-                sets.append(self._take_candidate())
-            elif not all(self.queues) and not self._may_later_samples_improve():
+            if (
+                first_slot == self.pivot_slot
+                or not self._may_improve(end)
+                or (not all(self.queues) and not self._may_later_samples_improve())
+            ):
                 sets.append(self._take_candidate())
         return sets
 

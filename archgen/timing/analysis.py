@@ -14,10 +14,25 @@ from archgen.timing.figures.figure_wording import describe_value, format_duratio
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
-ResponseTier = Literal["declared", "dedicated", "host", "priorities", "executor", "cores", "unknown"]
+ResponseTier = Literal[
+    "declared",
+    "dedicated",
+    "host",
+    "fixed_priority",
+    "non_preemptive",
+    "fifo",
+    "round_robin",
+    "ros2_executor",
+    "edf",
+    "priorities",
+    "executor",
+    "cores",
+    "unknown",
+]
 """How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
 of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `executor`,
-single-threaded; `cores`, several.
+single-threaded; `cores`, several; the words of an order (`non_preemptive`, `fifo`, `edf`, `ros2_executor`): one thread or
+core that keeps to it.
 """
 
 

@@ -91,7 +91,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         },
         responses=responses,
         runs=build_run_responses(state, responses),
-        hosts=find_host_loads(system, resource_list, rates.paces, responses),
+        hosts=find_host_loads(system, resource_list, rates.paces, rates.outputs, responses),
         links=find_link_loads(state, rates),
         topics={} if judging else find_topic_loads(system, rates.outputs),
         edges=find_edge_fits(edge_context, judging=judging),

@@ -9,7 +9,7 @@ from itertools import chain
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import InputTiming, Timing
 from archgen.model.deployment import Host
 from archgen.model.node import Node, Qos
 from archgen.views.shapes import Inlines, Text
@@ -226,10 +226,14 @@ def _describe_measured_times(timing: Timing) -> Iterator[str]:
 
 def _format_stored_inputs(timing: Timing) -> list[str]:
     """Format how long storing each input takes."""
-    return [
-        f"{name.rsplit('.', 1)[-1]} {f'{each.bcet} to ' if each.bcet and each.wcet else ''}{each.wcet or '?'}"
-        for name, each in timing.inputs.items()
-    ]
+    return [f"{name.rsplit('.', 1)[-1]} {_format_storing(each)}" for name, each in timing.inputs.items()]
+
+
+def _format_storing(input_timing: InputTiming) -> str:
+    if input_timing.stored_at_once:
+        return "at once"
+    is_range = input_timing.bcet and input_timing.wcet
+    return f"{f'{input_timing.bcet} to ' if is_range else ''}{input_timing.wcet or '?'}"
 
 
 def _format_uses(timing: Timing) -> list[str]:

@@ -21,7 +21,12 @@ def record_timing(timing: Timing | None) -> dict[str, object] | None:
             "every": timing.every,
             "dropped": timing.dropped,
             "inputs": {
-                name: drop_unknown({key: record_quantity(getattr(each, key), "ns") for key in ("wcet", "bcet")})
+                name: drop_unknown(
+                    {
+                        **{key: record_quantity(getattr(each, key), "ns") for key in ("wcet", "bcet")},
+                        "stored": "at_once" if each.stored_at_once else None,
+                    }
+                )
                 for name, each in timing.inputs.items()
             },
             "outputs": {

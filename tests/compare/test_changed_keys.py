@@ -69,6 +69,73 @@ def test_keys(compared: Compared, case: tuple[str, str, str, str, object, object
     assert (back.before, back.after) == (after, before)
 
 
+EXECUTORS = """\
+groups:
+  g:
+    components:
+      a: {outputs: {x: std_msgs/msg/Bool, y: std_msgs/msg/Bool}}
+      b: {inputs: {x: {from: a.x, freshness: 1 s}, y: a.y, z: a.x}}
+      c: {inputs: {x: a.x}}
+nodes:
+  na: {implements: a, host: pc, timing: {rate: 10 Hz, wcet: {max: 4 ms, p50: 1 ms, measured: true}, cores: [1, 2], uses: {gpu: {max: 6 ms, min: 2 ms}}, deadline: 9 ms}}
+  nb: {implements: b, host: pc, reentrant: true, timing: {trigger: {match: [x, y], within: 3 ms}, every: 2, dropped: forgotten, inputs: {z: {wcet: 2 ms}}}}
+  nc: {implements: [c], host: pc, threads: 3, scheduling: fifo}
+  nd: {implements: [c], host: pc, callback_groups: {q: [c]}}
+hosts: {pc: {cores: 4, scheduling: {0: edf}}, arm: {cores: 2, scheduling: fifo}}
+containers: {box: {scheduling: edf}}
+resources: {gpu: {host: pc, scheduling: fifo}}
+"""
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("max: 4 ms", "max: 5 ms", "component g.a", "timing.wcet", "4 ms", "5 ms", "`g.a`: worst case execution time `4 ms` → `5 ms`"),
+        ("p50: 1 ms", "p50: 2 ms", "component g.a", "timing.wcet.p50", "1 ms", "2 ms", "`g.a`: wcet p50 `1 ms` → `2 ms`"),
+        (", measured: true", "", "component g.a", "timing.wcet.measured", True, None, "`g.a`: wcet measured no longer given (it was true)"),
+        ("[1, 2]", "[1, 3]", "component g.a", "timing.cores", [1, 2], [1, 3], "`g.a`: cores 3 added, 2 removed"),
+        ("max: 6 ms", "max: 7 ms", "component g.a", "timing.uses.gpu", "6 ms", "7 ms", "`g.a`: use of `gpu` `6 ms` → `7 ms`"),
+        ("min: 2 ms", "min: 1 ms", "component g.a", "timing.uses.gpu.min", "2 ms", "1 ms", "`g.a`: use of `gpu.min` `2 ms` → `1 ms`"),
+        ("deadline: 9 ms", "deadline: 8 ms", "component g.a", "timing.deadline", "9 ms", "8 ms", "`g.a`: deadline `9 ms` → `8 ms`"),
+        ("freshness: 1 s", "freshness: 0.5 s", "input g.b.x", "freshness", "1 s", "0.5 s", "`g.b.x` now must be no older than `0.5 s` instead of `1 s`"),
+        ("reentrant: true, ", "", "node nb", "reentrant", True, None, "node `nb`: reentrant no longer given (it was true)"),
+        ("within: 3 ms", "within: 0 ms", "component g.b", "timing.trigger.within", "3 ms", "0 ms", "`g.b`: trigger within `3 ms` → `0 ms`"),
+        ("dropped: forgotten", "dropped: kept", "component g.b", "timing.dropped", "forgotten", None, "`g.b`: what becomes of dropped messages no longer given (it was `forgotten`)"),
+        ("z: {wcet: 2 ms}", "z: {wcet: 1 ms}", "component g.b", "timing.inputs.z.wcet", "2 ms", "1 ms", None),
+        ("threads: 3", "threads: 2", "node nc", "threads", 3, 2, "node `nc`: threads 3 → 2"),
+        ("threads: 3", "threads: 1", "node nc", "threads", 3, None, None),
+        ("scheduling: fifo}\n  nd", "scheduling: edf}\n  nd", "node nc", "scheduling", "fifo", "edf", "node `nc`: scheduling `fifo` → `edf`"),
+        (", callback_groups: {q: [c]}", "", "node nd", "callback_groups.q", ["g.c"], None, "node `nd`: callback group `q` `g.c` removed"),
+        ("0: edf", "0: fifo", "host pc", "scheduling.0", "edf", "fifo", "host `pc`: order on core `0` `edf` → `fifo`"),
+        ("cores: 2, scheduling: fifo", "cores: 2, scheduling: edf", "host arm", "scheduling", "fifo", "edf", "host `arm`: scheduling `fifo` → `edf`"),
+        ("{scheduling: edf}", "{}", "container box", "scheduling", "edf", None, None),
+        ("gpu: {host: pc", "gpu: {host: arm", "resource gpu", "host", "pc", "arm", "resource `gpu` now runs on `arm` instead of `pc`"),
+        ("host: pc, scheduling: fifo}}", "host: pc}}", "resource gpu", "scheduling", "fifo", None, None),
+    ],
+)  # fmt: skip
+def test_keys_of_executors_and_resources(
+    compared: Compared, case: tuple[str, str, str, str, object, object, str | None]
+) -> None:
+    old, new, element, key, before, after, text = case
+    assert old in EXECUTORS
+    (change,) = compared(EXECUTORS, EXECUTORS.replace(old, new, 1)).changes
+    assert (f"{change.element_kind} {change.element_id}", change.key) == (element, key)
+    assert (change.before, change.after) == (before, after)
+    assert text is None or change.text == text
+
+
+def test_one_core_is_the_same_in_a_set_and_alone(told: Told) -> None:
+    assert told(EXECUTORS.replace("cores: [1, 2]", "cores: [3]"), EXECUTORS.replace("cores: [1, 2]", "core: 3")) == []
+    assert told(EXECUTORS, EXECUTORS.replace("cores: [1, 2]", "cores: [2, 1, 2]")) == []
+    assert told(EXECUTORS, EXECUTORS.replace("max: 4 ms", "max: 0.004 s")) == []
+
+
+def test_a_resource_with_another_id_is_recognised_by_its_users(told: Told) -> None:
+    assert told(EXECUTORS, EXECUTORS.replace("gpu", "graphics")) == [
+        "renamed resource graphics: resource `gpu` is called `graphics` now"
+    ]
+
+
 def test_the_message_of_a_type_names_who_carries_it(told: Told) -> None:
     assert told(ROBOT, ROBOT.replace("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")) == [
         "changed type T: type `T` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `g.a.x` carries it"

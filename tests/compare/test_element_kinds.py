@@ -375,7 +375,8 @@ def test_no_key_is_listed_twice() -> None:
                 "component requirements, chain requirements, node package, node executable, node plugin, node status, "
                 "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
-                "partner contact, partner reviewers, requirement use_cases, policy forbid.from"
+                "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
+                "component timing.wcet.measured, node timing.wcet.p99"
             ),
         ),
         (
@@ -385,7 +386,9 @@ def test_no_key_is_listed_twice() -> None:
                 "node container, node implements, port qos, port qos.depth, port topic, port message, type size, "
                 "type message, type request, message fields, output type, input type, output medium, host cores, "
                 "container host, container threads, link connects, link bandwidth, link latency.worst, chain through, "
-                "chain deadline, component inputs"
+                "chain deadline, component inputs, node threads, node scheduling, node callback_groups.x, node reentrant, "
+                "host scheduling, host scheduling.0, container scheduling, resource host, resource scheduling, "
+                "component timing.uses.gpu, component timing.inputs.x.wcet, component timing.cores, input freshness"
             ),
         ),
     ],

@@ -204,7 +204,8 @@ def test_the_way_back_is_the_mirror_image(number: int, ramcip: ArchitectureVersi
 
 def _who_has_less(found: Comparison) -> set[str]:
     """Give the partners of loads and chains that grew."""
-    return {partner for figure in (*found.loads, *found.chains) for partner in figure.concerned_partners}
+    of_loads = {partner for load in found.loads for partner in load.concerned_partners}
+    return of_loads | {partner for chain in found.chains for partner in chain.concerned_partners}
 
 
 Fact = tuple[str, str, str, str | None, str, str, float]

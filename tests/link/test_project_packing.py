@@ -322,3 +322,30 @@ def test_what_comments_silence_stays_silent_where_short_forms_are_written_out(tm
     again = packed_again(checked, tmp_path)
     assert again.findings == ()
     assert len(again.silenced_findings) == len(checked.silenced_findings)
+
+
+def test_what_runs_callbacks_is_packed_as_it_was_written(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+project: {id: r, title: R}
+groups:
+  g:
+    components:
+      a: {outputs: {x: std_msgs/msg/Bool, y: std_msgs/msg/Bool}}
+      b: {inputs: {x: {from: a.x, freshness: 1 s}, y: a.y, z: a.x}}
+nodes:
+  a: {implements: a, host: pc, timing: {rate: 10 Hz, wcet: {max: 4 ms, p50: 1 ms, measured: true}, cores: [2, 3], uses: {gpu: {max: 6 ms}, npu: 1 ms}}}
+  b: {implements: b, host: pc, threads: 2, scheduling: edf, reentrant: true, timing: {trigger: {match: [x, y], within: 0 ms}, dropped: kept, every: 2, inputs: {z: {wcet: 2 ms}}, deadline: 1 s}}
+hosts: {pc: {cores: 4, scheduling: {0: edf, 3: fifo}}}
+resources: {gpu: pc, npu: {scheduling: fixed_priority}}
+"""
+    checked = project(tmp_path / "p", archgen_yaml=text)
+    data = yaml.safe_load(text_of(checked))
+    assert data["nodes"]["a"]["timing"]["cores"] == [2, 3]
+    assert data["nodes"]["a"]["timing"]["wcet"] == {"max": "4 ms", "p50": "1 ms", "measured": True}
+    assert (data["nodes"]["b"]["threads"], data["nodes"]["b"]["reentrant"]) == (2, True)
+    assert data["hosts"]["pc"]["scheduling"] == {"0": "edf", "3": "fifo"}
+    assert data["resources"]["gpu"] == {"host": "pc"}
+    again = packed_again(checked, tmp_path)
+    for name in ("nodes", "hosts", "resources", "inputs"):
+        assert getattr(again.architecture, name) == getattr(checked.architecture, name)

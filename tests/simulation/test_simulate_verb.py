@@ -93,3 +93,50 @@ def test_wrong_figures_are_wrong_usage(tmp_path: Path) -> None:
 
 def test_a_chain_that_is_not_there_names_those_that_are(tmp_path: Path) -> None:
     assert "the chains are reach" in _run(tmp_path, PROJECT, "--chain", "walk")[1]
+
+
+def test_one_seed_alone_shows_its_own_run_again(tmp_path: Path) -> None:
+    alone, again = (json.loads(told(tmp_path, "--seed", "2", "--format", "json")) for _ in range(2))
+    assert alone == again
+    assert (alone["seeds"], alone["first_seed"]) == (1, 2)
+    together = json.loads(told(tmp_path, "--format", "json"))
+    largest = together["chains"]["reach"]["reaction"]["max"]
+    each = [json.loads(told(tmp_path, "--seed", str(seed), "--format", "json")) for seed in range(3)]
+    assert largest == max(one["chains"]["reach"]["reaction"]["max"] for one in each)
+    assert together["events"] == sum(one["events"] for one in each)
+    assert "from seed 2:" in told(tmp_path, "--seed", "2")
+
+
+FUSED = """
+groups:
+  g:
+    components:
+      camera: {outputs: {image: {type: Seen}}, timing: {period: 33 ms, wcet: 2 ms, bcet: 2 ms}}
+      lidar: {outputs: {cloud: {type: Seen}}, timing: {period: 50 ms, wcet: 1 ms, bcet: 1 ms}}
+      fusion:
+        inputs: {image: camera.image, cloud: lidar.cloud}
+        outputs: {fused: {type: Seen}}
+        timing: {wcet: 3 ms, trigger: {match: [image, cloud], within: 15 ms}}
+      guard:
+        inputs: {fused: {from: fusion.fused, freshness: 90 ms}}
+        outputs: {moved: {medium: physical}}
+        timing: {behaviour: periodic, period: 20 ms, wcet: 1 ms}
+types: {Seen: {message: std_msgs/msg/Empty}}
+chains: {see: {through: [camera, fusion, guard]}}
+"""
+
+
+def test_it_shows_how_old_and_how_far_apart_what_was_matched_is(tmp_path: Path) -> None:
+    status, said = _run(tmp_path, FUSED, "--seconds", "5", "--seeds", "2")
+    assert status == 0, said
+    lines = said.splitlines()
+    matched = next(line for line in lines if line.startswith("  fusion") and line.endswith("15.000"))
+    oldest, apart, within = (float(word) for word in matched.split()[1:])
+    assert 0 < apart <= within == 15
+    assert oldest > apart
+    read = next(line for line in lines if line.startswith("  guard <- "))
+    assert read.endswith("90.000")
+    status, data = _run(tmp_path, FUSED, "--seconds", "5", "--seeds", "2", "--format", "json")
+    elements = json.loads(data)["elements"]
+    assert (elements["fusion"]["fused"]["largest_age"], elements["camera"]["fused"]) == (oldest, None)
+    assert list(elements["guard"]["read_ages"].values()) == [float(read.split()[-2])]

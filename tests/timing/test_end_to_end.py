@@ -25,7 +25,9 @@ def _tasks(tasks: dict[str, tuple[int, int]], chain: str) -> str:
     components, nodes = [], []
     for at, (name, (period, wcet)) in enumerate(tasks.items()):
         others = ", ".join(f"from_{other}: {other}.out" for other in tasks if other != name)
-        timing = f"{{period: {period} ms, wcet: {wcet} ms, bcet: {wcet} ms, priority: {90 - at}}}"
+        # As published: what has been written is there to be read, and no callback has to store it.
+        stored = ", ".join(f"from_{other}: {{stored: at_once}}" for other in tasks if other != name)
+        timing = f"{{period: {period} ms, wcet: {wcet} ms, bcet: {wcet} ms, priority: {90 - at}, inputs: {{{stored}}}}}"
         components.append(f"      {name}: {{inputs: {{{others}}}, outputs: {{out: std_msgs/msg/String}}}}")
         nodes.append(f"  {name}_node: {{implements: {name}, host: pc, timing: {timing}}}")
     through = ", ".join(f"{name}_node" for name in chain.split())

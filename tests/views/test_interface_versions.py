@@ -99,6 +99,7 @@ def test_titles_ids_order_and_hosts_are_no_part_of_a_version(tmp_path: Path, edi
         (", qos: {reliability: reliable}", ""),
         ("{depth: 1}", "{depth: 2}"),
         ("message: m_msgs/msg/Stop", "message: m_msgs/msg/Inner"),
+        ("base: {inputs: {stop: eye.stop}}", "base: {inputs: {stop: {from: eye.stop, freshness: 1 s}}}"),
     ],
 )
 def test_what_passes_and_what_is_promised_is_a_version(tmp_path: Path, old: str, new: str) -> None:

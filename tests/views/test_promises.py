@@ -181,6 +181,20 @@ def test_what_holds_where_data_is_late_is_only_what_the_model_says(
 
 
 @pytest.mark.parametrize(
+    ("written", "role"),
+    [
+        ("stop: eye.stop", "reads"),
+        ("stop: {from: eye.stop, freshness: 200 ms}", "reads (no older than 200 ms)"),
+        ("stop: {from: eye.stop, freshness: 1 s, optional: true}", "reads (optional, no older than 1 s)"),
+    ],
+)
+def test_who_reads_says_how_old_it_may_be(tmp_path: Path, written: str, role: str) -> None:
+    outline = make_agreement(view(checked(tmp_path, edit(("stop: eye.stop", written)))), "a", "b").outline
+    tables = [block for block in section(outline, "Eye · stop").blocks if isinstance(block, Table)]
+    assert role in [text(cell) for table in tables for row in table.rows for cell in row]
+
+
+@pytest.mark.parametrize(
     ("edits", "sentences"),
     [
         (

@@ -95,7 +95,11 @@ def _read_input_timing(timing: Timing, context: ReadContext) -> Mapping[str, obj
     return {
         f"{last_part(context.matched_ids.common_id('input', port))}.{key}": value
         for port, input_timing in timing.inputs.items()
-        for key, value in (("wcet", input_timing.wcet), ("bcet", input_timing.bcet))
+        for key, value in (
+            ("wcet", input_timing.wcet),
+            ("bcet", input_timing.bcet),
+            ("stored", "at_once" if input_timing.stored_at_once else None),
+        )
     }
 
 

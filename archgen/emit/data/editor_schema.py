@@ -65,7 +65,9 @@ _SECTIONS = (
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 
-_QUANTITIES = frozenset({"bandwidth", "duration", "frequency", "size", "percentage", "latency"})
+_QUANTITIES = frozenset(
+    {"bandwidth", "duration", "frequency", "size", "percentage", "latency", "execution_time", "timing_use"}
+)
 """Definitions whose examples are offered: they show the form, and mean no element of another project."""
 
 _WORD_PATTERN = re.compile(r"\^\(\?:([a-z0-9_|]+)\)\$\Z")

@@ -17,6 +17,7 @@ from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_unfound, list_assumptions
+from archgen.timing.system.thread_pools import find_joint_nodes
 
 
 def format_timing(
@@ -136,11 +137,15 @@ def _loop_rows(loops: Iterable[LoopRound]) -> Iterator[TextRow]:
 
 
 def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
-    """Yield what was left out and counts as nothing."""
+    """Yield what nobody wrote and was taken for granted."""
     clocked = [activity for activity in analysis.system.activities.values() if activity.behaviour == "periodic"]
     unwritten_count = sum("jitter" not in activity.places for activity in clocked)
     if unwritten_count:
         yield (f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken as none",)
+    joint_count = len(find_joint_nodes(analysis.system))
+    if joint_count:
+        subject = "node of several components" if joint_count == 1 else "nodes of several components"
+        yield (f"{joint_count} {subject}: one thread{' each' if joint_count > 1 else ''}",)
 
 
 def _fault_lines(analysis: Analysis) -> Iterator[str]:

@@ -49,8 +49,11 @@ def read_input_timing(
         bcet = mapping_values.get_quantity(input_body, "bcet", "duration")
         if sanity_checks.report_exchanged(input_body, ("bcet", bcet), ("wcet", wcet), ports.owner_id, diagnostics):
             bcet = None
+        stored_at_once = mapping_values.get_text(input_body, "stored") is not None
+        if stored_at_once and sanity_checks.report_times_of_none(input_body, ports.owner_id, diagnostics):
+            wcet = bcet = None
         if port:
-            yield port, InputTiming(wcet, bcet, entry.key_span)
+            yield port, InputTiming(wcet, bcet, stored_at_once, entry.key_span)
 
 
 def read_resource_times(

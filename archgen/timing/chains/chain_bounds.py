@@ -244,12 +244,15 @@ def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages:
 
 
 def _ages_from_events(
-    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Iterable[str]
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Sequence[str]
 ) -> Iterator[TimingValue]:
     """Yield the largest data age from each event that may be a chain's stimulus: until the result of the next one."""
+    system = network.steps.analysis.system
     for name in start_ids:
         start = replace(regions[0], members=frozenset({network.vertex_of[name]}), inside=False)
-        is_event = network.steps.analysis.system.activities[name].behaviour != "periodic"
+        # A path begins with the samples of its first element where those fire the rest of it.
+        is_inner = regions[0].inside and chain_regions.is_fired_by_samples(system, name, start_ids)
+        is_event = system.activities[name].behaviour != "periodic" and not is_inner
         extreme_path = _find_extreme_path(network, (start, *regions[1:]), "bound") if is_event else None
         if extreme_path is not None:
             yield sum_bounds((extreme_path.value, network.steps.arrivals.activation_gap(name)))

@@ -99,3 +99,22 @@ def _are_joined(network: CostNetwork, first_region: RouteRegion, second_region: 
         if first_region.leaving_arcs is None or hop.arc in first_region.leaving_arcs
     )
     return any(hop.target in second_members for hop in hops)
+
+
+def is_fired_by_samples(system: TimingSystem, name: str, start_ids: Sequence[str]) -> bool:
+    """Whether all that fires one of the first activities of a chain are samples of others of them.
+
+    Then nothing is as old since its activation as it is since the sample before that.
+    """
+    activity, arcs = system.activities[name], system.arcs_into.get(name, ())
+    if any(arc.role == "request" for arc in arcs) or not activity.triggers:
+        return False
+    outside_inputs = system.external_inputs.get(name, ())
+    for key in activity.triggers:
+        sources = [arc.source for arc in arcs if arc.role == "data" and arc.input == key]
+        is_sampled = all(
+            source in start_ids and system.activities[source].behaviour == "periodic" for source in sources
+        )
+        if not sources or not is_sampled or key in outside_inputs:
+            return False
+    return True

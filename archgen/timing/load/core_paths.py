@@ -117,7 +117,12 @@ class CorePaths:
         cores, name = self.cores, steps[-1]
         cost, ways = cores.system.activities[name].wcet, cores.ways_to[name]
         is_only_way = len(steps) == 1 or len(ways) == 1
-        if not cost or len(cores.unit_of[name]) > 1 or not is_only_way or cores.unit_of[name] in cores.reentrant_units:
+        if (
+            not cost
+            or len(cores.unit_of[name]) > 1
+            or not is_only_way
+            or not cores.threads[cores.unit_of[name]].in_order
+        ):
             return None
         if not all(cores.cascades.volumes.get(way.entry) for way in ways):
             return None

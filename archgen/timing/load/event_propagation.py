@@ -8,6 +8,7 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
@@ -18,7 +19,8 @@ from archgen.timing.load.event_streams import EventStreams, delay_streams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
-from archgen.timing.load.load_system import build_load_system
+from archgen.timing.load.load_system import build_load_system, list_written_priorities
+from archgen.timing.load.queue_responses import find_core_queue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
@@ -27,7 +29,7 @@ from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
-from archgen.timing.system.timing_system import Arc, TimingSystem
+from archgen.timing.system.timing_system import Arc, TimingSystem, samples_inputs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
 _MAX_SWEEPS = 300
@@ -46,7 +48,10 @@ def propagate_events(
     load_system = build_load_system(system)
     load_triggers = triggers if load_system is system else find_triggers(load_system)
     state = _Propagation(
-        PropagationState(load_system, load_triggers), find_resources(load_system), group_budgets or GroupBudgets()
+        PropagationState(load_system, load_triggers),
+        find_resources(load_system),
+        group_budgets or GroupBudgets(),
+        list_written_priorities(system, load_system),
     ).run_to_fixed_point()
     # What is asked of the state later is about the activities that somebody wrote.
     state.system, state.triggers = system, triggers
@@ -61,7 +66,11 @@ class _Propagation:
     """One run. A step is an activity (find its event model) or a resource (find the responses of what it runs)."""
 
     def __init__(
-        self, state: PropagationState, resource_list: Iterable[ProcessingResource], group_budgets: GroupBudgets
+        self,
+        state: PropagationState,
+        resource_list: Iterable[ProcessingResource],
+        group_budgets: GroupBudgets,
+        priorities: Mapping[str, int | None],
     ) -> None:
         self.state = state
         self.resources: dict[str, ProcessingResource] = {}
@@ -78,6 +87,11 @@ class _Propagation:
             for unit in (*resource.units, *resource.foreign_units):
                 for name in unit:
                     self.disturbed_resources.setdefault(name, []).append(key)
+        self.queues = {
+            key: queue
+            for key, resource in self.resources.items()
+            if (queue := find_core_queue(state.system, resource, priorities)) is not None
+        }
         self.roaming_ids = {
             key: frozenset(name for unit in resource.roaming_units for name in unit)
             for key, resource in self.resources.items()
@@ -104,7 +118,8 @@ class _Propagation:
             if inner_triggers is None:
                 continue
             if resource.cores == 1:
-                core = self.inner_cores[step] = prepare_inner_core(system, resource, inner_triggers)
+                core = prepare_inner_core(system, resource, inner_triggers)
+                core = self.inner_cores[step] = replace(core, queue=self.queues.get(step))
                 self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
             else:
                 cores = prepare_shared_cores(system, resource, inner_triggers)
@@ -127,10 +142,13 @@ class _Propagation:
     def _find_storing_waits(self) -> None:
         """Find how long storing callbacks may wait, where the responses on a core were found without them."""
         state = self.state
-        readers = {name for name, activity in state.system.activities.items() if activity.storing}
+        readers = {name for name, activity in state.system.activities.items() if samples_inputs(state.system, activity)}
         for step, resource in self.resources.items():
             names = [name for name in resource.members if name in readers]
-            if names and step not in self.inner_triggers:
+            queue = self.queues.get(step)
+            if queue is not None and queue.stores_in_time:
+                state.storing_waits |= dict.fromkeys(names, WorstResponse(0, "fifo"))
+            elif names and step not in self.inner_triggers:
                 models = self._models_of(step)
                 state.storing_waits |= find_core_waits(state.system, resource, models, names, self.budget_of[step])
         for name in readers.difference(self.resources_of):
@@ -255,12 +273,7 @@ class _Propagation:
         if step in self.inner_triggers:
             return self._update_inner_core(step)
         if step in self.resources:
-            new_responses = find_responses(
-                state.system,
-                self.resources[step],
-                self._models_of(step) if step in self.roaming_ids else state.event_models,
-                AnalysisEffort(self.budget_of[step], self._stale_activities(step)),
-            )
+            new_responses = self._find_responses(step)
             new_responses = {
                 name: _name_tier(self.resources[step], response) for name, response in new_responses.items()
             }
@@ -277,6 +290,20 @@ class _Propagation:
                 state.system, step, state.event_models, self.budget_of[step]
             )
         return True
+
+    def _find_responses(self, step: str) -> dict[str, WorstResponse]:
+        """Find the responses of a resource on which nothing fires anything else."""
+        state, resource, budget = self.state, self.resources[step], self.budget_of[step]
+        models = self._models_of(step) if step in self.roaming_ids else state.event_models
+        queue, stale_ids = self.queues.get(step), self._stale_activities(step)
+        # In a queue each response rests on all that waits there.
+        effort = AnalysisEffort(budget, stale_ids if queue is None else None)
+        responses = find_responses(state.system, resource, models, effort)
+        if queue is None:
+            return responses
+        busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+        bounds = queue.bound_responses(models.__getitem__, busy_period, budget)
+        return {name: response.limit_to(bounds.get(name), queue.order) for name, response in responses.items()}
 
     def _update_inner_core(self, step: str) -> bool:
         """Find the responses of a core on which activities fire one another, and return whether anything changed."""

@@ -16,6 +16,7 @@ from archgen.timing.figures.value_arithmetic import add_values, is_boundless, re
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity, TimingSystem
 
 _BILLION = 10**9
@@ -30,6 +31,12 @@ _TIER_SENTENCES = {
     "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
     "executor": "all work of its executor on {0}, in whatever order",
+    "non_preemptive": "everything of its priority or a higher one on {0}, and the longest that may just have begun",
+    "fifo": "all that may have come to {0} before it",
+    "ros2_executor": "the round of its executor on {0} that is under way, and the one in which its turn comes",
+    "edf": "all that may have an earlier deadline on {0}",
+    "fixed_priority": "everything of its priority or a higher one on {0}",
+    "round_robin": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "cores": "its own work, and a share of all other work on the {1} cores of {0}",
     "unknown": "no execution time is written",
 }
@@ -87,6 +94,8 @@ def _build_storing_wait(state: PropagationState, name: str, wait: WorstResponse)
     """Return one reader's wait, with what is missing; a declared response says that what it reads is stored in time."""
     if wait.value is not None:
         return TimingValue(wait.value * state.system.tick) if wait.value else ZERO_VALUE
+    if state.responses[name].value is None:
+        return ZERO_VALUE  # the response says what is missing: to say it twice makes it no worse
     if state.system.activities[name].response is not None:
         return TimingValue(Fraction(0), assumptions=(f"what {name} reads is stored in time",))
     missing = wait.cause.missing
@@ -128,15 +137,21 @@ def find_host_loads(
     system: TimingSystem,
     resources: Iterable[ProcessingResource],
     paces: Mapping[str, EventPace],
+    outputs: Mapping[tuple[str, str], EventPace],
     responses: Mapping[str, ResponseTime],
 ) -> dict[str, HostLoad]:
     """Return the load of every host, resource by resource."""
+    shares = {
+        name: _add_storing_share(system, name, activity_share(system, name, pace), outputs)
+        for name, pace in paces.items()
+        if name in system.activities
+    }
     by_host: dict[str, list[ProcessingResource]] = {host: [] for host in system.cores}
     for resource in resources:
         if resource.host is not None:
             by_host.setdefault(resource.host, []).append(resource)
     return {
-        host: _build_host_load(system, host, host_resources, paces, responses)
+        host: _build_host_load(system, host, host_resources, shares, paces, responses)
         for host, host_resources in by_host.items()
     }
 
@@ -161,17 +176,33 @@ def activity_share(system: TimingSystem, name: str, pace: EventPace) -> TimingVa
     )
 
 
+def _add_storing_share(
+    system: TimingSystem, name: str, share: TimingValue, outputs: Mapping[tuple[str, str], EventPace]
+) -> TimingValue:
+    """Return the share of a core that an activity takes, with the callbacks that store its inputs."""
+    storing = system.activities[name].storing
+    if not any(callback.wcet for callback in storing.values()):
+        return share
+    storing_shares = [
+        replace_figure(pace.rate, pace.rate.value * storing[arc.input].wcet * system.tick / NS_PER_SECOND)
+        if (pace := outputs[arc.source, arc.output]).rate.value is not None
+        else pace.rate
+        for arc in system.arcs_into.get(name, ())
+        if arc.role == "data" and arc.input in storing and storing[arc.input].wcet
+    ]
+    return add_values((share, *storing_shares))
+
+
 def _build_host_load(
     system: TimingSystem,
     host: str,
     host_resources: list[ProcessingResource],
+    share_of: Mapping[str, TimingValue],
     paces: Mapping[str, EventPace],
     responses: Mapping[str, ResponseTime],
 ) -> HostLoad:
     """Return the load of one host."""
-    shares = {
-        name: activity_share(system, name, paces[name]) for resource in host_resources for name in resource.members
-    }
+    shares = {name: share_of[name] for resource in host_resources for name in resource.members}
     loads = tuple(
         (resource.id, resource.cores, add_values(shares[name] for name in resource.members))
         for resource in host_resources
@@ -209,7 +240,7 @@ def _judge_host(
     is_full = any(load.value == cores for _, cores, load in loads)
     if any(not load.complete or load.value is None for _, _, load in loads):
         return "overload" if is_full else "unknown"
-    if all(_is_done_in_time(paces[name], responses[name]) for name in members):
+    if all(_is_done_in_time(system, name, paces[name], responses[name]) for name in members):
         return "schedulable"
     if is_full:
         return "overload"
@@ -235,6 +266,16 @@ def _fits_rate_monotonic(
     ]
     if any(paces[activity.id].jitter != ZERO_VALUE for activity in working_activities):
         return False
+    # Nor is a thread of several, who do not preempt one another, another order, or a deadline before the next activation.
+    lanes = {name_lane(system, activity) for activity in working_activities}
+    is_plain = len(lanes) == len(working_activities) and all(
+        activity.deadline is None or (activity.period is not None and activity.deadline >= activity.period)
+        for activity in working_activities
+    )
+    orders = {system.host_orders.get(activity.host or "") for activity in working_activities}
+    orders |= {order for (host, _), order in system.core_orders.items() if host in {a.host for a in working_activities}}
+    if not is_plain or not orders <= {None, "fixed_priority"}:
+        return False
     by_rate = sorted(working_activities, key=lambda activity: -(paces[activity.id].rate.value or 0))
     priorities = [activity.priority for activity in by_rate]
     is_by_rate = all(
@@ -246,12 +287,15 @@ def _fits_rate_monotonic(
     )
 
 
-def _is_done_in_time(pace: EventPace, response: ResponseTime) -> bool:
-    """Whether an activity is done before it is activated again."""
+def _is_done_in_time(system: TimingSystem, name: str, pace: EventPace, response: ResponseTime) -> bool:
+    """Whether an activity is done by its deadline; before it is activated again, where none is written."""
     if pace.rate.value == 0:
         return True
     if response.worst.value is None or not response.worst.complete or not pace.rate.value:
         return False
+    deadline = system.activities[name].deadline
+    if deadline is not None:
+        return response.worst.value <= deadline * system.tick
     (worst_numerator, worst_denominator), (rate_numerator, rate_denominator) = (
         response.worst.value.as_integer_ratio(),
         pace.rate.value.as_integer_ratio(),

@@ -10,10 +10,11 @@ from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.level_cascades import LevelCascades, build_level_cascades, number_arcs
+from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.run_ways import EntryWay, Priority, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork, lower_crowded_threads
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.thread_pools import is_reentrant
+from archgen.timing.system.thread_pools import works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -28,6 +29,8 @@ class InnerCore:
     thread_of: Mapping[str, ThreadWork]
     levels: Mapping[Priority, LevelCascades]
     ways_to: Mapping[str, tuple[EntryWay, ...]]
+    queue: CoreQueue | None = None
+    """The queue that the core works off, where its order is written."""
 
 
 def prepare_inner_core(system: TimingSystem, resource: ProcessingResource, inner_triggers: InnerTriggers) -> InnerCore:
@@ -71,7 +74,7 @@ def _build_plain_thread(system: TimingSystem, unit: tuple[str, ...]) -> ThreadWo
     written_priorities = [priority for priority in priorities if priority is not None]
     lowest = min(written_priorities) if len(written_priorities) == len(priorities) else None
     highest = max(written_priorities, default=None)
-    return ThreadWork(unit, (), None, lowest, highest, Fraction(0), is_reentrant(system, system.activities[unit[0]]))
+    return ThreadWork(unit, (), None, lowest, highest, Fraction(0), works_in_order(system, system.activities[unit[0]]))
 
 
 def urgency_of(level: Priority) -> int:

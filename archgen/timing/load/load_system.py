@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.system.core_placement import CoreSet, find_core_sets
+from archgen.timing.system.core_placement import CoreSet, find_core_sets, find_free_cores
 from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
 
 
@@ -58,6 +59,13 @@ def _find_reader(storing: Activity) -> str:
     return storing.id.partition(" ")[0]
 
 
+def list_written_priorities(system: TimingSystem, load_system: TimingSystem) -> dict[str, int | None]:
+    """Return the priorities that are written, of storing callbacks as well: those of their readers."""
+    return {
+        activity.id: system.activities[_find_reader(activity)].priority for activity in load_system.activities.values()
+    }
+
+
 def _build_storing_activities(system: TimingSystem) -> Iterator[tuple[tuple[str, str], Activity]]:
     """Yield the activities of storing callbacks that take time, by reader and input."""
     for reader in system.activities.values():
@@ -104,8 +112,7 @@ def _group_connected(
 ) -> Iterator[tuple[CoreSet, list[str]]]:
     """Yield the cores of a host that are linked by what may run on several of them, with what runs there."""
     all_cores = tuple(range(system.cores.get(host) or 1 + max(max(each, default=0) for each in core_sets.values())))
-    pinned_cores = {core for core_set in core_sets.values() for core in core_set}
-    free_cores = tuple(core for core in all_cores if core not in pinned_cores) or all_cores
+    free_cores = find_free_cores(len(all_cores), core_sets.values())
     allowed_sets = {unit: core_set or free_cores for unit, core_set in core_sets.items()}
     neighbours: dict[int, list[int]] = {core: [] for core in all_cores}
     for core_set in allowed_sets.values():
@@ -119,6 +126,6 @@ def _group_connected(
             yield tuple(cores), names
 
 
-def order_of_core(system: TimingSystem, host: str, core: int) -> str | None:
+def order_of_core(system: TimingSystem, host: str, core: int) -> SchedulingOrder | None:
     """Return the order that is written for a core, or for its host."""
     return system.core_orders.get((host, core), system.host_orders.get(host))

@@ -36,7 +36,7 @@ from archgen.timing.load.thread_work import (
     work_utilisation,
 )
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.thread_pools import is_reentrant
+from archgen.timing.system.thread_pools import works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -60,7 +60,7 @@ def find_dedicated_response(
     if work_utilisation(work.cost, work.streams) >= 1:
         return WorstResponse(None, "dedicated", OVERLOAD_CAUSE)
     try:
-        if is_reentrant(system, activity):
+        if not works_in_order(system, activity):
             return WorstResponse(longest_busy_period(GrowingLoad((work,)).demand_function(), budget), "dedicated")
         return WorstResponse(worst_response(work, NO_DEMAND, budget), "dedicated")
     except DivergedError:
@@ -176,7 +176,7 @@ def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_c
         return WorstResponse(None, "host", unite_causes(causes))
     works = [work for thread in threads for work in thread.works]
     try:
-        if len(works) == 1 and works[0].streams and not threads[0].is_reentrant:
+        if len(works) == 1 and works[0].streams and threads[0].in_order:
             return WorstResponse(worst_response(works[0], NO_DEMAND, budget), "host")
         load = GrowingLoad(works)
         return WorstResponse(
@@ -212,7 +212,7 @@ def _bound_by_priority(
         busy_period = ranked.busy_period_of_first(count, budget)
         # Activation by activation, only for a single activity; for an executor the whole busy period is the bound,
         # since its callbacks may run in any order.
-        if len(thread.works) == 1 and not thread.is_reentrant:
+        if len(thread.works) == 1 and thread.in_order:
             interference = subtract_demand(ranked.demand_of_first(count), GrowingLoad(thread.works).demand_function())
             busy_period = worst_response(thread.works[0], interference, budget, busy_period)
         return WorstResponse(busy_period, tier)

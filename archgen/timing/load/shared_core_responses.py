@@ -42,6 +42,7 @@ from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.storing_waits import longest_busy_window
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
+from archgen.timing.system.timing_system import samples_inputs
 
 _MAX_SWEEPS = 60
 """Sweeps over all runs of some cores before their responses are given up."""
@@ -267,7 +268,7 @@ class _SharedCoreSolver:
             {
                 name: self._find_storing_wait(name)
                 for name in self.cores.inner_triggers.order
-                if self.cores.system.activities[name].storing
+                if samples_inputs(self.cores.system, self.cores.system.activities[name])
             },
         )
 

@@ -91,7 +91,7 @@ def _find_core_wait(
     ]
     causes = [each.cause for each in counting_threads if each.cause]
     if resource.missing:
-        causes.append(UnknownCause(resource.missing))
+        return WorstResponse(None, "unknown", unite_causes((*causes, UnknownCause(resource.missing))))
     share = sum_fractions([each.share for each in counting_threads])
     if share > 1:
         return WorstResponse(None, "host", OVERLOAD_CAUSE)

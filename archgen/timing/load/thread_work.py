@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -14,7 +15,7 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, su
 from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ThreadUnit
-from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, is_reentrant
+from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, name_lane, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -24,6 +25,12 @@ class WorstResponse(NamedTuple):
     value: int | None
     tier: ResponseTier
     cause: UnknownCause = UnknownCause()
+
+    def limit_to(self, bound: int | None, tier: ResponseTier) -> WorstResponse:
+        """Return the response of another tier where that is the smaller bound; what is declared stays."""
+        if bound is None or self.value is None or self.value <= bound or self.tier in {"declared", "unknown"}:
+            return self
+        return WorstResponse(bound, tier)
 
 
 EventModels = Mapping[str, EventStreams | UnknownCause]
@@ -60,8 +67,8 @@ class ThreadWork:
     lowest_priority: int | None
     highest_priority: int | None
     share: Fraction
-    is_reentrant: bool = False
-    """Whether several activations of its only activity may run at once."""
+    in_order: bool = True
+    """Whether the activations of its only activity begin in the order in which they come, one after the other."""
 
 
 def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
@@ -81,7 +88,7 @@ def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventMode
         _lowest_priority(system, unit),
         max(priorities, default=None),
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
-        is_reentrant(system, system.activities[unit[0]]),
+        works_in_order(system, system.activities[unit[0]]),
     )
 
 
@@ -118,19 +125,27 @@ def lower_crowded_threads(
 def _lowest_in_crowded(
     system: TimingSystem, threads: Sequence[ThreadWork], event_models: EventModels
 ) -> dict[str, int | None]:
-    """Return the least priority in the process of each activity that may wait for one of several threads there."""
+    """Return the least priority in what the members of some threads wait for, by the thread's first member.
+
+    That is the process, where one may wait for one of several threads, else a callback group that is divided.
+    """
     # A single thread is one unit and needs no lowering: its members run one after the other anyway. Of what never works
     # nobody has to wait for a thread.
     working_ids = [name for thread in threads for name in thread.unit if event_models[name] != ()]
     crowded_pools = find_crowded_pools(system, [system.activities[name] for name in working_ids])
-    members_by_pool: dict[ThreadPool, list[str]] = {}
-    for name, pool in crowded_pools.items():
-        members_by_pool.setdefault(pool, []).append(name)
-    lowest_by_pool = {pool: _lowest_priority(system, names) for pool, names in members_by_pool.items()}
-    pools = [
-        (thread.unit, crowded_pools.get(next((n for n in thread.unit if n in crowded_pools), ""))) for thread in threads
-    ]
-    return {unit[0]: lowest_by_pool[pool] for unit, pool in pools if pool is not None}
+    unit_counts = Counter(name_lane(system, system.activities[thread.unit[0]]) for thread in threads)
+    members_by_pool: dict[ThreadPool | str, list[str]] = {}
+    for name in working_ids:
+        lane = name_lane(system, system.activities[name])
+        if name in crowded_pools or unit_counts[lane] > 1:
+            members_by_pool.setdefault(crowded_pools.get(name, lane), []).append(name)
+    lowest_by_pool = {key: _lowest_priority(system, names) for key, names in members_by_pool.items()}
+    lowest_of = {name: lowest_by_pool[key] for key, names in members_by_pool.items() for name in names}
+    return {
+        thread.unit[0]: lowest_of[name]
+        for thread in threads
+        if (name := next((each for each in thread.unit if each in lowest_of), "")) in lowest_of
+    }
 
 
 def _lowest_reached(priority: int | None, priority_spans: Iterable[tuple[int | None, int | None]]) -> int | None:

@@ -165,11 +165,13 @@ def _find_callback_group(part: _NodePart) -> str | None:
 def _storing_callbacks(
     part: _NodePart, triggers: Collection[str], tick_unit: TickUnit
 ) -> Iterator[tuple[str, StoringCallback]]:
-    """Yield the inputs that carry messages and fire nobody, each with the callback that stores them."""
+    """Yield the inputs that carry messages and fire nobody, each with the callback that stores them, if one does."""
     for endpoint in part.endpoints:
         key = endpoint_key(endpoint)
         if endpoint.use == "subscribes" and key not in triggers:
             times = part.timing.inputs.get(key, _NO_INPUT_TIMING)
+            if times.stored_at_once:
+                continue
             wcet, bcet = map(tick_unit.quantity_to_ticks, (times.wcet, times.bcet))
             yield key, StoringCallback(wcet or 0, bcet or 0)
 

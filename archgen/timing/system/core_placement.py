@@ -1,8 +1,8 @@
 """Who shares a processor with whom: activities in units (one thread, or one callback group, each), units on cores.
 
-A core to which something is pinned is kept for what is pinned there; everything else shares the remaining cores. Where
-none remains, what is not pinned may run anywhere, and interferes everywhere. What is pinned to a set of cores shares them
-with all that may run on any of them. On a host of which nobody wrote how many cores
+A core to which something is pinned alone is kept for what is pinned there; everything else shares the remaining cores.
+Where none remains, what is not pinned may run anywhere, and interferes everywhere. A set of cores keeps nobody away: what
+is pinned to one shares it with all that may run on any of its cores. On a host of which nobody wrote how many cores
 it has, only what is pinned has a core that is known, and a single thread, which uses one however many there are.
 """
 
@@ -17,6 +17,7 @@ from archgen.timing.system.thread_pools import (
     ThreadPool,
     find_crowded_pools,
     find_pool,
+    find_thread_count,
     is_crowded,
     is_reentrant,
     name_lane,
@@ -49,6 +50,8 @@ class ProcessingResource:
     assumptions: tuple[str, ...] = ()
     joined: bool = False
     missing: tuple[str, ...] = ()
+    core_set: CoreSet = ()
+    """The numbers of the cores, where they are known."""
     undisturbed: bool = False
     """One thread, of no more threads than there are cores: it always has one to itself."""
 
@@ -129,11 +132,11 @@ def _group_lanes(system: TimingSystem, members: Iterable[Activity]) -> tuple[Thr
 
 def _resources_of_host(system: TimingSystem, host: str, members: Iterable[Activity]) -> Iterable[ProcessingResource]:
     """Return the resources of a host: one for its only core, else one for each set of cores, and one for the rest."""
-    cores = system.cores.get(host)
-    core_sets = find_core_sets(system, members)
+    cores, lanes = system.cores.get(host), _group_lanes(system, members)
     # One thread uses one core, however many there are.
-    if cores == 1 or (cores is None and _count_working(system, core_sets) <= 1):
-        return (ProcessingResource(host, host, 1, tuple(core_sets)),)
+    if cores == 1 or (cores is None and _count_working(system, lanes) <= 1):
+        return (ProcessingResource(host, host, 1, lanes, core_set=(0,)),)
+    core_sets = find_core_sets(system, members)
     pinned_units: dict[CoreSet, list[ThreadUnit]] = defaultdict(list)
     unpinned_units: list[ThreadUnit] = []
     for unit, core_set in core_sets.items():
@@ -161,11 +164,11 @@ def _pinned_and_open(
     """Yield the resources of a host of which nobody wrote how many cores it has: only pinned cores are known."""
     missing = (name_missing_cores(host),) if unpinned_units else ()
     # A pin to core 3 says that there are cores 0 to 3. If one of them is left, what is not pinned runs there, or on others
-    # that nobody wrote, and disturbs nothing that is pinned.
+    # that nobody wrote, and disturbs nothing that is pinned. A set of cores it may disturb.
     pinned_cores = {core for core_set in pinned_units for core in core_set}
     is_core_left = len(pinned_cores) <= max(pinned_cores, default=-1)
     for resource in _pinned_resources(system, host, pinned_units):
-        yield replace(resource, missing=() if is_core_left else missing)
+        yield replace(resource, missing=() if is_core_left and resource.cores == 1 else missing)
     if unpinned_units:
         yield ProcessingResource(host, host, 1, unpinned_units, missing=missing)
 
@@ -189,6 +192,7 @@ def _pinned_resources(
             foreign_units,
             foreign_units,
             tuple(_torn_thread_notes(system, units)),
+            core_set=core_set,
         )
 
 
@@ -219,37 +223,37 @@ def _pinned_and_shared(
 ) -> Iterable[ProcessingResource]:
     """Yield the cores to which something is pinned, then the cores that everything else shares."""
     cores = system.cores.get(host) or 1
-    pinned_cores = {core for core_set in pinned_units for core in core_set}
-    free_cores = cores - len(pinned_cores)
+    free_cores = find_free_cores(cores, pinned_units)
     units_by_set = dict(pinned_units)
-    if unpinned_units and not free_cores:
-        # With a pin on every core nothing is left for the unpinned units. They may land on any core, so they interfere
-        # on each one, and everything pinned interferes with them.
-        all_cores = tuple(range(cores))
-        units_by_set[all_cores] = [*units_by_set.pop(all_cores, ()), *unpinned_units]
-    yield from _pinned_resources(system, host, units_by_set)
-    if unpinned_units and free_cores:
-        assumptions = ("cores to which something is pinned are kept for it",) if pinned_units else ()
-        yield ProcessingResource(host, host, free_cores, unpinned_units, assumptions=assumptions)
+    if unpinned_units:
+        units_by_set[free_cores] = [*units_by_set.pop(free_cores, ()), *unpinned_units]
+    for resource in _pinned_resources(system, host, units_by_set):
+        is_rest = bool(unpinned_units) and unpinned_units[0] in resource.units
+        kept_notes = ("cores to which something is pinned are kept for it",) if len(free_cores) < cores else ()
+        yield replace(resource, id=host, assumptions=kept_notes) if is_rest else resource
+
+
+def find_free_cores(core_count: int, pinned_sets: Iterable[CoreSet]) -> CoreSet:
+    """Return the cores on which what is not pinned may run: those that are kept for nothing, else all."""
+    # With a pin on every core nothing is left for what is not pinned. It may land on any core, so it interferes on each
+    # one, and everything pinned interferes with it.
+    kept_cores = {core_set[0] for core_set in pinned_sets if len(core_set) == 1}
+    return tuple(core for core in range(core_count) if core not in kept_cores) or tuple(range(core_count))
 
 
 def _torn_thread_notes(system: TimingSystem, units: Iterable[ThreadUnit]) -> Iterable[str]:
-    """Yield an assumption for each thread, or callback group, whose members are pinned to several cores."""
+    """Yield an assumption for each thread whose members are pinned to several cores."""
     for unit in units:
         activities = [system.activities[name] for name in unit]
         if len({core_set for activity in activities if (core_set := _find_cores(system, activity))}) > 1:
             pool = find_pool(system, activities[0])
-            key = pool.key if pool else activities[0].id
-            if pool and pool.threads == 1:
-                yield f"{key} has one thread: it runs where the first pinned member is"
-            else:
-                yield f"a callback group of {key} runs where the first pinned member is"
+            yield f"{pool.key if pool else activities[0].id} has one thread: it runs where the first pinned member is"
 
 
 def _join_resources(
     system: TimingSystem, host_resources: tuple[ProcessingResource, ...]
 ) -> Iterable[ProcessingResource]:
-    """Join the cores over which the members of a process with fewer threads than it may ask for are spread."""
+    """Join the cores over which members are spread of a callback group, or of a process with too few threads."""
     # A member may wait for a thread that is held by a member on another core, and that one for its core: the wait
     # crosses cores, so that the work of all joined cores bounds it (tests/timing/test_shared_threads.py has an example
     # of 11 ms).
@@ -277,12 +281,13 @@ def _join_resources(
 def _cores_sharing_threads(
     system: TimingSystem, host_resources: tuple[ProcessingResource, ...]
 ) -> dict[int, list[int]]:
-    """Return for each resource, by position, those that share the threads of a process with it."""
+    """Return for each resource, by position, those that share a callback group or the threads of a process with it."""
     members = [system.activities[name] for resource in host_resources for name in resource.members]
     crowded_pools = find_crowded_pools(system, members)
-    positions_by_pool: dict[ThreadPool, dict[int, None]] = defaultdict(dict)
+    positions_by_pool: dict[ThreadPool | str, dict[int, None]] = defaultdict(dict)
     for position, resource in enumerate(host_resources):
         for name in resource.members:
+            positions_by_pool[name_lane(system, system.activities[name])][position] = None
             if name in crowded_pools:
                 positions_by_pool[crowded_pools[name]][position] = None
     neighbours: dict[int, list[int]] = {position: [] for position in range(len(host_resources))}
@@ -295,22 +300,19 @@ def _cores_sharing_threads(
 def find_core_sets(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadUnit, CoreSet]:
     """Return the units of some activities, each with the cores to which it is pinned, none where it is not.
 
-    A unit is pinned where its first pinned member is. A pin to a core that does not exist counts as none.
+    A thread is pinned where its first pinned member is; a callback group is divided where its members are pinned apart. A
+    pin to a core that does not exist counts as none.
     """
-    return {
-        unit: next(
-            (core_set for name in unit if (core_set := _find_cores(system, system.activities[name]))),
-            (),
-        )
-        for unit in _group_lanes(system, members)
-    }
-
-
-def find_pins(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadUnit, int | None]:
-    """Return the units of some activities, each with the only core on which it may run, or None."""
-    return {
-        unit: core_set[0] if len(core_set) == 1 else None for unit, core_set in find_core_sets(system, members).items()
-    }
+    core_sets: dict[ThreadUnit, CoreSet] = {}
+    for unit in _group_lanes(system, members):
+        names_by_set: dict[CoreSet, list[str]] = defaultdict(list)
+        for name in unit:
+            names_by_set[_find_cores(system, system.activities[name])].append(name)
+        if len(names_by_set) == 1 or find_thread_count(system, unit[0]) == 1:
+            core_sets[unit] = next((core_set for core_set in names_by_set if core_set), ())
+        else:
+            core_sets |= {tuple(names): core_set for core_set, names in names_by_set.items()}
+    return core_sets
 
 
 def _find_cores(system: TimingSystem, activity: Activity) -> CoreSet:

@@ -44,6 +44,29 @@ def is_reentrant(system: TimingSystem, activity: Activity) -> bool:
     return executor is not None and executor.threads != 1 and activity.callback_group is None
 
 
+def works_in_order(system: TimingSystem, activity: Activity) -> bool:
+    """Whether the activations of an activity begin in the order in which they come, each at the end of the one before.
+
+    Not what is reentrant, and not what several subscriptions or services fire: each of these has a queue of its own.
+    """
+    if is_reentrant(system, activity):
+        return False
+    return activity.executor not in system.executors or count_entities(system, activity) <= 1
+
+
+def count_entities(system: TimingSystem, activity: Activity) -> int:
+    """Return how many callbacks of an activity wait for their turn: its clock, or each subscription and service."""
+    if activity.behaviour == "periodic":
+        return 1
+    return len(
+        {
+            (arc.role, arc.input, arc.topic)
+            for arc in system.arcs_into.get(activity.id, ())
+            if arc.role == "request" or arc.input in activity.triggers
+        }
+    )
+
+
 def find_thread_count(system: TimingSystem, name: str) -> int | None:
     """Return how many threads may run an activity's process, None where there are as many as are asked for."""
     pool = find_pool(system, system.activities[name])
@@ -78,7 +101,7 @@ def is_crowded(system: TimingSystem, pool: ThreadPool, members: Iterable[Activit
     )
 
 
-def find_torn_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]:
+def find_joint_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]:
     """Return the nodes outside of containers that implement several components and have one thread, with these."""
     members_by_node: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():

@@ -225,4 +225,10 @@ def calls_per_activation(caller: Activity, request: Arc) -> Fraction:
 
 def is_sampled(reader: Activity, arc: Arc) -> bool:
     """Whether a message on an arc waits in its reader's executor until a callback stores it."""
-    return arc.input in reader.storing and arc.role != "request"
+    # The client of a service gets its answer in a callback as well.
+    return bool(reader.executor) if arc.role == "answer" else arc.role == "data" and arc.input in reader.storing
+
+
+def samples_inputs(system: TimingSystem, activity: Activity) -> bool:
+    """Whether messages to an activity wait in its executor until a callback stores them."""
+    return bool(activity.storing) or any(is_sampled(activity, arc) for arc in system.arcs_into.get(activity.id, ()))

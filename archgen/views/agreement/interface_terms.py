@@ -223,7 +223,9 @@ def _list_ends(lookup: Lookup, interface: PartnerInterface) -> Iterator[Interfac
             yield from _end_rows(lookup, verbs[1], component, "", endpoints, is_taker=True)
     for input_port in interface.inputs:
         endpoints = [endpoint for endpoint in interface.taker_endpoints if endpoint.port == input_port.id]
-        role = f"{verbs[1]} (optional)" if input_port.optional else verbs[1]
+        marks = ["optional"] if input_port.optional else []
+        marks += [f"no older than {input_port.freshness}"] if input_port.freshness else []
+        role = f"{verbs[1]} ({', '.join(marks)})" if marks else verbs[1]
         yield from _end_rows(
             lookup,
             role,

@@ -43,6 +43,9 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
         "promised": sorted(_list_promises(lookup, endpoint) for endpoint in givers),
         "size": _write_quantity(message_type.size if message_type else None),
     }
+    freshness = {_write_quantity(port.freshness) for port in interface.inputs if port.freshness}
+    # Nothing where nobody asks for it: versions that were signed stay what they are.
+    content |= {"freshness": sorted(freshness)} if freshness else {}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:_DIGITS]
 
 

@@ -65,6 +65,7 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
         ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         ("Runs on", _location_cell(node)),
+        ("Callbacks", inline_text.to_inlines(callbacks) if (callbacks := _describe_callbacks(node)) else ()),
         ("Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)),
         ("Tags", inline_text.to_inlines(", ".join(node.tags)) if node.tags else ()),
         ("Links", inline_text.link_urls(node.urls.items())),
@@ -88,6 +89,18 @@ def _location_cell(node: Node) -> Inlines:
     """Return the host of a node, and the container whose process it shares."""
     host = _link_or_empty(node.host, "host") or inline_text.UNKNOWN_INLINES
     return (*host, Text(", in the process "), *_link_or_empty(node.container, "container")) if node.container else host
+
+
+def _describe_callbacks(node: Node) -> str:
+    """Describe how the callbacks of a node run, as far as it says so itself."""
+    groups = inline_text.format_callback_groups(node)
+    parts = (
+        f"{node.threads} thread{'s' if node.threads > 1 else ''}" if node.threads else "",
+        f"in the order {node.scheduling}" if node.scheduling else "",
+        "reentrant" if node.reentrant else "",
+        f"mutually exclusive in groups ({groups})" if groups else "",
+    )
+    return ", ".join(part for part in parts if part)
 
 
 def _link_or_empty(element_id: str | None, kind: str) -> Inlines:

@@ -261,9 +261,12 @@ def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
 
 def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     architecture = lookup.architecture
+    order = host.scheduling or inline_text.format_core_orders(host)
     facts = [
         ("Cores", inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES),
+        ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
         (
             "Links",
             inline_text.join_inlines(
@@ -288,6 +291,14 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     return _make_page(Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts", "page:hosts"), "Host")
 
 
+def _name_resources(lookup: Lookup, host: Host) -> Iterator[str]:
+    """Yield the titles of a host's resources, each with its users."""
+    for resource in lookup.architecture.resources.values():
+        if resource.host == host.id:
+            users = ", ".join(node.id for node in lookup.architecture.nodes_using(resource.id))
+            yield f"{resource.title} (used by {users})" if users else resource.title
+
+
 def _container_page(lookup: Lookup, container_id: str) -> Page:
     container = lookup.architecture.containers[container_id]
     facts = [
@@ -301,6 +312,7 @@ def _container_page(lookup: Lookup, container_id: str) -> Page:
             "Threads",
             inline_text.to_inlines(str(container.threads)) if container.threads else inline_text.UNKNOWN_INLINES,
         ),
+        *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
     ]
     nodes = make_node_table(lookup, [node for node in lookup.shown_nodes() if node.container == container_id])
     crumb = ("Hosts", "page:hosts")

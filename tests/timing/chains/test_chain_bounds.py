@@ -10,6 +10,8 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import duerr_bounds
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.run_analysis import analyse_architecture
+from tests.timing import random_systems
 from tests.timing.made import analysis, arc, architecture, event, missing, periodic
 from tests.timing.sketches import analyse_sketch, read_sketch
 
@@ -75,6 +77,31 @@ def test_what_is_sent_is_never_older_than_the_data_age(wires: str, gap: int, bou
     sketch = nodes, wires, "chains: {c: {through: [rear, boxes, stop]}}"
     result = bound_all_chains(analyse_sketch(*sketch), read_sketch(*sketch))["c"]
     assert (_ms(result.bound), _ms(result.reduced_age)) == (bound, age)
+
+
+TWO_NODES_OF_ONE_ELEMENT = """
+hosts: {pc: {cores: 1}, arm: {cores: 1}}
+links: {lan: {connects: [pc, arm], latency: 1 ms}}
+groups:
+  g:
+    components:
+      camera: {outputs: {small: std_msgs/msg/Empty}}
+      finder: {inputs: {image: camera.small}}
+nodes:
+  driver: {implements: camera, host: pc, internal: {publishes: {raw: {topic: /raw, message: std_msgs/msg/Empty}}}, timing: {period: 60 ms, wcet: 7 ms}}
+  thinner: {implements: camera, host: pc, internal: {subscribes: {raw: {topic: /raw, message: std_msgs/msg/Empty}}}, publishes: {small: /small}, timing: {behaviour: event, wcet: 20 ms}}
+  reader: {implements: finder, host: arm, timing: {period: 50 ms, wcet: 2 ms}}
+chains: {c: {through: [g.camera, g.finder]}}
+"""
+
+
+def test_what_the_samples_of_the_first_element_fire_is_no_older_than_they_are() -> None:
+    """`thinner` may work 87 ms apart, so that what it sends is used again: but no longer than the sample behind it."""
+    model = random_systems.architecture(TWO_NODES_OF_ONE_ELEMENT)
+    result = bound_all_chains(analyse_architecture(model), model)["c"]
+    assert result.through == ("driver", "thinner", "reader")
+    # 60 + a run of 27 + 1 + 50 + 2. By the sum of its own steps 27 + 1 + (87 + 27) + 2: what it sent is used until the next comes.
+    assert (_ms(result.bound), _ms(result.reduced_age)) == (140, 140)
 
 
 def test_what_an_event_brought_may_be_used_until_the_next_which_may_never_come() -> None:

@@ -87,9 +87,9 @@ def test_every_kind_of_step() -> None:
         "call asker > server: 62 [asker calls /g/server/serve in this very activation], best 4, from a sample 12 [asker calls /g/server/serve in this very activation], age 12: open",
         "  asker 0 + 50 + 5: samples the world every 50 ms at the latest @37:56",
         "  server 3 + 0 [asker calls /g/server/serve in this very activation] + 4: called by /g/server/serve @19:32",
-        "answer server > asker: 62 [the reaction counts from the event that fires server; data age is larger by its largest gap (unknown for server)], best 4, from a sample 62, age >= 12 ?server: open",
+        "answer server > asker: 66 [the reaction counts from the event that fires server; data age is larger by its largest gap (unknown for server)], best 4, from a sample 66, age >= 16 ?server: open",
         "  server 0 + 0 + 4: its event is the stimulus @36:41",
-        "  asker 3 + 50 + 5: takes the answer of /g/server/serve every 50 ms at the latest @37:56",
+        "  asker 3 + 54 + 5: takes the answer of /g/server/serve every 50 ms at the latest, which may wait 4 ms to be stored @37:56",
         "ways imu > slow > hub: 64, best >= 2 ?slow,hub, from a sample 54, age 59: not proven",
         "  imu 0 + 10 + 5: samples the world every 10 ms at the latest @23:52",
         "  slow 3 + 42 + 1: triggered by /g/imu/out; keeps a smallest gap @27:55",
@@ -269,12 +269,12 @@ def test_links_hosts_and_declared_responses() -> None:
     """On one host with priorities; a link with traffic of its own; what is missing is named."""
     model = read_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES)
     assert list_chains(analyse_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES), model) == [
-        "two a > b: 34, best 3, from a sample 24, age 14: not proven",
+        "two a > b: 35, best 3, from a sample 25, age 15: not proven",
         "  a 0 + 10 + 1: samples the world every 10 ms at the latest @13:48",
-        "  b 0 + 20 + 3: reads /g/a/out every 20 ms at the latest @14:48",
-        "far a > b > c > d: 128 [queueing on link lan (up to 1 ms) is within its latency; link wan keeps its written latency, though 10 ms of traffic can wait for it], best >= 6 ?c,d, from a sample 118 [queueing on link lan (up to 1 ms) is within its latency; link wan keeps its written latency, though 10 ms of traffic can wait for it], age 94 [queueing on link lan (up to 1 ms) is within its latency; link wan keeps its written latency, though 10 ms of traffic can wait for it]: not proven",
+        "  b 0 + 21 + 3: reads /g/a/out every 20 ms at the latest, which may wait 1 ms to be stored @14:48",
+        "far a > b > c > d: 129 [queueing on link lan (up to 1 ms) is within its latency; link wan keeps its written latency, though 10 ms of traffic can wait for it], best >= 6 ?c,d, from a sample 119 [queueing on link lan (up to 1 ms) is within its latency; link wan keeps its written latency, though 10 ms of traffic can wait for it], age 95 [queueing on link lan (up to 1 ms) is within its latency; link wan keeps its written latency, though 10 ms of traffic can wait for it]: not proven",
         "  a 0 + 10 + 1: samples the world every 10 ms at the latest @13:48",
-        "  b 0 + 20 + 3: reads /g/a/out every 20 ms at the latest @14:48",
+        "  b 0 + 21 + 3: reads /g/a/out every 20 ms at the latest, which may wait 1 ms to be stored @14:48",
         "  c 2 [queueing on link lan (up to 1 ms) is within its latency] + 40 + 5: reads /g/b/out every 40 ms at the latest @15:48",
         "  d 2 [link wan keeps its written latency, though 10 ms of traffic can wait for it] + 40 + 5: reads /g/c/out every 40 ms at the latest @16:48",
         "gap d > e: >= 90 ?e [assuming a dedicated core], best >= none ?d,e, from a sample >= 50 ?e [assuming a dedicated core], age >= 55 ?e [assuming a dedicated core]: not proven",
@@ -296,17 +296,17 @@ def test_why_links_hosts_and_declared_responses() -> None:
         analyse_sketch(*LINKS_HOSTS_AND_DECLARED_RESPONSES),
     )
     assert explain(analysis, model, "two") == [
-        "two: 34 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
+        "two: 35 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  a waits 10 ms: samples the world every 10 ms at the latest @13:48",
         "  a takes 1 ms at most @0:0",
-        "  b waits 20 ms: reads /g/a/out every 20 ms at the latest @14:48",
+        "  b waits 21 ms: reads /g/a/out every 20 ms at the latest, which may wait 1 ms to be stored @14:48",
         "  b takes 3 ms at most @0:0",
     ]
     assert explain(analysis, model, "far") == [
-        "far: 128 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
+        "far: 129 ms, the sum of all that follows: what each step waits and takes, and links @0:0",
         "  a waits 10 ms: samples the world every 10 ms at the latest @13:48",
         "  a takes 1 ms at most @0:0",
-        "  b waits 20 ms: reads /g/a/out every 20 ms at the latest @14:48",
+        "  b waits 21 ms: reads /g/a/out every 20 ms at the latest, which may wait 1 ms to be stored @14:48",
         "  b takes 3 ms at most @0:0",
         "  link to c: 2 ms @0:0",
         "  c waits 40 ms: reads /g/b/out every 40 ms at the latest @15:48",

@@ -261,7 +261,7 @@ def test_who_waits_for_a_thread_of_its_container_waits_for_the_least_of_those_th
 
 def thread(name: str, priority: int, cost: int, cause: UnknownCause | None = None) -> ThreadWork:
     work = ActivityWork(cost, (EventStream(period=100),))
-    return ThreadWork((name,), (work,), cause, priority, priority, Fraction(cost, 100), None)
+    return ThreadWork((name,), (work,), cause, priority, priority, Fraction(cost, 100))
 
 
 def test_ranked_threads_may_be_asked_in_any_order() -> None:

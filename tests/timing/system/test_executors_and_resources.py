@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import pytest
 
 from archgen.timing.system.system_builder import build_system
@@ -43,10 +41,10 @@ def built(timing: str = "") -> TimingSystem:
     return build_system(architecture(TEXT.replace("TIMING", timing)))[0]
 
 
-def mind(timing: str) -> tuple[Activity, Fraction]:
+def mind(timing: str) -> tuple[Activity, int]:
     """Return the activity `mind`, and how many ticks a millisecond has."""
     system = built(timing)
-    return system.activities["mind"], MS / system.tick
+    return system.activities["mind"], int(MS / system.tick)
 
 
 def test_a_process_is_a_container_or_a_node_outside_of_one() -> None:
@@ -97,7 +95,7 @@ def test_orders_and_resources_are_those_that_are_written() -> None:
 
 def test_execution_times_uses_and_cores_are_in_ticks() -> None:
     system = built()
-    eye, ms = system.activities["eye"], MS / system.tick
+    eye, ms = system.activities["eye"], int(MS / system.tick)
     assert (eye.wcet, eye.percentiles, eye.wcet_measured) == (4 * ms, {"p50": ms, "p99": 3 * ms}, True)
     assert eye.uses == {"gpu": ResourceUse(6 * ms, 2 * ms), "tpu": ResourceUse(1 * ms, 0)}
     assert (eye.cores, eye.core) == ((1, 3), None)
@@ -117,7 +115,7 @@ def test_execution_times_uses_and_cores_are_in_ticks() -> None:
 def test_what_fires_nobody_and_carries_messages_is_stored(timing: str, storing: dict[str, tuple[int, int]]) -> None:
     activity, ms = mind(timing)
     assert activity.storing == {
-        f"g.mind.{name}": StoringCallback(int(wcet * ms), int(bcet * ms)) for name, (wcet, bcet) in storing.items()
+        f"g.mind.{name}": StoringCallback(wcet * ms, bcet * ms) for name, (wcet, bcet) in storing.items()
     }
 
 

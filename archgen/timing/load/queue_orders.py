@@ -1,0 +1,173 @@
+"""Responses of one queue whose order is known: what one thread, or one core, works off one after the other.
+
+Each analysis looks at a busy time that begins at 0, and at an activation that comes at `a` in it: what is done before it
+is what comes before it in the queue's order. Between the instants at which something comes (or its deadline does) nothing
+changes but `a`, so that only these are looked at. Windows are closed: what comes at the same instant may come first.
+
+- `fifo`: all that came up to a (the published figures of FIFO are of this sum).
+- `non_preemptive`: L. George, N. Rivierre, M. Spuri 1996; R. Davis, A. Burns, R. Bril, J. Lukkien 2007: a less urgent job
+  that has just begun, own jobs, and all more urgent ones that come until the job begins.
+- `edf`: M. Spuri 1996 where a job may be preempted, George et al. 1996 where not: what has a deadline up to a + D.
+- `ros2_executor`: the round that is under way when it comes, and one round for each job of its own that waits, in which
+  nothing works twice (D. Casini et al. 2019; Y. Tang et al. 2020; T. Blass et al. 2021 for the rounds).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from heapq import merge
+from typing import NamedTuple
+
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
+
+Spend = Callable[[int], None]
+
+
+class QueuedTask(NamedTuple):
+    """What waits in the queue. `priority` None is after all others; `deadline` None: nobody knows how urgent it is.
+
+    `rank` is its place in a round of rclcpp's executor: timers 0, subscriptions 1, services 2, clients 3; `entities` is
+    how often it may work in one round.
+    """
+
+    name: str
+    cost: int
+    streams: EventStreams
+    priority: int | None = None
+    deadline: int | None = None
+    rank: int = 1
+    entities: int = 1
+
+    def count_until(self, time: int) -> int:
+        """Return how many activations come in a closed window of a length (ticks), none where that is negative."""
+        return max_arrivals(self.streams, time + 1) if time >= 0 else 0
+
+    @property
+    def min_spacing(self) -> int:
+        """Return the smallest distance between two activations (ticks); 0 where it is not known."""
+        return self.streams[0].min_spacing if len(self.streams) == 1 else 0
+
+
+def bound_fifo(tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int:
+    """Return the response of each task where what came first is first."""
+    spend, longest = budget.start_search(), 0
+    for arrival in _arrivals_before(busy_period, ((each, 0) for each in tasks)):
+        spend(len(tasks))
+        longest = max(longest, sum(each.cost * each.count_until(arrival) for each in tasks) - arrival)
+    return longest
+
+
+def bound_round(task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int | None:
+    """Return the response in rclcpp's executor of one thread, None where it is above the busy period."""
+    spend, round_work = budget.start_search(), work_of_round(tasks)
+    last_round = sum(each.cost * each.entities for each in tasks if each.rank <= task.rank)
+    waiting = 1
+    while True:
+        spend(2)
+        response = waiting * round_work + last_round
+        # All own jobs that may wait when this one comes: those that came up to a response before.
+        count = task.count_until(response)
+        if response >= busy_period:
+            return None
+        if count <= waiting:
+            return response
+        waiting = count
+
+
+def work_of_round(tasks: Iterable[QueuedTask]) -> int:
+    """Return the work of a round of rclcpp's executor in which everything is ready."""
+    return sum(each.cost * each.entities for each in tasks)
+
+
+def bound_non_preemptive(
+    task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
+) -> int | None:
+    """Return the response by priorities where what has begun is not preempted; None without a priority."""
+    if task.priority is None:
+        return None
+    spend = budget.start_search()
+    others = [each for each in tasks if each is not task]
+    urgent = [each for each in others if each.priority is not None and each.priority >= task.priority]
+    blocking = max((each.cost for each in others if each.priority is None or each.priority < task.priority), default=0)
+    longest = 0
+    for count, arrival in enumerate(earliest_arrivals(task.streams)):
+        if arrival and arrival >= busy_period:
+            break
+        own_work = blocking + count * task.cost
+        start = _find_start(own_work, [(each, None) for each in urgent], spend)
+        longest = max(longest, start + task.cost - arrival)
+    return longest
+
+
+def bound_edf(
+    task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget, *, preemptive: bool
+) -> int | None:
+    """Return the response where the earliest deadline is first; None where the task's own is not known."""
+    if task.deadline is None:
+        return None
+    spend, longest = budget.start_search(), task.cost
+    others = [each for each in tasks if each is not task]
+    own_deadline = task.deadline
+    # A deadline that nobody knows may always be the earlier one: as if it were long ago.
+    leads = [(each, _lead(each, own_deadline)) for each in others]
+    jumps = [(task, 0), *((each, lead) for each, lead in leads if lead is not None)]
+    for arrival in _arrivals_before(busy_period, jumps):
+        own_work = task.cost * max(task.count_until(arrival), 1)
+        limits = [(each, None if lead is None else arrival + lead) for each, lead in leads]
+        if preemptive:
+            end = _find_end(own_work, limits, spend)
+        else:
+            later = [each.cost for each, limit in limits if limit is not None and limit < 0]
+            end = _find_start(own_work - task.cost + max(later, default=0), limits, spend) + task.cost
+        longest = max(longest, end - arrival)
+    return longest
+
+
+def _lead(other: QueuedTask, own_deadline: int) -> int | None:
+    """Return how much later another task may come and still be first; None where it always may."""
+    return None if other.deadline is None else own_deadline - other.deadline
+
+
+def _find_end(own_work: int, limits: Sequence[tuple[QueuedTask, int | None]], spend: Spend) -> int:
+    """Return when own work is done that others may interrupt: those that come before then, and up to their limit."""
+    end = own_work
+    while True:
+        spend(len(limits) + 1)
+        work = own_work + sum(_work_of(each, end - 1, limit) for each, limit in limits)
+        if work <= end:
+            return end
+        end = work
+
+
+def _find_start(work_before: int, limits: Sequence[tuple[QueuedTask, int | None]], spend: Spend) -> int:
+    """Return when a job begins that waits for some work, and for all that comes up to its begin and up to their limit."""
+    start = work_before
+    while True:
+        spend(len(limits) + 1)
+        work = work_before + sum(_work_of(each, start, limit) for each, limit in limits)
+        if work <= start:
+            return start
+        start = work
+
+
+def _work_of(task: QueuedTask, time: int, limit: int | None) -> int:
+    return task.cost * task.count_until(time if limit is None else min(time, limit))
+
+
+def _arrivals_before(end: int, shifted_tasks: Iterable[tuple[QueuedTask, int]]) -> Iterator[int]:
+    """Yield 0 and all instants before an end at which tasks come, each less its shift, in ascending order."""
+
+    def arrivals_of(task: QueuedTask, shift: int) -> Iterator[int]:
+        for time in earliest_arrivals(task.streams) if task.streams else ():
+            if time - shift >= end:
+                return
+            if time >= shift:
+                yield time - shift
+
+    yield 0
+    previous = 0
+    for time in merge(*(arrivals_of(task, shift) for task, shift in shifted_tasks)):
+        if time != previous:
+            yield time
+            previous = time

@@ -1,0 +1,136 @@
+"""Which cores and threads work off one queue in an order that is written, and what that order makes of their responses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
+
+from archgen.frozen import dataclass
+from archgen.model.declared_timing import SchedulingOrder
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.load_system import order_of_core
+from archgen.timing.load.queue_orders import (
+    QueuedTask,
+    bound_edf,
+    bound_fifo,
+    bound_non_preemptive,
+    bound_round,
+)
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import count_entities, find_crowded_pools, find_pool, is_reentrant
+from archgen.timing.system.timing_system import Activity, TimingSystem, samples_inputs
+
+_RANKS = {"periodic": 0, "event": 1, "on_demand": 2}
+"""The place of what fires an activity in a round of rclcpp's executor."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoreQueue:
+    """What works off a queue: the order, and whether it is a core, for which threads wait, or a thread."""
+
+    order: SchedulingOrder
+    is_core: bool
+    tasks: tuple[QueuedTask, ...] = field(default=())
+    """Without events: those are not known yet."""
+
+    @property
+    def stores_in_time(self) -> bool:
+        """Whether a message that comes before an activation is stored before that begins."""
+        return self.order == "fifo" and not self.is_core
+
+    def bound_responses(
+        self, model_of: Callable[[str], EventStreams | UnknownCause], busy_period: int, budget: SearchBudget
+    ) -> dict[str, int]:
+        """Return the responses that the order bounds, for the event models of all that waits; none where one is unknown."""
+        tasks: list[QueuedTask] = []
+        for task in self.tasks:
+            model = model_of(task.name)
+            if task.cost and (isinstance(model, UnknownCause) or not model):
+                return {}
+            tasks.append(task._replace(streams=() if isinstance(model, UnknownCause) else model))
+        working_tasks = [task for task in tasks if task.streams]
+        if len(working_tasks) == 1:
+            return {}  # what is alone waits for itself only
+        responses: dict[str, int] = {}
+        for task in working_tasks:
+            try:
+                response = self._bound_response(task, working_tasks, busy_period, budget)
+            except DivergedError:
+                break
+            if response is not None:
+                responses[task.name] = response
+        return responses
+
+    def _bound_response(
+        self, task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
+    ) -> int | None:
+        if self.order == "ros2_executor":
+            return bound_round(task, tasks, busy_period, budget)
+        if self.order == "fifo":
+            response: int | None = bound_fifo(tasks, busy_period, budget)
+            if not self.is_core:
+                return response
+        elif self.order == "non_preemptive":
+            response = bound_non_preemptive(task, tasks, busy_period, budget)
+        else:
+            response = bound_edf(task, tasks, busy_period, budget, preemptive=self.is_core)
+        # Own jobs are taken to be done in the order in which they come, which a thread that waits for a core decides.
+        is_ordered = task.entities == 1 or (response is not None and response <= task.min_spacing)
+        return response if is_ordered else None
+
+
+def find_core_queue(
+    system: TimingSystem, resource: ProcessingResource, priorities: Mapping[str, int | None]
+) -> CoreQueue | None:
+    """Return the queue of a core, None where its order is not written, or says nothing about what it works off.
+
+    That is a thread that has a core to itself, or a core of threads with one activity each. `priorities` are those that
+    are written, whether the cores look at them or not.
+    """
+    members = [system.activities[name] for name in resource.members]
+    if resource.cores > 1 or resource.joined or resource.missing or resource.foreign_units or not members:
+        return None
+    if any(activity.wcet is None or (activity.behaviour == "once" and activity.wcet) for activity in members):
+        return None
+    order, is_core = _find_order(system, resource, members)
+    if order in {None, "fixed_priority", "round_robin"}:
+        return None
+    return CoreQueue(
+        order,
+        is_core,
+        tuple(_build_task(system, activity, priorities) for activity in members),
+    )
+
+
+def _find_order(
+    system: TimingSystem, resource: ProcessingResource, members: Sequence[Activity]
+) -> tuple[SchedulingOrder | None, bool]:
+    """Return the order of a queue, and whether it is that of a core."""
+    if any(activity.uses for activity in members):
+        return None, False  # who waits for a resource leaves the core to others
+    if len(resource.units) == 1:
+        pool = find_pool(system, members[0])
+        executor = system.executors.get(members[0].executor)
+        is_thread = pool is not None and pool.threads == 1
+        return (executor.order if executor is not None and is_thread else None), False
+    is_plain = all(len(unit) == 1 for unit in resource.units) and not any(is_reentrant(system, a) for a in members)
+    if not is_plain or find_crowded_pools(system, members) or resource.host is None or len(resource.core_set) != 1:
+        return None, False
+    order = order_of_core(system, resource.host, resource.core_set[0])
+    # A thread takes its turn on the core with what it has taken on first, which may be a message to be stored.
+    is_held_up = order != "non_preemptive" and any(samples_inputs(system, activity) for activity in members)
+    return None if is_held_up else order, True
+
+
+def _build_task(system: TimingSystem, activity: Activity, priorities: Mapping[str, int | None]) -> QueuedTask:
+    return QueuedTask(
+        activity.id,
+        activity.wcet or 0,
+        (),
+        priorities.get(activity.id),
+        activity.deadline if activity.deadline is not None else activity.period,
+        _RANKS.get(activity.behaviour or "", 2),
+        max(count_entities(system, activity), 1),
+    )
