@@ -93,10 +93,11 @@ def _start_declared_job(run: SimulationRun, now: int, activity: int, wire: int, 
 def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
+    dropped_samples: Sequence[tuple[int, int]] = ()
     if job[1] >= 0:
-        take_newest(run, job[1], job[2])
+        dropped_samples = _take_sample(run, job[1], job[2])
     elif job[1] == ALL_WIRES:
-        _take_joint_samples(run, now, activity, job[2])
+        dropped_samples = _take_joint_samples(run, now, activity, job[2])
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
     # Requests that came before this start are answered at its end; later ones wait for the next job.
@@ -114,21 +115,38 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
         for wire in wires.logged_wires[activity]:
             wires.source_log[wire].append(newest_job[wire])
     activities.started[activity] += 1
+    for wire, sample in dropped_samples:
+        newest_job[wire] = sample
 
 
-def _take_joint_samples(run: SimulationRun, now: int, activity: int, samples: Sequence[int]) -> None:
-    """Take the samples that fired a job together; -1 stands for a wire that brought none of them."""
-    for wire, sample in zip(run.plan.activities[activity].captured_wires, samples, strict=True):
-        if sample >= 0:
-            take_newest(run, wire, sample)
+def _take_sample(run: SimulationRun, wire: int, sample: int) -> Sequence[tuple[int, int]]:
+    """Let a job that starts read the sample that fired it. Return the wire and what `every` or `throttle` has dropped there
+    since then: that came later, and stays for the next job.
+    """
+    newest_job = run.wires.newest_job
+    newest, newest_job[wire] = newest_job[wire], sample
+    return ((wire, newest),) if newest > sample and run.wires.keeps_order[wire] else ()
+
+
+def _take_joint_samples(
+    run: SimulationRun, now: int, activity: int, samples: Sequence[int]
+) -> Sequence[tuple[int, int]]:
+    """Let a job that starts read the samples that fired it together (-1 for a wire that brought none of them). Return what
+    was dropped since then, as `_take_sample` does.
+    """
     if run.activities.matchers[activity] is not None:
         _record_fusion(run, now, activity, samples)
+    return [
+        dropped_sample
+        for wire, sample in zip(run.plan.activities[activity].captured_wires, samples, strict=True)
+        if sample >= 0
+        for dropped_sample in _take_sample(run, wire, sample)
+    ]
 
 
-def take_newest(run: SimulationRun, wire: int, sample: int) -> None:
-    """Make a sample the newest of its wire, unless a newer one was stored already while its job waited."""
-    if sample > run.wires.newest_job[wire] or not run.wires.keeps_order[wire]:
-        run.wires.newest_job[wire] = sample
+def keep_dropped(run: SimulationRun, wire: int, sample: int) -> None:
+    """Store a sample that `every` or `throttle` has dropped, for the next job."""
+    run.wires.newest_job[wire] = sample
 
 
 def stamp_of(run: SimulationRun, wire: int, sample: int) -> int:

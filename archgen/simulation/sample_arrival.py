@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from archgen.simulation.job_activation import (
     fire_activity,
     hold_firing,
+    keep_dropped,
     passes_gate,
     queue_callback,
     stamp_of,
-    take_newest,
 )
 from archgen.simulation.simulation_plan import SLOT_ANY, SLOT_SAMPLED
 from archgen.simulation.simulation_run import ALL_WIRES, SimulationRun
@@ -38,7 +38,7 @@ def deliver_sample(run: SimulationRun, now: int, wire: int, sample: int) -> None
         # released it.
         elif activities.is_gated[activity] and not passes_gate(run, now, activity):
             if run.plan.activities[activity].keeps_dropped:
-                take_newest(run, wire, sample)
+                keep_dropped(run, wire, sample)
         elif activities.jitter[activity]:
             hold_firing(run, now, activity, wire, sample)
         else:
@@ -138,4 +138,4 @@ def _fire_jointly(run: SimulationRun, now: int, activity: int, samples: Sequence
         # A rejected activation still makes its samples the newest: a later call of the same reader reads them.
         for wire, sample in zip(planned.captured_wires, samples, strict=True):
             if sample >= 0:
-                take_newest(run, wire, sample)
+                keep_dropped(run, wire, sample)

@@ -76,8 +76,8 @@ class ThreadPlacement:
     def _order_of(self, host: str, cores: tuple[int, ...]) -> SchedulingOrder | None:
         """Return the order that all of some cores have; None where they differ, or none is written."""
         host_order = self.system.host_orders.get(host)
-        orders = {self.system.core_orders.get((host, core), host_order) for core in cores}
-        return orders.pop() if len(orders) == 1 else None
+        orders = [self.system.core_orders.get((host, core), host_order) for core in cores]
+        return orders[0] if orders.count(orders[0]) == len(orders) else None
 
     def _placed_cores(self, activity: Activity) -> tuple[int, ...]:
         """Return the cores to which an activity is pinned, as far as its host has them; one thread runs where its first

@@ -133,13 +133,15 @@ def test_what_throttle_drops_is_read_by_the_next_job_or_forgotten() -> None:
 
 
 def test_what_was_dropped_is_not_overwritten_by_an_older_message_that_is_read_later() -> None:
-    # The job for the message of 0 begins at 5, behind `busy`; that of 4 was dropped meanwhile, and is newer.
+    # The job for the message of 0 begins at 5, behind `busy`; that of 4 was dropped meanwhile. The call of 7 reads it.
     nodes = [
         timed("fast", 4, 0),
         timed("busy", 100, 5, host="h", priority=9),
+        timed("client", 100, 0),
         event("reader", 1, "fast", throttle=10, host="h", priority=1),
     ]
-    assert _reads(system(nodes, [arc("fast", "reader")], {"h": 1}), 13) == [1, 3]
+    of = system(nodes, [arc("fast", "reader"), *call("client", "reader")], {"h": 1})
+    assert _reads(of, 13, client=7 * MS) == [0, 1, 3]
 
 
 def test_of_dropped_sets_the_newest_stays_or_none() -> None:
