@@ -61,7 +61,10 @@ def test_a_chain_in_json(run: Run, project: Path) -> None:
     chain = data["chains"]["avoid"]
     assert chain["through"] == ["scan", "plan", "drive"]
     assert chain["bound"]["value"] == 50 + 5 + 0 + 20 + 20 + 2
-    assert (chain["deadline"], chain["verdict"]) == (90, "not proven")
+    assert (chain["deadline"], chain["slack"], chain["verdict"]) == (90, -7, "missed")
+    assert chain["witness"]["longest"] > 90
+    assert chain["remedy"]["set"] == ["scan.timing.period=43ms"]
+    assert chain["remedy"]["bound"]["value"] == 90
     assert [term["sampling"]["value"] for term in chain["terms"]] == [50, 0, 20]
     assert data["chains"]["ends"]["bound"] == chain["bound"]
     assert (data["elements"]["plan"]["behaviour"], data["elements"]["plan"]["rate"]["value"]) == ("event", 20)
@@ -70,7 +73,8 @@ def test_a_chain_in_json(run: Run, project: Path) -> None:
 def test_the_summary_names_the_chain_that_is_late(run: Run, project: Path) -> None:
     ran = run("timing", project)
     assert ran.status == 0
-    assert "  avoid  97 ms  deadline 90 ms  not proven" in ran.out
+    assert "  avoid  97 ms  deadline 90 ms  MISSED  7 ms above it  seen in `archgen simulate --seed" in ran.out
+    assert "  avoid  --set scan.timing.period=43ms  then at most 90 ms\n" in ran.out
     assert "  ends   97 ms  no deadline" in ran.out
 
 
