@@ -19,7 +19,7 @@ from archgen.timing.search.largest_step import find_largest_step
 from archgen.timing.search.tried_figures import TriedFigure, find_execution_time, find_own_period
 from archgen.timing.system.timing_system import Activity
 
-MAX_TRIES = 90
+MAX_TRIES = 60
 """How many changes are tried for all chains of a project together."""
 _MAX_ELEMENTS = 6
 """How many elements of a chain, and how many of their neighbours, are looked at: those that add most."""
@@ -41,6 +41,8 @@ class ChainRemedy:
     bound: TimingValue
     tried: tuple[tuple[str, tuple[str, ...]], ...]
     is_cut: bool
+    ran_out: bool = False
+    """Whether no try was left before the search was through."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,16 +70,21 @@ class _FigureRange:
 def find_remedies(trials: ChangeTrials, results: Iterable[ChainResult]) -> list[ChainRemedy]:
     """Return what would prove each chain that is not proven, or is missed though its best case is not too late.
 
-    Each has an equal share of the tries that the chains before it have left.
+    Each has an equal share of the tries; what some do not need goes to those that needed more.
     """
     late_results = [result for result in results if _can_be_helped(result)]
-    remedies: list[ChainRemedy] = []
+    remedies: dict[str, ChainRemedy] = {}
     tries_left = trials.tries_left
     for number, result in enumerate(late_results):
         share = trials.tries_left = tries_left // (len(late_results) - number)
-        remedies.append(_RemedySearch(trials, result).run())
+        remedies[result.id] = _RemedySearch(trials, result).run()
         tries_left -= share - trials.tries_left
-    return remedies
+    trials.tries_left = tries_left
+    for result in late_results:
+        # What was tried before is remembered: that costs no try again.
+        if trials.tries_left > 0 and remedies[result.id].ran_out:
+            remedies[result.id] = _RemedySearch(trials, result).run()
+    return list(remedies.values())
 
 
 def _can_be_helped(result: ChainResult) -> bool:
@@ -99,7 +106,8 @@ class _RemedySearch:
         """Look for the smallest change that proves the chain."""
         elements, neighbours = self.elements[:_MAX_ELEMENTS], self.neighbours[:_MAX_ELEMENTS]
         is_cut = len(elements) < len(self.elements) or len(neighbours) < len(self.neighbours)
-        waiting_elements = list_waiting_elements(self.trials.analysis, self.elements)[:_MAX_ELEMENTS]
+        ran_out = False
+        waiting_elements = list_waiting_elements(self.trials.analysis, self.result)[:_MAX_ELEMENTS]
         try:
             changes = (
                 self._find_setting(waiting_elements)
@@ -107,10 +115,10 @@ class _RemedySearch:
                 or self._combine(waiting_elements)
             )
         except TriesSpentError:
-            changes, is_cut = self.figure_changes, True
+            changes, ran_out = self.figure_changes, True
         bound = self.trials.bound_chain(self.result.id, changes).bound
         tried = tuple((kind, tuple(names)) for kind, names in self.tried.items())
-        return ChainRemedy(self.result.id, changes, bound, tried, is_cut)
+        return ChainRemedy(self.result.id, changes, bound, tried, is_cut or ran_out, ran_out)
 
     def _try(self, changes: Changes) -> Fraction | None:
         """Return the slack that some changes leave, and note the last one as tried."""
@@ -165,7 +173,11 @@ class _RemedySearch:
         """Return by how many steps a figure has to change at least; `reach` is enough."""
 
         def find_slack(step: int) -> Fraction | None:
-            return self._try((figure_range.change_by(-step),))
+            changes = (figure_range.change_by(-step),)
+            slack = self._try(changes)
+            if self._proves(slack, changes):
+                self.figure_changes = changes  # the best so far, should no try be left
+            return slack
 
         return -find_largest_step(find_slack, -reach, 0, reach_slack, self.result.slack)
 

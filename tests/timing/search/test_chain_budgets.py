@@ -87,10 +87,11 @@ def test_all_that_share_a_factor_keep_the_deadline_and_a_thousandth_more_does_no
 def test_each_host_has_a_factor_of_its_own() -> None:
     model, budget = architecture(_read("300 ms")), _find_budget("300 ms")
     factors = dict(budget.hosts)
-    for host, times in {
+    written_times: dict[str, dict[str, int | None]] = {
         "p": {"scan": 1_000, "plan": 20_000, "beside": 30_000},
         "q": {"drive": 500, "idle": 5_000, "last": None},
-    }.items():
+    }
+    for host, times in written_times.items():
         factor = factors[host].factor
         assert factor is not None
         for step, verdict in ((Fraction(0), "met"), (Fraction(1, 1000), "not proven")):
