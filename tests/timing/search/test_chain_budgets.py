@@ -6,7 +6,6 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.emit.terminal.budget_text import budget_to_json, format_budget
 from archgen.timing.figures.figure_wording import write_exact_duration
 from archgen.timing.search.chain_budgets import ChainBudget, UnknownBudgetError, find_chain_budget, share_chain_budget
 from tests.timing.random_systems import architecture
@@ -125,19 +124,3 @@ def test_what_there_was_no_try_left_for_is_named() -> None:
     trials = start_trials(architecture(_read("300 ms")), 12)
     budget = find_chain_budget(trials, trials.bound_chain("c"))
     assert "drive.timing.period" in budget.untried
-
-
-def test_partners_see_what_each_may_take() -> None:
-    text = _read("300 ms") + "partners: {north: {title: North}, south: South}\n"
-    text = text.replace("{implements: scan,", "{implements: scan, owner: north,").replace(
-        "{implements: last,", "{implements: last, owner: south,"
-    )
-    trials = start_trials(architecture(text))
-    result = trials.bound_chain("c")
-    budget = find_chain_budget(trials, result)
-    lines = list(format_budget(result, budget, {"north": "North", "south": "South"}))
-    assert lines[0] == "c: 181.5 ms, deadline 300 ms, met, 118.5 ms left"
-    owners = [line.split()[:2] for line in lines if line.startswith(("  North", "  South", "  nobody"))]
-    assert [owner for owner in owners if owner[0] != "nobody"] == [["North", "scan"], ["South", "last"]]
-    assert ["nobody", "plan"] in owners
-    assert budget_to_json(result, budget)["slack"] == 118.5
