@@ -11,7 +11,7 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.figures.figure_wording import format_number
 from archgen.timing.figures.value_arithmetic import add_values
 from archgen.timing.load.host_loads import activity_share
-from archgen.timing.system.core_placement import find_unplaced_pools
+from archgen.timing.system.unplaced_pools import find_unplaced_pools
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

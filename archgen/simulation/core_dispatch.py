@@ -87,8 +87,8 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
             if run.processors.ready[threads.processor[thread]]:
                 run.changed_processors.add(threads.processor[thread])
             return
-    slice_time = run.processors.slice_time[threads.processor[thread]]
-    if slice_time:
+    if run.processors.has_slices:
+        slice_time = run.processors.slice_time[threads.processor[thread]] or remaining
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)
         remaining = min(remaining, slice_time)
     running.append(thread)

@@ -182,6 +182,7 @@ class ProcessorStates:
             for index, (processor, scheduler) in enumerate(zip(processors, self.scheduler, strict=True))
         ]
         slice_time = max(1, int(dice.choice(_SLICES_NS) / plan.unit))
+        self.has_slices = TAKE_TURNS in self.scheduler
         self.slice_time = [slice_time if scheduler == TAKE_TURNS else 0 for scheduler in self.scheduler]
         self.ready: list[list[tuple[int, int, int]]] = [[] for _ in processors]
         self.running: list[list[int]] = [[] for _ in processors]

@@ -94,9 +94,13 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     """Read the inputs of a job that starts: the samples that fired it, and the newest of every other input."""
     activities, wires = run.activities, run.wires
     dropped_samples: Sequence[tuple[int, int]] = ()
-    if job[1] >= 0:
-        dropped_samples = _take_sample(run, job[1], job[2])
-    elif job[1] == ALL_WIRES:
+    wire = job[1]
+    if wire >= 0:
+        if wires.newest_job[wire] > job[2]:
+            dropped_samples = _take_sample(run, wire, job[2])
+        else:
+            wires.newest_job[wire] = job[2]
+    elif wire == ALL_WIRES:
         dropped_samples = _take_joint_samples(run, now, activity, job[2])
     for queue in wires.sampled_queues[activity]:
         wires.waiting_count[queue] = 0
@@ -104,19 +108,25 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
     if activities.waiting_requests[activity]:
         requests, activities.waiting_requests[activity] = activities.waiting_requests[activity], []
         activities.accepted_requests[activity].append((activities.started[activity], requests))
-    newest_job, largest_age = wires.newest_job, wires.largest_age
-    for wire, source_ends in run.aged_wires[activity]:
-        read_job = newest_job[wire]
-        if read_job >= 0 and now - source_ends[read_job] > largest_age[wire]:
-            largest_age[wire] = now - source_ends[read_job]
+    if run.aged_wires[activity]:
+        _record_read_ages(run, now, activity)
     if activities.is_watched[activity]:
         activities.job_starts[activity].append(now)
         activities.job_activations[activity].append(job[0])
         for wire in wires.logged_wires[activity]:
-            wires.source_log[wire].append(newest_job[wire])
+            wires.source_log[wire].append(wires.newest_job[wire])
     activities.started[activity] += 1
     for wire, sample in dropped_samples:
-        newest_job[wire] = sample
+        wires.newest_job[wire] = sample
+
+
+def _record_read_ages(run: SimulationRun, now: int, activity: int) -> None:
+    """Record how long ago what a job reads was sent, where its inputs fire nobody."""
+    newest_job, largest_age = run.wires.newest_job, run.wires.largest_age
+    for wire, source_ends in run.aged_wires[activity]:
+        read_job = newest_job[wire]
+        if read_job >= 0 and now - source_ends[read_job] > largest_age[wire]:
+            largest_age[wire] = now - source_ends[read_job]
 
 
 def _take_sample(run: SimulationRun, wire: int, sample: int) -> Sequence[tuple[int, int]]:

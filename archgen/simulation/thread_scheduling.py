@@ -51,15 +51,15 @@ def queue_thread(run: SimulationRun, thread: int) -> None:
     activity = run.callbacks.activity[threads.callback[thread]]
     run.sequence += 1
     priority = run.priority[activity]
+    victim = processors.victim[processor]
     # The heap pops the smallest key first, and a larger priority is more urgent.
-    scheduler, victim = processors.scheduler[processor], processors.victim[processor]
-    urgency = (
-        -1 - priority
-        if priority is not None and processors.uses_priority[processor]
-        else draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
-    )
+    if priority is not None and processors.uses_priority[processor]:
+        urgency = -1 - priority
+    else:
+        scheduler = processors.scheduler[processor]
+        urgency = draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
     order = run.sequence
-    if victim == activity and scheduler == FAVOURED_OTHERS:
+    if victim == activity and processors.scheduler[processor] == FAVOURED_OTHERS:
         # Of equal priorities too it comes last.
         order += LARGEST_KEY
     threads.urgency[thread], threads.ready_order[thread] = urgency, order

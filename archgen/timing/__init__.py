@@ -4,14 +4,15 @@ Read the folders in this order; each one imports only from those before it and f
 
 - `figures`: `timing_values` (a figure that says what it rests on), `value_arithmetic`, `tick_unit`, `figure_wording`.
 - `system`: what timing works on. `timing_system` holds activities and arcs, `system_builder` reads them off an
-  architecture (`activity_builder`, `arc_builder`, `message_sizes`); then who shares which cores (`core_placement`) and
-  who fires whom (`trigger_graph`).
+  architecture (`activity_builder`, `arc_builder`, `message_sizes`); then who waits for a thread (`thread_pools`), who shares
+  which cores (`core_placement`, `unplaced_pools`) and who fires whom (`trigger_graph`).
 - `load`: event models and response times, in integer ticks. `event_streams` (how many events fit into a window),
   `busy_windows` (how long work holds a core), `thread_work` and `response_times` (activities one by one on one core);
   `inner_triggers`, `level_cascades`, `run_ways` and `cascade_demand` (what an event leads to on its core), `inner_core` and
-  `core_responses` (one core), `shared_cores`, `core_paths`, `path_work` and `shared_core_responses` (several); then
-  `event_models` (what is activated, arrives and leaves), `event_propagation` (all resources, to a fixed point),
-  `link_queueing` (links as well); last `host_loads`.
+  `core_responses` (one core), `queue_orders`, `queue_responses` and `ordered_cores` (orders that are written), `shared_cores`, `core_paths`, `path_work` and `shared_core_responses` (several); then
+  `event_models` (what is activated, arrives and leaves), `load_system` (callbacks that store, priorities that count),
+  `storing_waits`, `event_propagation` (all resources, to a fixed point), `link_queueing` (links as well); last `host_loads` and
+  `host_verdicts`.
 - `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`, `activation_rates`,
   `triggered_rates`, `output_rates`; then `link_traffic`, `edge_fit`, `service_waiting`.
 - `chains`: end to end. `trigger_arrivals` and `step_delays` (what a step adds), `cost_network` and `path_search` (which

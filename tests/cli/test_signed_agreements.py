@@ -192,8 +192,10 @@ def test_a_signature_that_cannot_be_read_is_told(run: Run, robot: Path) -> None:
                 "  `sense.eye.stop` (version V, as signed)",
                 "    weaker: Deadline of Halt was signed as 300 ms, and is 300 ms, missed",
                 "    Contradiction was not signed: The QoS deadline of 200 ms that eye_node promises may not be kept: there is no bound.",
-                "  `sense.bell.alarm` (version V, as signed)",
-                "    Contradiction was not signed: The largest gap of 9 s that bell_node promises may not be kept: there is no bound.",
+                # Each of the four threads has a core to itself: the promise of `bell` holds beside it.
+                "expected otherwise now, promised by nobody:",
+                "  `sense.eye.stop`: Largest gap (expected) was signed as 125 ms, follows from when eye_node is activated and how long it takes, and is no bound: the host is overloaded",
+                "  `sense.eye.stop`: Chain Halt (expected) was signed as 128 ms; met, and is no bound: the host is overloaded; missed",
             ],
         ),
         (

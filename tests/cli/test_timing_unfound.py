@@ -8,7 +8,7 @@ import pytest
 
 from tests.cli.conftest import Run
 
-# Each fires the next: 40 % of a core.
+# Each fires the next, and may start a little late, so that it is part of no run: 40 % of a core.
 FIVE = "\n".join(
     [
         "groups:\n  g:\n    components:",
@@ -16,7 +16,10 @@ FIVE = "\n".join(
         *(f"      c{at}: {{inputs: {{i: c{at - 1}.out}}, outputs: {{out: std_msgs/msg/Empty}}}}" for at in range(1, 5)),
         "hosts: {cpu: {cores: 1}}\ncontainers: {box: {threads: 1, host: cpu}}\nnodes:",
         "  n0: {implements: c0, container: box, timing: {period: 100 ms, jitter: 0 ms, wcet: 8 ms, bcet: 8 ms}}",
-        *(f"  n{at}: {{implements: c{at}, container: box, timing: {{wcet: 8 ms, bcet: 8 ms}}}}" for at in range(1, 5)),
+        *(
+            f"  n{at}: {{implements: c{at}, container: box, timing: {{jitter: 1 us, wcet: 8 ms, bcet: 8 ms}}}}"
+            for at in range(1, 5)
+        ),
         "chains: {c: {through: [g.c0, g.c1, g.c2, g.c3, g.c4], deadline: 200 ms}}",
     ]
 )

@@ -8,13 +8,29 @@ from itertools import pairwise
 
 import pytest
 
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.event_loop import run_plan
 from archgen.simulation.plan_builder import build_plan
 from archgen.timing.system.timing_system import Activity, Arc, Executor, ResourceUse, SharedResource, StoringCallback
 from tests.simulation.systems import MS, arc, event, system, timed
 
-ORDERS = (None, None, "ros2_executor", "fifo", "non_preemptive", "round_robin", "edf")
-HOST_ORDERS = (None, "fixed_priority", "non_preemptive", "fifo", "round_robin", "edf")
+ORDERS: tuple[SchedulingOrder | None, ...] = (
+    None,
+    None,
+    "ros2_executor",
+    "fifo",
+    "non_preemptive",
+    "round_robin",
+    "edf",
+)
+HOST_ORDERS: tuple[SchedulingOrder | None, ...] = (
+    None,
+    "fixed_priority",
+    "non_preemptive",
+    "fifo",
+    "round_robin",
+    "edf",
+)
 
 
 def _draw_activity(dice: random.Random, at: int, arcs: list[Arc]) -> Activity:
@@ -57,7 +73,7 @@ def test_threads_and_groups_are_never_taken_twice(first: int) -> None:
         activities = [_draw_activity(dice, at, arcs) for at in range(dice.randint(2, 9))]
         executors = {
             f"p{at}": Executor(f"p{at}", dice.choice((1, 1, 2, 3)), None, dice.choice(ORDERS)) for at in range(3)
-        }  # type: ignore[arg-type]
+        }
         of = system(
             activities,
             arcs,

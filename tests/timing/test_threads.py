@@ -99,6 +99,21 @@ def test_more_than_one_thread_can_do_is_bounded_where_callbacks_run_side_by_side
     assert responses_of(text.replace("OPTIONS", "threads: 4, reentrant: true,"))["n"] is not None
 
 
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        ("", {"lidar": 1, "both.fast": 62, "both.slow": 62}),
+        ("threads: 2, callback_groups: {one: [fast], two: [slow]}", {"lidar": 1, "both.fast": 2, "both.slow": 60}),
+        ("container: nowhere", {"lidar": 1, "both.fast": 62, "both.slow": 62}),
+    ],
+)
+def test_threads_without_a_host_have_a_core_of_their_own(place: str, expected: dict[str, float]) -> None:
+    text = FAST_AND_SLOW.replace("CORES", "4").replace(", PLACE", f", {place}" if place else "")
+    text = text.replace("lidar: {implements: g.scan, host: cpu}", "lidar: {implements: g.scan}")
+    text = text.replace("threads: 4, host: cpu}", "threads: 4, host: cpu}, nowhere: {threads: 3}")
+    assert responses_of(text) == expected
+
+
 CORE_SETS = """
 groups: {g: {components: {a: {outputs: {out: D}}, b: {outputs: {out: D}}, c: {outputs: {out: D}}}}}
 types: {D: {message: std_msgs/msg/String}}

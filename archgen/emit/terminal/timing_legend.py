@@ -33,6 +33,10 @@ _TIERS = {
     "host": "one core, holds for any order of its work",
     "priorities": "by the priorities that are written",
     "executor": "callbacks of one thread, holds for any order of them",
+    "non_preemptive": "by the priorities that are written; what has begun is not interrupted",
+    "fifo": "in the order in which things come",
+    "ros2_executor": "by the rounds in which an executor of ROS 2 works",
+    "edf": "the earliest deadline first",
     "cores": "several cores, holds for any order of their work",
     "unknown": "an execution time, or the number of cores, is not written",
 }

@@ -26,11 +26,11 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.cascade_demand import CascadeDemand
-from archgen.timing.load.event_streams import EventStream, EventStreams, delay_streams, streams_of_calls
+from archgen.timing.load.event_streams import EventStreams, streams_of_calls
 from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import LevelCascades, Origin
-from archgen.timing.load.queue_responses import CoreQueue
+from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.storing_waits import hold_before_activation
 from archgen.timing.load.thread_work import (
@@ -119,8 +119,7 @@ class _CoreSolver:
                     response = response._replace(value=longest)
             responses[name] = response
             ways_to[name] = tuple(ways)
-        if self.core.queue is not None:
-            self._limit_to_order(self.core.queue, responses, ways_to)
+        self._limit_to_order(responses, ways_to)
         waits = {
             name: self._find_storing_wait(name)
             for name in self.core.inner_triggers.order
@@ -128,51 +127,13 @@ class _CoreSolver:
         }
         return CoreResponses(responses, ways_to, waits)
 
-    def _limit_to_order(
-        self, queue: CoreQueue, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]
-    ) -> None:
-        """Limit responses and delays to what the order of the queue makes of them.
-
-        What comes to each activity is delayed by the steps before it at most as long as any order may delay it.
-        """
-        busy_period = max((bound.busy_period or 0 for bound in self.bounds.values()), default=0)
-        if any(bound.busy_period is None for bound in self.bounds.values()):
-            return
-        bounds = queue.bound_responses(lambda name: self._activation_model(name, ways_to), busy_period, self.budget)
-        limited_delays: dict[tuple[str, ...], int | None] = {}
-        for name in self.core.inner_triggers.order:
-            responses[name] = responses[name].limit_to(bounds.get(name), queue.order)
-            ways: list[EntryWay] = []
-            for way in ways_to[name]:
-                before = limited_delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
-                delay = way.delay
-                if delay is not None and before is not None and name in bounds:
-                    delay = min(delay, before + bounds[name])
-                limited_delays[(*map(str, way.entry), *way.steps)] = delay
-                ways.append(way._replace(delay=delay))
-            ways_to[name] = tuple(ways)
-
-    def _activation_model(self, name: str, ways_to: Mapping[str, tuple[EntryWay, ...]]) -> EventStreams | UnknownCause:
-        """Return the event model of an activity's activations: what enters, behind the steps before it."""
-        streams: list[EventStream] = []
-        if self._is_idle(name):
-            return ()
-        for way in ways_to[name]:
-            if way.entry.kind == "activity" and not self._enters(str(way.entry.key)):
-                return UnknownCause((name,))  # behind a gate
-            model = self.find_model(way.entry)
-            delay = 0 if len(way.steps) == 1 else self._delay_before(way, ways_to)
-            if isinstance(model, UnknownCause) or delay is None:
-                return UnknownCause((name,))
-            model = streams_of_calls(model, Fraction(way.multiplicity)) if way.multiplicity > 1 else model
-            streams += delay_streams(model, max(delay - way.best_before, 0))
-        return tuple(streams)
-
-    def _delay_before(self, way: EntryWay, ways_to: Mapping[str, tuple[EntryWay, ...]]) -> int | None:
-        """Return how long the way to the step before the last one of a way takes at most."""
-        return next(
-            each.delay for each in ways_to[way.steps[-2]] if each.entry == way.entry and each.steps == way.steps[:-1]
-        )
+    def _limit_to_order(self, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]) -> None:
+        """Limit responses and delays to what an order that is written makes of them."""
+        busy_periods = [bound.busy_period for bound in self.bounds.values()]
+        if self.core.queue is not None and None not in busy_periods:
+            longest = max((each or 0 for each in busy_periods), default=0)
+            ordered_core = OrderedCore(self.core.queue, self.core.inner_triggers, self.find_model, ways_to)
+            ordered_core.limit(responses, longest, self.budget)
 
     def _find_storing_wait(self, name: str) -> WorstResponse:
         """Return how long a message that an activity only stores may wait until an activation that does not read it."""
@@ -227,7 +188,8 @@ class _CoreSolver:
             return WorstResponse(None, tier, bound.cause)
         start_work = sum(self.core.system.activities[each].wcet or 0 for each in thread.unit if self._is_idle(each))
         if start_work:
-            return WorstResponse(self._extend_busy_period(bound, start_work), tier)
+            extended_period = self._extend_busy_period(bound, start_work)
+            return WorstResponse(extended_period, tier, DIVERGED_CAUSE if extended_period is None else UnknownCause())
         if level is None or len(thread.unit) > 1 or not thread.in_order:
             return WorstResponse(bound.busy_period, tier)
         return WorstResponse(self._response_by_activation(name, bound), tier)

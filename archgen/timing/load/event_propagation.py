@@ -15,17 +15,18 @@ from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, su
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import solve_inner_core
 from archgen.timing.load.event_models import PropagationState, activation_model, arriving_model
-from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
 from archgen.timing.load.queue_responses import find_core_queue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
-from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.run_ways import EntryWay, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
+from archgen.timing.load.single_cores import SingleCores, delay_by_response
 from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource, divide_resource, find_resources
@@ -101,6 +102,13 @@ class _Propagation:
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
         self._prepare_inner_cores()
+        self.single_cores = self._find_single_cores()
+        # From below, as everything that is found by repetition.
+        self.work_ends = {
+            name: self.state.system.activities[name].wcet or 0
+            for step in self.single_cores
+            for name in self.resources[step].members
+        }
         self.seen_models: dict[str, dict[str, EventStreams | UnknownCause]] = {}
         # Where a written jitter lets many come at once, that many may wait without anything having run away.
         activities = state.system.activities.values()
@@ -126,6 +134,15 @@ class _Propagation:
                 self.shared_cores[step] = CorePaths(cores)
                 self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to
             self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
+
+    def _find_single_cores(self) -> dict[str, SingleCores]:
+        """Return the cores, one by one, of what shares several of them with what is pinned to some of them."""
+        cores_of = {unit: resource.core_set for resource in self.resources.values() for unit in resource.units}
+        return {
+            step: SingleCores(self.state.system, self.resources[step], cores_of)
+            for step in self.shared_cores
+            if self.resources[step].foreign_units and not any(self.inner_triggers[step].inner_arcs.values())
+        }
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -163,11 +180,10 @@ class _Propagation:
         return {**self.state.event_models, **{name: self._model_of_roaming(name) for name in roaming_ids}}
 
     def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:
-        """Return the event model of work that another core may have begun: what comes here came up to a response ago."""
-        event_model, response = self.state.event_models[name], self.state.responses[name]
-        if isinstance(event_model, UnknownCause) or not event_model:
-            return event_model
-        return response.cause if response.value is None else delay_streams(event_model, response.value)
+        """Return the event model of work that another core may have begun."""
+        return delay_by_response(
+            self.state.event_models[name], self.state.responses.get(name), self.work_ends.get(name)
+        )
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
@@ -325,8 +341,11 @@ class _Propagation:
             if step in self.inner_cores
             else solve_shared_cores(self.shared_cores[step], find_model, state.responses, self.budget_of[step])
         )
+        old_ends = dict(self.work_ends)
+        if step in self.single_cores:
+            self._limit_to_single_cores(step, new_responses, new_ways)
         new_responses = {name: _name_tier(self.resources[step], response) for name, response in new_responses.items()}
-        changed = any(
+        changed = old_ends != self.work_ends or any(
             not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
         )
         state.entering_models.update(entering_models)
@@ -338,6 +357,26 @@ class _Propagation:
         state.ways_to.update(new_ways)
         state.storing_waits.update(new_waits)
         return changed
+
+    def _limit_to_single_cores(
+        self, step: str, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]
+    ) -> None:
+        """Limit the responses on several cores to what each of these cores alone would let them be."""
+        state = self.state
+        bounds = self.single_cores[step].limit(
+            state.event_models, {**state.responses, **responses}, self.budget_of[step]
+        )
+        for name in self.resources[step].members:
+            self.work_ends.pop(name, None)
+        self.work_ends.update(bounds)
+        for name, bound in bounds.items():
+            response = responses[name]
+            if response.value is not None and bound < response.value and response.tier != "declared":
+                responses[name] = response._replace(value=bound)
+                ways_to[name] = tuple(
+                    way._replace(delay=min(way.delay, bound)) if len(way.steps) == 1 and way.delay is not None else way
+                    for way in ways_to[name]
+                )
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""

@@ -41,7 +41,9 @@ def prepare_inner_core(system: TimingSystem, resource: ProcessingResource, inner
     arc_numbers, entering_arcs = number_arcs(inner_triggers)
     levels = {
         level: build_level_cascades(system, inner_triggers, arc_numbers, _find_level_ids(threads, level), foreign_ids)
-        for level in sorted({thread.lowest_priority for thread in own_threads}, key=urgency_of, reverse=True)
+        for level in sorted(
+            dict.fromkeys(thread.lowest_priority for thread in own_threads), key=urgency_of, reverse=True
+        )
     }
     return InnerCore(
         system,

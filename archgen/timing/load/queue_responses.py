@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
+from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import SchedulingOrder
@@ -22,6 +23,14 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.thread_pools import count_entities, find_crowded_pools, find_pool, is_reentrant
 from archgen.timing.system.timing_system import Activity, TimingSystem, samples_inputs
 
+QueueOrder = Literal["non_preemptive", "fifo", "ros2_executor", "edf"]
+"""The orders that say more of a queue than that it is worked off."""
+_QUEUE_ORDERS: Mapping[SchedulingOrder | None, QueueOrder] = {
+    "non_preemptive": "non_preemptive",
+    "fifo": "fifo",
+    "ros2_executor": "ros2_executor",
+    "edf": "edf",
+}
 _RANKS = {"periodic": 0, "event": 1, "on_demand": 2}
 """The place of what fires an activity in a round of rclcpp's executor."""
 
@@ -30,7 +39,7 @@ _RANKS = {"periodic": 0, "event": 1, "on_demand": 2}
 class CoreQueue:
     """What works off a queue: the order, and whether it is a core, for which threads wait, or a thread."""
 
-    order: SchedulingOrder
+    order: QueueOrder
     is_core: bool
     tasks: tuple[QueuedTask, ...] = field(default=())
     """Without events: those are not known yet."""
@@ -94,8 +103,9 @@ def find_core_queue(
         return None
     if any(activity.wcet is None or (activity.behaviour == "once" and activity.wcet) for activity in members):
         return None
-    order, is_core = _find_order(system, resource, members)
-    if order in {None, "fixed_priority", "round_robin"}:
+    written_order, is_core = _find_order(system, resource, members)
+    order = _QUEUE_ORDERS.get(written_order)
+    if order is None:
         return None
     return CoreQueue(
         order,

@@ -108,7 +108,7 @@ class _SharedCoreSolver:
             return self._build_responses()
         self.work = PathWork(self.cores, self.demand)
         self._mark_full_threads()
-        for name in self.cores.foreign_ids:
+        for name in sorted(self.cores.foreign_ids):
             self.work.note_delay((name, 0), self.known_responses[name].value or 0)
         while stuck_names := self._repeat_sweeps():
             # What still grows has no bound that is found, and neither has what it comes in the way of.
@@ -136,7 +136,7 @@ class _SharedCoreSolver:
                 self._mark_boundless(unit, OVERLOAD_CAUSE)
         boundless_ids = [
             name
-            for name in self.cores.foreign_ids
+            for name in sorted(self.cores.foreign_ids)
             if (response := self.known_responses.get(name)) is None or response.value is None
         ]
         order = self.cores.inner_triggers.order

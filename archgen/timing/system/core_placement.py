@@ -18,11 +18,11 @@ from archgen.timing.system.thread_pools import (
     find_crowded_pools,
     find_pool,
     find_thread_count,
-    is_crowded,
     is_reentrant,
     name_lane,
 )
 from archgen.timing.system.timing_system import Activity, TimingSystem
+from archgen.timing.system.unplaced_pools import find_unplaced_pools, group_unplaced
 
 ThreadUnit = tuple[str, ...]
 """Activities that one thread runs, or that a callback group keeps apart: one after the other."""
@@ -89,30 +89,10 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
     return (replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in resource.units)
 
 
-def find_unplaced_pools(system: TimingSystem) -> dict[ThreadPool, list[Activity]]:
-    """Return the members of each process without a host that has fewer threads than there may be asked for."""
-    # Where `threads` is not written, there is one for each member, and none waits for another.
-    return {
-        pool: members
-        for pool, members in _group_unplaced(system).items()
-        if (pool.threads == 1 and len(members) > 1) or (pool.threads != 1 and is_crowded(system, pool, members))
-    }
-
-
-def _group_unplaced(system: TimingSystem) -> dict[ThreadPool, list[Activity]]:
-    """Return the activities without a host by the process that runs them."""
-    members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
-    for activity in system.activities.values():
-        pool = find_pool(system, activity) if activity.host is None else None
-        if pool is not None:
-            members_by_pool[pool].append(activity)
-    return members_by_pool
-
-
 def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
     """Yield a resource for each process without a host in which one may wait for another, with dedicated cores."""
     unplaced_pools = find_unplaced_pools(system)
-    for pool, members in _group_unplaced(system).items():
+    for pool, members in group_unplaced(system).items():
         units = _group_lanes(system, members)
         if pool not in unplaced_pools and len(units) == len(members):
             continue

@@ -8,7 +8,8 @@ import pytest
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.load import core_responses
+from archgen.timing.load import busy_windows, core_responses
+from archgen.timing.load.busy_windows import DemandFunction, DivergedError, SearchBudget
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import show_ms
 from tests.timing.sketches import analyse_sketch, list_responses, read_sketch
@@ -152,3 +153,22 @@ def test_strictly_periodic_cascades_may_fill_a_core_up_to_a_limit(monkeypatch: p
     assert (
         list_responses(analyse_sketch(nodes, "a>b", "hosts: {pc: {cores: 1}}"))[1] == "b 5..none [overload] priorities"
     )
+
+
+def test_what_works_once_says_that_no_bound_was_found_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The busy period is found, and the budget spent before the work at the start is on top."""
+    search = busy_windows.longest_busy_period
+
+    def search_once(demand: DemandFunction, budget: SearchBudget, *start: int) -> int:
+        if start:
+            raise DivergedError
+        return search(demand, budget)
+
+    monkeypatch.setattr(core_responses, "longest_busy_period", search_once)
+    nodes = {
+        "map +box": "behaviour: once, wcet: 50 ms",
+        "a +box": "period: 100 ms, wcet: 2 ms, bcet: 2 ms",
+        "b +box": "behaviour: event, wcet: 3 ms, bcet: 3 ms",
+    }
+    analysis = analyse_sketch(nodes, "a>b", "hosts: {pc: {cores: 1}}\ncontainers: {box: {threads: 1, host: pc}}")
+    assert show_ms(analysis.responses["map"].worst) == "none [diverged]"

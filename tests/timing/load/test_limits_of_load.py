@@ -10,7 +10,7 @@ import pytest
 from archgen.timing.load import link_queueing, response_times, search_budgets
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
-from archgen.timing.load.host_loads import is_below_rate_bound, rate_monotonic_bound
+from archgen.timing.load.host_verdicts import is_below_rate_bound, rate_monotonic_bound
 from archgen.timing.load.link_queueing import longest_queueing, settle_links
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.trigger_graph import find_triggers

@@ -1,0 +1,67 @@
+"""What an order that is written makes of a core, or a thread, whose callbacks fire one another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+from archgen.frozen import dataclass
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_streams import EventStream, EventStreams, delay_streams, streams_of_calls
+from archgen.timing.load.inner_triggers import InnerTriggers
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.queue_responses import CoreQueue
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.thread_work import WorstResponse
+
+
+@dataclass(frozen=True, slots=True)
+class OrderedCore:
+    """A queue with the ways that lead to what waits in it, and how long any order may make them."""
+
+    queue: CoreQueue
+    inner_triggers: InnerTriggers
+    find_model: Callable[[Origin], EventStreams | UnknownCause]
+    ways_to: dict[str, tuple[EntryWay, ...]]
+
+    def limit(self, responses: dict[str, WorstResponse], busy_period: int, budget: SearchBudget) -> None:
+        """Limit responses, and the delays of ways, to what the order makes of them."""
+        bounds = self.queue.bound_responses(self._activation_model, busy_period, budget)
+        limited_delays: dict[tuple[str, ...], int | None] = {}
+        for name in self.inner_triggers.order:
+            responses[name] = responses[name].limit_to(bounds.get(name), self.queue.order)
+            ways: list[EntryWay] = []
+            for way in self.ways_to[name]:
+                before = limited_delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
+                delay = way.delay
+                if delay is not None and before is not None and name in bounds:
+                    delay = min(delay, before + bounds[name])
+                limited_delays[(*map(str, way.entry), *way.steps)] = delay
+                ways.append(way._replace(delay=delay))
+            self.ways_to[name] = tuple(ways)
+
+    def _activation_model(self, name: str) -> EventStreams | UnknownCause:
+        """Return the event model of an activity's activations: what enters, behind the steps before it."""
+        # These are delayed by at most as much as any order may delay them: nothing here rests on the order itself.
+        if name in self.inner_triggers.silent_ids:
+            return ()
+        streams: list[EventStream] = []
+        for way in self.ways_to[name]:
+            if way.entry.kind == "activity" and str(way.entry.key) not in self.inner_triggers.entry_ids:
+                return UnknownCause((name,))  # behind a gate
+            model = self.find_model(way.entry)
+            delay = self._delay_before(way) if len(way.steps) > 1 else 0
+            if isinstance(model, UnknownCause) or delay is None:
+                return UnknownCause((name,))
+            model = streams_of_calls(model, Fraction(way.multiplicity)) if way.multiplicity > 1 else model
+            streams += delay_streams(model, max(delay - way.best_before, 0))
+        return tuple(streams)
+
+    def _delay_before(self, way: EntryWay) -> int | None:
+        """Return how long the way to the step before the last one of a way takes at most."""
+        return next(
+            each.delay
+            for each in self.ways_to[way.steps[-2]]
+            if each.entry == way.entry and each.steps == way.steps[:-1]
+        )

@@ -1,0 +1,87 @@
+"""Bounds of what may run on several cores that others are pinned to: each core alone is one that it may wait for.
+
+Let a thread have work that does not run. Then each core on which it may run is busy, any one of them too. So from the last
+instant at which that core was idle and the thread had no work, the core's own work and that of the thread, wherever it
+runs, are used up as fast as time passes: the bound is that of the core alone, with what may have begun elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.thread_work import EventModels, WorstResponse
+from archgen.timing.system.core_placement import CoreSet, ProcessingResource, ThreadUnit
+from archgen.timing.system.timing_system import TimingSystem
+
+
+class SingleCores:
+    """The cores of a resource, each with what may run there; `cores_of` has the cores of each unit of the host."""
+
+    def __init__(
+        self, system: TimingSystem, resource: ProcessingResource, cores_of: Mapping[ThreadUnit, CoreSet]
+    ) -> None:
+        """Find what may run on each core."""
+        # What somebody declares may hold a wait for the world outside. Here it matters when the work is done.
+        own_activities = {name: replace(system.activities[name], response=None) for name in resource.members}
+        self.system = replace(system, activities={**system.activities, **own_activities})
+        self.resource = resource
+        self.units_by_core = {
+            core: tuple(unit for unit in resource.foreign_units if core in cores_of.get(unit, ()))
+            for core in resource.core_set
+        }
+        self.roaming_units = frozenset(unit for unit in resource.foreign_units if len(cores_of.get(unit, ())) > 1)
+
+    def limit(
+        self, event_models: EventModels, responses: Mapping[str, WorstResponse], budget: SearchBudget
+    ) -> dict[str, int]:
+        """Return when the work of the resource's activities is done, for the responses of all that may run there."""
+        bounds: dict[str, int] = {}
+        for unit in self.resource.units:
+            for core, units in self.units_by_core.items():
+                for name, bound in self._bound_on_core(unit, units, core, event_models, responses, budget).items():
+                    bounds[name] = min(bound, bounds.get(name, bound))
+        return bounds
+
+    def _bound_on_core(  # noqa: PLR0913, PLR0917 - all of it is looked at on one core
+        self,
+        unit: ThreadUnit,
+        core_units: tuple[ThreadUnit, ...],
+        core: int,
+        event_models: EventModels,
+        responses: Mapping[str, WorstResponse],
+        budget: SearchBudget,
+    ) -> dict[str, int]:
+        neighbours = tuple(other_unit for other_unit in self.resource.units if other_unit != unit)
+        resource = ProcessingResource(
+            self.resource.id, self.resource.host, 1, (unit,), (*core_units, *neighbours), core_set=(core,)
+        )
+        roaming_ids = {
+            name for each in resource.foreign_units if each in neighbours or each in self.roaming_units for name in each
+        }
+        models = {
+            name: delay_by_response(event_models[name], responses.get(name))
+            if name in roaming_ids
+            else event_models[name]
+            for each in (unit, *resource.foreign_units)
+            for name in each
+        }
+        found_responses = find_responses(self.system, resource, models, AnalysisEffort(budget))
+        return {name: response.value for name, response in found_responses.items() if response.value is not None}
+
+
+def delay_by_response(
+    event_model: EventStreams | UnknownCause, response: WorstResponse | None, work_end: int | None = None
+) -> EventStreams | UnknownCause:
+    """Return the event model of work that another core may have begun: what comes here came up to a response ago."""
+    if isinstance(event_model, UnknownCause) or not event_model:
+        return event_model
+    if work_end is not None:
+        return delay_streams(event_model, work_end)
+    if response is None or response.value is None:
+        return response.cause if response is not None else UnknownCause()
+    return delay_streams(event_model, response.value)
