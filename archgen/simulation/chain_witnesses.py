@@ -31,7 +31,7 @@ class ChainWitness:
 
 
 def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[str, ChainWitness]:
-    """Return a run for each chain of which one was found; chains that are proven, or open, are not looked at.
+    """Return a run for each chain of which one was found; only chains that are not proven are looked at.
 
     The numbers of runs and their lengths follow from the architecture, so that they are the same on each computer.
     """
@@ -39,7 +39,7 @@ def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[s
         return {}
     groups: dict[int, dict[str, ChainResult]] = {}
     for result in results:
-        if result.verdict in {"not proven", "missed"} and result.deadline and result.deadline.value is not None:
+        if result.verdict == "not proven" and result.deadline and result.deadline.value is not None:
             length = -(-_DEADLINES_PER_RUN * result.deadline.value // _NS_PER_SECOND)
             groups.setdefault(max(_LEAST_SECONDS, int(length)), {})[result.id] = result
     return {

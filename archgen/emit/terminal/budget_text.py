@@ -53,7 +53,8 @@ def sort_shares(shares: tuple[PartnerShare, ...]) -> list[PartnerShare]:
 
 def _figure_row(budget: FigureBudget) -> TextRow:
     largest = "any" if budget.is_free else "none keeps it" if budget.largest is None else _write(budget.largest)
-    return budget.activity, _FIGURE_WORDS[budget.key], _write(budget.written), largest
+    written = figure_wording.format_duration(budget.written)
+    return budget.activity, _FIGURE_WORDS[budget.key], written, largest
 
 
 def _describe_factor(budget: FactorBudget) -> str:

@@ -61,8 +61,15 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
             chain_remedies.describe_slack(result),
-            chain_remedies.describe_witness(result.id, evidence.witnesses.get(result.id))
-            or describe_gaps(result, analysis),
+            "; ".join(
+                filter(
+                    None,
+                    (
+                        chain_remedies.describe_witness(result.id, evidence.witnesses.get(result.id)),
+                        describe_gaps(result, analysis),
+                    ),
+                )
+            ),
         )
 
 

@@ -189,7 +189,7 @@ class _BudgetSearch:
         )
         largest = None if step is None else Fraction(step * figure.tick)
         # What is written finer than it is tried in, and leaves nothing, is the largest itself.
-        if largest is not None and largest < figure.written and self.slack is not None:
+        if figure.key != "period" and largest is not None and largest < figure.written and self.slack is not None:
             largest = figure.written
         return FigureBudget(figure.activity.id, figure.key, figure.written, largest, is_free)
 

@@ -43,6 +43,10 @@ class TriesSpentError(Exception):
     """As many changes were tried as were allowed."""
 
 
+class SenselessChangeError(ValueError):
+    """A change cannot be made: with it the figures would contradict one another."""
+
+
 class ChangeTrials:
     """Tries changes of an architecture. `tries_left` counts tries and not seconds, so that results can be repeated."""
 
@@ -71,7 +75,10 @@ class ChangeTrials:
 
     def find_slack(self, chain_id: str, changes: Changes) -> Fraction | None:
         """Return what some changes leave of a chain's deadline, in ns; None where nothing proves that it is kept."""
-        result = self.bound_chain(chain_id, changes)
+        try:
+            result = self.bound_chain(chain_id, changes)
+        except SenselessChangeError:
+            return None
         slack = result.slack
         return None if slack is None or (slack >= 0 and result.verdict != "met") else slack
 
@@ -89,7 +96,10 @@ class ChangeTrials:
         if changes not in self._networks:
             if self.tries_left <= 0:
                 raise TriesSpentError
-            changed_architecture = self._lay_overrides(self.architecture, list(map(str, changes)))
+            try:
+                changed_architecture = self._lay_overrides(self.architecture, list(map(str, changes)))
+            except ValueError as error:
+                raise SenselessChangeError(*error.args) from error
             analysis = analyse_for_chains(changed_architecture)
             self.tries_left -= 1 + analysis.searched_terms // _TERMS_PER_TRY
             self._networks[changes] = changed_architecture, CostNetwork.of_analysis(analysis)

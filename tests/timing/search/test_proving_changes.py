@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.search.proving_changes import ChainRemedy, find_remedies
 from tests.timing.random_systems import architecture
 from tests.timing.search.trials import bound_with, start_trials
@@ -150,3 +151,15 @@ def test_a_chain_that_is_met_or_open_or_too_late_at_best_is_not_looked_at() -> N
     )
     assert [chain.verdict for chain in bound_with(architecture(text)).values()] == ["missed", "met", "open", "open"]
     assert find_remedies(start_trials(architecture(text)), bound_with(architecture(text)).values()) == []
+
+
+def test_a_change_that_makes_no_sense_proves_nothing() -> None:
+    """No execution time is below the best one."""
+    text = sketch(
+        {"a @p": "period: 50 ms, wcet: 1 ms", "b @p": "wcet: 3 ms, bcet: 3 ms"},
+        "a>b",
+        "hosts: {p: {cores: 1}}\nchains: {c: {through: [a, b], deadline: 60 ms}}",
+    )
+    trials = start_trials(architecture(text))
+    assert trials.find_slack("c", (TriedChange("b", "timing.wcet", "2ms"),)) is None
+    assert trials.find_slack("c", (TriedChange("b", "timing.wcet", "3ms"),)) == 6 * 10**6
