@@ -16,6 +16,7 @@ from archgen.frozen import dataclass
 if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
+    from archgen.simulation.chain_evidence import ChainEvidence
     from archgen.timing.analysis import Analysis, ChainResult
 
 
@@ -53,6 +54,11 @@ class TimingRequest:
     "--sensitivity", metavar="CHAIN", help="Rank the figures that decide a chain, and those to measure first."
 )
 @click.option(
+    "--budget",
+    metavar="CHAIN",
+    help="How long each element may take, how rarely it may work, and what each partner may take, until a chain is late.",
+)
+@click.option(
     "--measured",
     "recordings",
     metavar="FILE",
@@ -82,6 +88,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     sensitivity: str | None,
     recordings: tuple[Path, ...],
     adopt: Path | None,
+    budget: str | None,
 ) -> None:
     """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
 
@@ -90,9 +97,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if (source is None) != (target is None):
         msg = "--from and --to belong together"
         raise click.UsageError(msg)
-    questions = [q for q in (chain, why, source, sensitivity, recordings or None) if q is not None]
+    questions = [q for q in (chain, why, source, sensitivity, budget, recordings or None) if q is not None]
     if len(questions) > 1:
-        msg = "--chain, --why, --from, --sensitivity and --measured are questions of their own: ask one at a time"
+        msg = "--chain, --why, --from, --sensitivity, --budget and --measured are questions of their own: ask one at a time"
         raise click.UsageError(msg)
     if adopt is not None and (written or not recordings):
         msg = "--adopt writes what --measured reads, and goes with no --set"
@@ -112,6 +119,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         _print_paths(request, source, target, most)
     elif sensitivity is not None:
         _print_sensitivity(request, sensitivity)
+    elif budget is not None:
+        _print_budget(request, budget)
     elif recordings:
         measured_recordings.answer_recordings(
             checked_project, request.architecture, recordings, adopt, as_json=request.as_json
@@ -129,11 +138,12 @@ def _print_summary(request: TimingRequest) -> None:
 
     present = _analyse_chains(request.checked_project.architecture)
     if not request.overrides:
+        analysis, chains, evidence = _search_beyond(request.architecture, *present)
         if request.as_json:
-            _print_json(timing_json.timing_to_json(*present))
+            _print_json(timing_json.timing_to_json(analysis, chains, evidence))
         else:
-            loops = find_loop_rounds(CostNetwork.of_analysis(present[0]))
-            _print_lines(timing_text.format_timing(*present, loops, find_width(sys.stdout)))
+            loops = find_loop_rounds(CostNetwork.of_analysis(analysis))
+            _print_lines(timing_text.format_timing(analysis, chains, loops, find_width(sys.stdout), evidence))
         return
     changed = _analyse_chains(request.architecture)
     if request.as_json:
@@ -146,19 +156,26 @@ def _print_summary(request: TimingRequest) -> None:
 def _print_chain(request: TimingRequest, chain_id: str) -> None:
     from archgen.emit.data import timing_json
     from archgen.emit.terminal import timing_text
+    from archgen.simulation.chain_evidence import ChainEvidence
     from archgen.timing.chains import chain_bounds as chains_of
     from archgen.timing.chains import duerr_bounds
     from archgen.timing.chains.cost_network import CostNetwork
 
     analysis, chains = _analyse_chains(request.architecture)
-    result = _find_chain(chains, chain_id)
+    asked_chain = {chain_id: _find_chain(chains, chain_id)}
+    # What `--set` lays over the files cannot be simulated by a command of its own: then nothing is looked for.
+    if not request.overrides:
+        analysis, asked_chain, evidence = _search_beyond(request.architecture, analysis, asked_chain)
+    else:
+        evidence = ChainEvidence()
+    result = asked_chain[chain_id]
     # Without terms the chain is open: its elements may be components that no activity stands for.
     published = duerr_bounds.bound_periodic_chain(analysis, result.through) if result.terms else None
     if request.as_json:
-        _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result)})
+        _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result, evidence)})
     else:
         age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(timing_text.format_chain(result, analysis, age, published, find_width(sys.stdout)))
+        _print_lines(timing_text.format_chain(result, analysis, age, published, find_width(sys.stdout), evidence))
 
 
 def _print_reasons(request: TimingRequest, word: str) -> None:
@@ -222,6 +239,31 @@ def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
         _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
 
 
+def _print_budget(request: TimingRequest, chain_id: str) -> None:
+    from archgen.emit.terminal import budget_text
+    from archgen.emit.terminal.chain_gaps import describe_gaps
+    from archgen.link.timing_overrides import apply_overrides
+    from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
+    from archgen.timing.search.change_trials import ChangeTrials
+
+    architecture = request.architecture
+    analysis, chains = _analyse_chains(architecture)
+    result = _find_chain(chains, chain_id)
+    try:
+        budget = find_chain_budget(ChangeTrials(architecture, analysis, apply_overrides, MAX_TRIES), result)
+    except UnknownBudgetError as error:
+        gaps_text = describe_gaps(result, analysis) if result.deadline else ""
+        _raise_usage_error(
+            f"`{chain_id}` has no budget: {error}{f' ({gaps_text})' if gaps_text else ''}"
+            + ("" if result.deadline else f"; write `deadline` at `chains: {chain_id}`")
+        )
+    if request.as_json:
+        _print_json(budget_text.budget_to_json(result, budget))
+    else:
+        titles = {partner.id: partner.title for partner in architecture.partners.values()}
+        _print_lines(budget_text.format_budget(result, budget, titles, find_width(sys.stdout)))
+
+
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
     from archgen.link.override_values import OverrideError
     from archgen.link.timing_overrides import apply_overrides
@@ -230,6 +272,17 @@ def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> 
         return apply_overrides(architecture, overrides) if overrides else architecture
     except OverrideError as error:
         _raise_usage_error(str(error))
+
+
+def _search_beyond(
+    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult]
+) -> tuple[Analysis, dict[str, ChainResult], ChainEvidence]:
+    """Look for runs in which chains are late, and for what would prove those that are not met."""
+    from archgen.link.timing_overrides import apply_overrides
+    from archgen.simulation.chain_evidence import apply_witnesses, find_evidence
+
+    evidence = find_evidence(architecture, analysis, chains, apply_overrides)
+    return analysis, apply_witnesses(chains, evidence.witnesses), evidence
 
 
 def _analyse_chains(architecture: Architecture) -> tuple[Analysis, dict[str, ChainResult]]:

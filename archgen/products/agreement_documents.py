@@ -12,13 +12,18 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision, find_revision_date
+from archgen.link.timing_overrides import apply_overrides
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.output_options import OutputOptions
 from archgen.products.picture_drawing import draw_or_warn
+from archgen.timing.analysis import ChainResult
+from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, UnknownBudgetError, share_chain_budget
+from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
 from archgen.views.agreement import PartnerAgreement, find_interfaces_between, make_agreement
+from archgen.views.agreement.budget_section import BudgetFinder
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph, Section
@@ -74,8 +79,9 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
             if is_earlier
             else (signed_version.title, _make_timed_lookup(signed_version.checked_project))
         )
+    lookup = _make_timed_lookup(checked_project)
     partner_agreement = make_agreement(
-        _make_timed_lookup(checked_project),
+        lookup,
         first,
         second,
         revision=find_revision(checked_project.root, checked_project.input_files)
@@ -91,6 +97,7 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
             *_error_notices(checked_project, earlier_version),
             *([] if is_readable or not signed_tags else [_unreadable_notice(signed_tags[0].name)]),
         ),
+        find_budget=_make_budget_finder(lookup),
     )
     # Without interfaces there may still be removed ones to agree on.
     if not partner_agreement.interface_count and not (
@@ -119,6 +126,21 @@ def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
         project_views.make_scoped_lookup(checked_project, OutputOptions()),
         timing=analyse_with_chains(checked_project.architecture),
     )
+
+
+def _make_budget_finder(lookup: Lookup) -> BudgetFinder:
+    """Return what finds the budget of a chain of a project."""
+
+    def find_budget(result: ChainResult) -> SharedBudget | None:
+        if lookup.timing is None:
+            return None
+        trials = ChangeTrials(lookup.architecture, lookup.timing.analysis, apply_overrides, MAX_SHARE_TRIES)
+        try:
+            return share_chain_budget(trials, result)
+        except UnknownBudgetError:
+            return None
+
+    return find_budget
 
 
 def _check_partners(checked_project: CheckedProject, first: str, second: str) -> None:

@@ -59,37 +59,49 @@ class LateRun:
     age: Fraction | None
     """The largest data age in this run."""
 
+    def find_longest(self, *, samples_world: bool = False) -> Fraction:
+        """Return what is to be held against the deadline: the age as well, where the chain samples the world."""
+        return max(self.reaction or Fraction(0), (self.age or Fraction(0)) if samples_world else Fraction(0))
 
-def find_late_run(  # noqa: PLR0913 - how long to look is for the caller to say
+
+def find_late_runs(
     system: TimingSystem,
-    through: Sequence[str],
-    deadline: Fraction,
+    deadlines: Mapping[str, tuple[Sequence[str], Fraction]],
     *,
     seconds: int = 10,
     seeds: int = 24,
     pauses: PublishPauses | None = None,
-) -> LateRun | None:
-    """Return the first run, by seeds from 0 on, in which the reaction or the data age of a chain exceeds `deadline` (ns).
+) -> dict[str, LateRun]:
+    """Return for each chain the first run, by seeds from 0 on, in which it takes longer than its deadline.
 
-    `through` are the ids of activities along arcs. Only inputs count that each activity on the way sends on as soon as
-    it can, as in the bounds. Return None if no run is late, or the events multiply without end.
+    `deadlines` are by chain the ids of activities along arcs, and the deadline in ns. The data age counts where the first
+    activity samples the world; where its event is the stimulus the deadline is for the reaction alone. Only inputs count
+    that each activity on the way sends on as soon as it can, as in the bounds. Chains that are never late are left out,
+    and all of them if the events multiply without end.
     """
     plan = build_plan(system, pauses)
+    late_runs: dict[str, LateRun] = {}
     for seed in range(seeds):
-        # Each run has a track of its own, so that its figures are its own.
-        track = track_chain(plan, through)
-        if track is None:
-            return None
+        # Each run has tracks of its own, so that its figures are its own.
+        tracks = {
+            key: track
+            for key, (through, _) in deadlines.items()
+            if key not in late_runs and (track := track_chain(plan, through)) is not None
+        }
+        if not tracks:
+            break
         try:
-            run = _run_recorded(plan, seed, int(seconds * _SECOND / plan.unit), (track,))
+            run = _run_recorded(plan, seed, int(seconds * _SECOND / plan.unit), tuple(tracks.values()))
         except EventFloodError:
-            return None
-        track.add_run(run)
-        figures = track.to_observed(through, plan.unit).bounded_figures
-        reaction, age = _largest(figures.reaction), _largest(figures.age)
-        if max(reaction or 0, age or 0) > deadline:
-            return LateRun(seed, seconds, reaction, age)
-    return None
+            break
+        for key, track in tracks.items():
+            track.add_run(run)
+            through, deadline = deadlines[key]
+            figures = track.to_observed(through, plan.unit).bounded_figures
+            late_run = LateRun(seed, seconds, _largest(figures.reaction), _largest(figures.age))
+            if late_run.find_longest(samples_world=track.samples_world) > deadline:
+                late_runs[key] = late_run
+    return late_runs
 
 
 def _largest(distribution: DurationDistribution | None) -> Fraction | None:

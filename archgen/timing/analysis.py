@@ -249,6 +249,8 @@ class Analysis:
     notes: tuple[Reason, ...] = ()
     # Kept for whoever asks why: the terms of a figure are read off the very state that it was found in.
     state: PropagationState | None = field(default=None, compare=False, repr=False)
+    searched_terms: int = field(default=0, compare=False, repr=False)
+    """How many terms the searches looked at: what the analysis has cost, on whatever computer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,3 +286,10 @@ class ChainResult:
             return None
         is_known = is_known_bound(self.bound) and is_known_bound(self.best, "at least")
         return self.bound.value - self.best.value if is_known else None
+
+    @property
+    def slack(self) -> Fraction | None:
+        """Return what the bound leaves of the deadline, in ns: negative where it is above; None where either is unknown."""
+        if self.deadline is None or self.deadline.value is None or self.bound.value is None:
+            return None
+        return self.deadline.value - self.bound.value if is_known_bound(self.bound) else None

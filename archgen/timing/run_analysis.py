@@ -113,6 +113,7 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         storing_waits=build_storing_waits(state),
         notes=notes,
         state=state,
+        searched_terms=state.searched_terms,
     )
 
 

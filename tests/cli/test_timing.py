@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,10 @@ def test_a_chain_in_json(run: Run, project: Path) -> None:
     chain = data["chains"]["avoid"]
     assert chain["through"] == ["scan", "plan", "drive"]
     assert chain["bound"]["value"] == 50 + 5 + 0 + 20 + 20 + 2
-    assert (chain["deadline"], chain["verdict"]) == (90, "not proven")
+    assert (chain["deadline"], chain["slack"], chain["verdict"]) == (90, -7, "missed")
+    assert chain["witness"]["longest"] > 90
+    assert chain["remedy"]["set"] == ["scan.timing.period=43ms"]
+    assert chain["remedy"]["bound"]["value"] == 90
     assert [term["sampling"]["value"] for term in chain["terms"]] == [50, 0, 20]
     assert data["chains"]["ends"]["bound"] == chain["bound"]
     assert (data["elements"]["plan"]["behaviour"], data["elements"]["plan"]["rate"]["value"]) == ("event", 20)
@@ -70,8 +74,39 @@ def test_a_chain_in_json(run: Run, project: Path) -> None:
 def test_the_summary_names_the_chain_that_is_late(run: Run, project: Path) -> None:
     ran = run("timing", project)
     assert ran.status == 0
-    assert "  avoid  97 ms  deadline 90 ms  not proven" in ran.out
+    assert "  avoid  97 ms  deadline 90 ms  MISSED  7 ms above it  seen in `archgen simulate --seed" in ran.out
+    assert "  avoid  --set scan.timing.period=43ms  then at most 90 ms\n" in ran.out
     assert "  ends   97 ms  no deadline" in ran.out
+
+
+def test_the_run_that_shows_the_chain_late_can_be_seen_again(run: Run, project: Path) -> None:
+    command, longest = re.findall(r"seen in `archgen (simulate [^`]+)`: ([0-9.]+) ms", run("timing", project).out)[0]
+    verb, *options = command.split()
+    shown = run(verb, project, *options).out
+    (row,) = (line.split() for line in shown.splitlines() if line.startswith("  avoid reaction"))
+    assert float(row[5]) == float(longest)
+    assert run("timing", project, "--chain", "avoid").out.count(f"`archgen {command}`: {longest} ms") == 1
+
+
+def test_what_would_prove_the_chain_does(run: Run, project: Path) -> None:
+    (change,) = re.findall(r"--set (\S+)", run("timing", project).out)
+    assert "(missed > met)" not in change
+    assert re.search(r"avoid +97 ms.* 90 ms.*not proven.*met", run("timing", project, "--set", change).out)
+
+
+def test_check_does_not_simulate(run: Run, project: Path) -> None:
+    assert "nothing proves" in run("check", project).out
+    assert "MISSED" not in run("check", project).out
+
+
+def test_the_budget_of_a_chain(run: Run, project: Path) -> None:
+    ran = run("timing", project, "--budget", "avoid")
+    assert ran.out.startswith("avoid: 97 ms, deadline 90 ms, not proven, 7 ms above it\n")
+    assert "must shrink by the factor" in ran.out or "All together, each times 0." in ran.out
+    assert _json(run, project, "--budget", "avoid")["slack"] == -7
+    refused = run("timing", project, "--budget", "ends")
+    assert refused.status == 2
+    assert "`ends` has no budget: it has no deadline; write `deadline` at `chains: ends`" in refused.err
 
 
 def test_check_warns_of_the_late_chain(run: Run, project: Path) -> None:

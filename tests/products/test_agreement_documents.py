@@ -206,3 +206,48 @@ def test_a_project_without_partners(tmp_path: Path) -> None:
     text = "archgen: 1\ngroups: {a: {components: {x: {outputs: {o: T}}}}}\n"
     with pytest.raises(PartnersError, match="the project has no partners: declare them below `partners`"):
         agreement_documents.make_project_agreement(checked(tmp_path, text), "a", "b")
+
+
+SHARED_CHAIN = """
+archgen: 1
+project: {id: two, title: Two}
+partners: {north: North Robots, south: South Vision}
+groups:
+  g:
+    components:
+      scan: {outputs: {out: Data}, owner: north}
+      last: {inputs: {i: scan.out}, owner: south}
+      beside: {outputs: {out: Other}, owner: south}
+nodes:
+  scan: {implements: scan, host: p, timing: {rate: 10 Hz, wcet: 1 ms}}
+  last: {implements: last, host: p, timing: {wcet: 20 ms}}
+  beside: {implements: beside, host: p, timing: {period: 1 s, wcet: 9 ms}}
+hosts: {p: {cores: 1}}
+types: {Data: std_msgs/msg/Empty, Other: std_msgs/msg/Bool}
+chains: {c: {title: See and stop, through: [scan, last], deadline: 150 ms}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("deadline", "table"),
+    [
+        (
+            ", deadline: 150 ms",
+            [
+                ("See and stop<br>150 ms in all, all times 1.666", "North Robots", "`scan`", "1 ms", "1.666 ms"),
+                ("", "South Vision", "`last`", "20 ms", "33.32 ms"),
+            ],
+        ),
+        ("", []),
+    ],
+)
+def test_who_may_take_how_much_stands_in_the_agreement(
+    tmp_path: Path, deadline: str, table: list[tuple[str, ...]]
+) -> None:
+    project = checked(tmp_path, SHARED_CHAIN.replace(", deadline: 150 ms", deadline))
+    agreement = agreement_documents.make_project_agreement(project, "north", "south", None, "r1")
+    page = agreement_documents.render_agreement_markdown(agreement)
+    _, is_there, rest = page.partition("**Who may take how much**\n")
+    assert bool(is_there) == bool(table)
+    rows = [line for line in rest.partition("<a id")[0].splitlines() if line.startswith("| ")][2:]
+    assert [tuple(cell.strip() for cell in row.strip("|").split("|")) for row in rows] == table

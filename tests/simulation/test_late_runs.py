@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from archgen.simulation import find_late_run, simulate_system
+from archgen.simulation import LateRun, find_late_runs, simulate_system
+from archgen.timing.system.timing_system import TimingSystem
 from tests.simulation.systems import arc, event, process, system, timed, within
 
 MS = Fraction(1_000_000)
@@ -17,6 +18,13 @@ BOTH = system(
     executors=process("both"),
 )
 CHAIN = ("scan", "both.fast")
+
+
+def find_late_run(
+    timing_system: TimingSystem, through: tuple[str, ...], deadline: Fraction, seconds: int = 10, seeds: int = 24
+) -> LateRun | None:
+    """Return the first late run of a single chain."""
+    return find_late_runs(timing_system, {"c": (through, deadline)}, seconds=seconds, seeds=seeds).get("c")
 
 
 def test_a_late_run_is_found_and_seen_again_from_its_seed() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ResourceLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.fused_inputs import FusedInputs, find_fused_inputs
@@ -20,7 +21,9 @@ _MS = 10**6
 JsonObject = dict[str, Any]
 
 
-def timing_to_json(analysis: Analysis, chains: Mapping[str, ChainResult]) -> JsonObject:
+def timing_to_json(
+    analysis: Analysis, chains: Mapping[str, ChainResult], evidence: ChainEvidence = NO_EVIDENCE
+) -> JsonObject:
     """Return everything as plain data."""
     return {
         "version": VERSION,
@@ -35,7 +38,7 @@ def timing_to_json(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Jso
             }
             for edge in analysis.edges
         ],
-        "chains": {name: chain_to_json(result) for name, result in chains.items()},
+        "chains": {name: chain_to_json(result, evidence) for name, result in chains.items()},
         "hosts": {
             name: {
                 "utilisation": quantity_to_json(load.utilisation),
@@ -116,8 +119,8 @@ def _element_to_json(analysis: Analysis, name: str) -> JsonObject:
     }
 
 
-def chain_to_json(result: ChainResult) -> JsonObject:
-    """Return a chain's figures."""
+def chain_to_json(result: ChainResult, evidence: ChainEvidence = NO_EVIDENCE) -> JsonObject:
+    """Return a chain's figures, and what was found beyond them."""
     return {
         "through": list(result.through),
         "bound": duration_to_json(result.bound),
@@ -126,8 +129,30 @@ def chain_to_json(result: ChainResult) -> JsonObject:
         "reduced_age": duration_to_json(result.reduced_age),
         "terms": [term_to_json(chain_term) for chain_term in result.terms],
         "deadline": duration_to_json(result.deadline)["value"] if result.deadline else None,
+        "slack": None if result.slack is None else float(result.slack / _MS),
         "verdict": result.verdict,
+        **_evidence_to_json(result.id, evidence),
     }
+
+
+def _evidence_to_json(chain_id: str, evidence: ChainEvidence) -> JsonObject:
+    """Return the run in which a chain is late, and what would prove it; nothing where neither was looked for."""
+    document: JsonObject = {}
+    witness, remedy = evidence.witnesses.get(chain_id), evidence.remedies.get(chain_id)
+    if witness:
+        document["witness"] = {
+            "seed": witness.seed,
+            "seconds": witness.seconds,
+            "longest": float(witness.longest / _MS),
+        }
+    if remedy:
+        document["remedy"] = {
+            "set": list(map(str, remedy.changes)),
+            "bound": duration_to_json(remedy.bound) if remedy.changes else None,
+            "tried": {kind: list(names) for kind, names in remedy.tried},
+            "cut": remedy.is_cut,
+        }
+    return document
 
 
 def ways_to_json(

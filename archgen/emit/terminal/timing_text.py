@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, align_rows
-from archgen.emit.terminal import timing_legend
+from archgen.emit.terminal import chain_remedies, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
+from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import BoundedPath
@@ -23,12 +24,17 @@ from archgen.timing.system.thread_pools import find_joint_nodes
 
 
 def format_timing(
-    analysis: Analysis, chains: Mapping[str, ChainResult], loops: Iterable[LoopRound], width: int | None = None
+    analysis: Analysis,
+    chains: Mapping[str, ChainResult],
+    loops: Iterable[LoopRound],
+    width: int | None = None,
+    evidence: ChainEvidence = NO_EVIDENCE,
 ) -> Iterator[str]:
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
     sections = (
-        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
+        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values(), evidence)),
         ("What is late or not proven to be in time, why, and what to do", _advice_rows(analysis, chains.values())),
+        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(chains, evidence)),
         ("Hosts", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
@@ -53,7 +59,7 @@ def _section_lines(title: str, rows: Iterable[TextRow], width: int | None) -> It
         yield ""
 
 
-def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
     for result in chains:
         deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
         yield (
@@ -61,7 +67,16 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[T
             format_figure(result.bound),
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
-            describe_gaps(result, analysis),
+            chain_remedies.describe_slack(result),
+            "; ".join(
+                filter(
+                    None,
+                    (
+                        chain_remedies.describe_witness(result.id, evidence.witnesses.get(result.id)),
+                        describe_gaps(result, analysis),
+                    ),
+                )
+            ),
         )
 
 
@@ -228,12 +243,13 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
         yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
 
 
-def format_chain(
+def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     result: ChainResult,
     analysis: Analysis,
     age: TimingValue,
     published: tuple[Fraction, Fraction] | None = None,
     width: int | None = None,
+    evidence: ChainEvidence = NO_EVIDENCE,
 ) -> Iterator[str]:
     """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
@@ -282,12 +298,17 @@ def format_chain(
         )
         rows.append(("    reduced data age", figure_wording.format_duration(published[1]), ""))
     if result.deadline:
-        rows.append(("deadline", format_figure(result.deadline), VERDICT_WORDS[result.verdict]))
+        verdict_text = ", ".join(filter(None, (VERDICT_WORDS[result.verdict], chain_remedies.describe_slack(result))))
+        rows.append(("deadline", format_figure(result.deadline), verdict_text))
     yield from align_rows(rows, width)
+    if result.id in evidence.witnesses:
+        yield f"  {chain_remedies.describe_witness(result.id, evidence.witnesses[result.id])}"
     advice = advise_on_chain(analysis, result)
     if advice is not None:
         yield ""
         yield from (f"  {sentence}" for sentence in advice if sentence)
+    if result.id in evidence.remedies:
+        yield f"  what would prove it: {', '.join(chain_remedies.describe_remedy(evidence.remedies[result.id]))}"
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 

@@ -17,7 +17,7 @@ VERDICT_WORDS: Mapping[ChainVerdict, str] = {
 """What a terminal calls the verdicts: what can go wrong for certain stands out."""
 VERDICT_MEANINGS: Mapping[ChainVerdict, str] = {
     "met": "the bound is not above the deadline",
-    "missed": "it can happen: the best case is above the deadline, or there is no bound at all",
+    "missed": "it can happen: the best case is above the deadline, a run was seen, or there is no bound at all",
     "not proven": "the bound is above the deadline, or none was found; the chain may still be in time",
     "open": "figures are missing",
 }

@@ -11,6 +11,8 @@ _DURATION_UNITS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 _MAX_SHOWN_MS = 10**4
 """Durations below this many ms are written in ms, above in s."""
 _DECIMALS, _MAX_DECIMALS = 3, 12
+_MAX_WRITTEN_DECIMALS = 18
+"""The most decimals that are read again."""
 
 
 @lru_cache(4096)
@@ -20,6 +22,16 @@ def format_duration(ns: Fraction) -> str:
         if abs(ns) >= (_MAX_SHOWN_MS * 10**6 if unit == "s" else factor):
             return f"{format_number(ns / factor)} {unit}"
     return f"{format_number(ns)} ns" if ns else "0 ms"
+
+
+def write_exact_duration(ns: Fraction) -> str:
+    """Write a duration (ns) as files have it: exact where it is a decimal fraction."""
+    factor, unit = next(((factor, unit) for factor, unit in _DURATION_UNITS[1:] if abs(ns) >= factor), (1, "ns"))
+    scaled, decimals = ns / factor, 0
+    while scaled.denominator != 1 and decimals < _MAX_WRITTEN_DECIMALS:
+        scaled, decimals = scaled * 10, decimals + 1
+    digits = f"{int(scaled):0{decimals + 1}}"
+    return f"{digits[: len(digits) - decimals]}{'.' if decimals else ''}{digits[len(digits) - decimals :]} {unit}"
 
 
 def format_rate(hertz: Fraction) -> str:

@@ -38,8 +38,13 @@ class SearchBudget:
 
     def __init__(self, term_count: int = _MAX_TERMS, terms_per_search: int | None = None) -> None:
         """Start with the whole budget."""
-        self._terms_left = term_count
+        self._term_count = self._terms_left = term_count
         self._terms_per_search = _MAX_TERMS_PER_SEARCH if terms_per_search is None else terms_per_search
+
+    @property
+    def spent_terms(self) -> int:
+        """Return how many terms were looked at."""
+        return self._term_count - self._terms_left
 
     def start_search(self) -> Callable[[int], None]:
         """Begin a search: the returned function spends terms, and raises DivergedError after too many."""

@@ -54,6 +54,8 @@ class PropagationState:
     """Event models of what comes by the arcs that enter such a core (by identity), as its responses rest on them."""
     leaving_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
     """Event models of what leaves each activity; filled on demand by sent_models, once everything else is found."""
+    searched_terms: int = 0
+    """How many terms the searches looked at: what finding all this has cost."""
 
 
 def activation_model(state: PropagationState, name: str) -> EventStreams | UnknownCause:

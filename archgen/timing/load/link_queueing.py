@@ -52,6 +52,7 @@ def settle_links(system: TimingSystem) -> tuple[TimingSystem, TriggerGraph, Prop
             if turn % _MAX_TURNS
             else {link: old_wait if old_wait == waits[link] else None for link, old_wait in new_waits.items()}
         )
+    state.searched_terms = group_budgets.spent_terms
     return candidate, trigger_graph, state
 
 

@@ -26,6 +26,11 @@ class GroupBudgets:
         # By the group's first step: a search that never ends must not begin anew with each turn.
         self._budgets: dict[str, SearchBudget] = {}
 
+    @property
+    def spent_terms(self) -> int:
+        """Return how many terms all groups have looked at."""
+        return sum(budget.spent_terms for budget in self._budgets.values())
+
     def assign_budgets(self, system: TimingSystem, successors: Mapping[str, Sequence[str]]) -> dict[str, SearchBudget]:
         """Return the budget of each step (activity or resource); `successors` say what a change of it changes."""
         neighbours: dict[str, list[str]] = {step: [] for step in successors}

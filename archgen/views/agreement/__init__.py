@@ -12,6 +12,7 @@ from archgen.timing.system import activity_builder
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.agreement_picture import draw_agreement
+from archgen.views.agreement.budget_section import BudgetFinder, find_crossing_budgets
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
 from archgen.views.agreement.plain_terms import list_plain_terms
 from archgen.views.agreement.signature_record import SignatureRecord, SignedTag
@@ -44,11 +45,12 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     signed_tags: Sequence[SignedTag] = (),
     signed_revision: tuple[str, Lookup] | None = None,
     notices: Sequence[Paragraph] = (),
+    find_budget: BudgetFinder | None = None,
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     `earlier_revision`, with which it is compared, and `signed_revision`, whose versions of interfaces it tells, are the
-    names of revisions with their look-ups.
+    names of revisions with their look-ups. `find_budget` is asked for each chain between the two.
     """
     # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
     records = _record_interfaces(lookup, (first, second), MatchedIds())
@@ -76,6 +78,7 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
         tuple(notices),
         earlier_lookup,
         issue_date,
+        find_crossing_budgets(records, find_budget) if find_budget else {},
         signatures,
     )
     return PartnerAgreement(outline_agreement(content), graph, len(records), changes)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord
@@ -26,6 +28,8 @@ class AgreementContent:
     earlier_lookup: Lookup | None = None
     """Look-ups of the architecture at the earlier revision."""
     issue_date: str = ""
+    budgets: Mapping[str, SharedBudget] = field(default_factory=dict)
+    """What the elements of the chains between the two may take, by chain."""
     signatures: SignatureRecord = field(default_factory=SignatureRecord)
 
     @property

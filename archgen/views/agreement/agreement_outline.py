@@ -13,6 +13,7 @@ from archgen.views.agreement.agreement_summary import (
     write_open_points_section,
     write_summary_section,
 )
+from archgen.views.agreement.budget_section import write_budget_section
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.signature_record import write_signature_table
@@ -62,6 +63,7 @@ def outline_agreement(content: AgreementContent) -> Outline:
                 for section in _direction_section(content, section_writer, direction)
             ),
             *_removed_section(content),
+            *write_budget_section(content),
             write_open_points_section(content),
             _signatures_section(content),
         ),

@@ -136,6 +136,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
             timing_tables.figure_cell(value_format.display_lower_bound(result.best)),
             _largest_step(timing_lookup, result),
             timing_tables.figure_cell(value_format.display_duration(result.deadline)) if result.deadline else (),
+            timing_tables.figure_cell(value_format.display_slack(result)),
             inline_text.to_inlines(Text(result.verdict, strong=result.verdict != "met")),
             inline_text.to_inlines(value_format.describe_missing(result.bound, timing_lookup.analysis, 3)),
         )
@@ -148,6 +149,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         Column("At the earliest", 0.9, "right"),
         Column("Largest step", 1.5),
         Column("Deadline", 0.8, "right"),
+        Column("Left of it", 0.8, "right"),
         Column("Verdict", 0.7),
         Column("Missing", 1.6),
     )

@@ -1,0 +1,231 @@
+"""How much each element may take, how rarely it may work, and by what a host may slow down, until a chain is late.
+
+Each figure is looked at alone, all others as they are; and all together, grown by one common factor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+
+from archgen.frozen import dataclass
+from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.tick_unit import NS_PER_SECOND
+from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours
+from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
+from archgen.timing.search.largest_step import SlackFunction, climb_steps, find_largest_step
+from archgen.timing.search.tried_figures import TriedFigure, find_execution_time, find_own_period
+
+MAX_TRIES = 1_000
+"""How many figures are tried for the budget of one chain."""
+MAX_SHARE_TRIES = 300
+"""How many common factors are tried for the shares of one chain."""
+FACTOR_STEPS = 1_000
+"""Factors are found in thousandths."""
+_LARGEST_FACTOR = 1_000
+
+
+@dataclass(frozen=True, slots=True)
+class FigureBudget:
+    """How large a figure of an element (`wcet`, `response`, `period`) may be, all others as they are; durations in ns.
+
+    `largest` is None where the chain is late however small it is, and where it is in time however large (`is_free`).
+    """
+
+    activity: str
+    key: str
+    written: Fraction
+    largest: Fraction | None
+    is_free: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class FactorBudget:
+    """By which factor all execution times of some elements may grow; None where no factor does, or any (`is_free`)."""
+
+    factor: Fraction | None
+    is_free: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PartnerShare:
+    """What an element of some partners may take where all grow alike; durations in ns. `on_chain`: not only beside it."""
+
+    owners: tuple[str, ...]
+    activity: str
+    key: str
+    written: Fraction
+    may_take: Fraction
+    on_chain: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SharedBudget:
+    """The factor by which all elements of a chain and of its hosts may grow together, and what each may take then."""
+
+    factor: Fraction | None
+    shares: tuple[PartnerShare, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ChainBudget:
+    """The budget of a chain. `untried` names the figures and hosts for which no try was left."""
+
+    chain: str
+    figures: tuple[FigureBudget, ...]
+    hosts: tuple[tuple[str, FactorBudget], ...]
+    shared: SharedBudget
+    untried: tuple[str, ...]
+
+
+class UnknownBudgetError(ValueError):
+    """A chain has no budget: it has no deadline, or its figures are not all written."""
+
+
+def find_chain_budget(trials: ChangeTrials, result: ChainResult) -> ChainBudget:
+    """Find the budget of a chain. Raise UnknownBudgetError where nothing can be found."""
+    search = _BudgetSearch(trials, result)
+    shared = search.share_out()
+    hosts = tuple(search.find_host_budgets())
+    figures = tuple(search.find_figure_budgets())
+    return ChainBudget(result.id, figures, hosts, shared, tuple(search.untried))
+
+
+def share_chain_budget(trials: ChangeTrials, result: ChainResult) -> SharedBudget:
+    """Find by how much all elements of a chain and of its hosts may grow together, and no more than that."""
+    return _BudgetSearch(trials, result).share_out()
+
+
+class _BudgetSearch:
+    def __init__(self, trials: ChangeTrials, result: ChainResult) -> None:
+        if result.deadline is None or result.deadline.value is None:
+            msg = "it has no deadline"
+            raise UnknownBudgetError(msg)
+        if result.verdict == "open" or not result.terms:
+            msg = "figures are missing"
+            raise UnknownBudgetError(msg)
+        self.trials, self.result, self.deadline = trials, result, result.deadline.value
+        self.slack = result.slack if result.verdict == "met" else None
+        architecture, self.elements = trials.architecture, list_chain_elements(trials.analysis, result)
+        self.neighbours = list_neighbours(trials.analysis, self.elements)
+        self.own_times = _list_figures(find_execution_time(architecture, activity) for activity in self.elements)
+        self.other_times = [
+            figure
+            for figure in _list_figures(find_execution_time(architecture, activity) for activity in self.neighbours)
+            if figure.key == "wcet"
+        ]
+        self.untried: list[str] = []
+
+    def find_figure_budgets(self) -> Iterator[FigureBudget]:
+        """Yield the largest execution time of each element, and the longest period of each in the chain."""
+        periods = _list_figures(find_own_period(self.trials.architecture, activity) for activity in self.elements)
+        for figure in (*self.own_times, *periods, *self.other_times):
+            try:
+                budget = self._find_figure_budget(figure)
+            except TriesSpentError:
+                self.untried.append(f"{figure.activity.id}.timing.{figure.key}")
+                continue
+            # Beside the chain only those count that can make it late.
+            if not budget.is_free or figure not in self.other_times:
+                yield budget
+
+    def find_host_budgets(self) -> Iterator[tuple[str, FactorBudget]]:
+        """Yield by what all execution times on each host of the chain may grow."""
+        for host in dict.fromkeys(activity.host for activity in self.elements if activity.host):
+            figures = [figure for figure in (*self.own_times, *self.other_times) if figure.activity.host == host]
+            if figures:
+                try:
+                    yield host, self._find_factor(figures)
+                except TriesSpentError:
+                    self.untried.append(host)
+
+    def share_out(self) -> SharedBudget:
+        """Return by what all may grow together, and what each may take then."""
+        figures = [*self.own_times, *self.other_times]
+        try:
+            factor = self._find_factor(figures).factor
+        except TriesSpentError:
+            self.untried.append("the common factor")
+            return SharedBudget(None, ())
+        if factor is None:
+            return SharedBudget(None, ())
+        shares = [
+            PartnerShare(
+                self._find_owners(figure),
+                figure.activity.id,
+                figure.key,
+                figure.written,
+                figure.grow_by(factor),
+                is_own,
+            )
+            for is_own, own_figures in ((True, self.own_times), (False, self.other_times))
+            for figure in own_figures
+        ]
+        return SharedBudget(factor, tuple(shares))
+
+    def _find_owners(self, figure: TriedFigure) -> tuple[str, ...]:
+        architecture = self.trials.architecture
+        component = architecture.components.get(figure.activity.component or "")
+        return architecture.nodes[figure.activity.node].owners or (component.owners if component else ())
+
+    def _find_figure_budget(self, figure: TriedFigure) -> FigureBudget:
+        limit = max(int(self.deadline // figure.tick), figure.written_step + 1)
+        rate = self.trials.analysis.paces[figure.activity.id].rate.value
+        # What computes until it is to begin anew, or longer, never comes to an end: that needs no look.
+        full_step = (
+            NS_PER_SECOND / rate / figure.tick if figure.key == "wcet" and figure in self.own_times and rate else None
+        )
+
+        def find_slack(step: int) -> Fraction | None:
+            return None if full_step and step >= full_step else self._slack_with((figure.change_to(step),))
+
+        if figure in self.other_times:
+            # Most neighbours are in nobody's way: a single look shows it.
+            limit_slack = self._slack_with((figure.change_to(limit),))
+            if limit_slack is not None and limit_slack >= 0:
+                return FigureBudget(figure.activity.id, figure.key, figure.written, None, is_free=True)
+        step, is_free = self._find_step(
+            find_slack, figure.written_step, figure.least_step, limit, Fraction(figure.tick)
+        )
+        largest = None if step is None else Fraction(step * figure.tick)
+        # What is written finer than it is tried in, and leaves nothing, is the largest itself.
+        if figure.key != "period" and largest is not None and largest < figure.written and self.slack is not None:
+            largest = figure.written
+        return FigureBudget(figure.activity.id, figure.key, figure.written, largest, is_free)
+
+    def _find_factor(self, figures: Sequence[TriedFigure]) -> FactorBudget:
+        total = sum((figure.written for figure in figures if figure in self.own_times), Fraction(0))
+
+        def find_slack(step: int) -> Fraction | None:
+            factor = Fraction(step, FACTOR_STEPS)
+            return self._slack_with(tuple(figure.change_to_duration(figure.grow_by(factor)) for figure in figures))
+
+        step, is_free = self._find_step(
+            find_slack,
+            FACTOR_STEPS,
+            1,
+            _LARGEST_FACTOR * FACTOR_STEPS,
+            (total or self.deadline) / FACTOR_STEPS,
+        )
+        return FactorBudget(None if step is None else Fraction(step, FACTOR_STEPS), is_free)
+
+    def _find_step(
+        self, find_slack: SlackFunction, written: int, least: int, limit: int, fall: Fraction
+    ) -> tuple[int | None, bool]:
+        """Return the largest step that keeps the deadline, and whether all up to `limit` do."""
+        if self.slack is not None:
+            step = climb_steps(find_slack, written, limit, self.slack, fall)
+            return step, step is None
+        if least >= written:
+            return None, False
+        least_slack = find_slack(least)
+        if least_slack is None or least_slack < 0:
+            return None, False
+        return find_largest_step(find_slack, least, written, least_slack, self.result.slack), False
+
+    def _slack_with(self, changes: Changes) -> Fraction | None:
+        return self.trials.find_slack(self.result.id, changes)
+
+
+def _list_figures(figures: Iterable[TriedFigure | None]) -> list[TriedFigure]:
+    return [figure for figure in figures if figure is not None and figure.written]

@@ -1,0 +1,106 @@
+"""Trying changes of figures: the whole analysis of each, remembered, and no more of them than were allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, ChainResult, ChainVerdict
+from archgen.timing.chains.chain_bounds import bound_chain
+from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.run_analysis import analyse_for_chains
+
+OverrideLayer = Callable[[Architecture, Sequence[str]], Architecture]
+"""Lays changes over an architecture, as `--set` writes them."""
+_TERMS_PER_TRY = 25_000
+"""Terms of a search that count as one more try: an analysis of a large host costs as much as many of small ones."""
+_VERDICT_RANKS: Mapping[ChainVerdict, int] = {"met": 2, "open": 1, "not proven": 1, "missed": 0}
+
+
+@dataclass(frozen=True, slots=True)
+class TriedChange:
+    """A change of one key of an element, as `--set` writes it: `obstacle_boxes.timing.core=3`."""
+
+    element: str
+    key: str
+    value: str
+
+    @property
+    def kind(self) -> str:
+        """Return what is changed: `core`, `threads`, `callback_groups`."""
+        return self.key.removeprefix("timing.").partition(".")[0]
+
+    def __str__(self) -> str:
+        return f"{self.element}.{self.key}={self.value}"
+
+
+Changes = tuple[TriedChange, ...]
+
+
+class TriesSpentError(Exception):
+    """As many changes were tried as were allowed."""
+
+
+class SenselessChangeError(ValueError):
+    """A change cannot be made: with it the figures would contradict one another."""
+
+
+class ChangeTrials:
+    """Tries changes of an architecture. `tries_left` counts tries and not seconds, so that results can be repeated."""
+
+    def __init__(
+        self, architecture: Architecture, analysis: Analysis, lay_overrides: OverrideLayer, tries: int
+    ) -> None:
+        """Start with the analysis of the architecture as it is written."""
+        self.architecture = architecture
+        self.analysis = analysis
+        self.tries_left = tries
+        self._lay_overrides = lay_overrides
+        self._networks: dict[Changes, tuple[Architecture, CostNetwork]] = {
+            (): (architecture, CostNetwork.of_analysis(analysis))
+        }
+        self._results: dict[tuple[Changes, str], ChainResult] = {}
+
+    def bound_chain(self, chain_id: str, changes: Changes = ()) -> ChainResult:
+        """Return what a chain takes with some changes. Raise TriesSpentError where no try is left for it."""
+        result = self._results.get((changes, chain_id))
+        if result is None:
+            changed_architecture, network = self._analyse(changes)
+            asked_chain = changed_architecture.chains[chain_id]
+            result = bound_chain(network.steps.analysis, changed_architecture, asked_chain, network)
+            self._results[changes, chain_id] = result
+        return result
+
+    def find_slack(self, chain_id: str, changes: Changes) -> Fraction | None:
+        """Return what some changes leave of a chain's deadline, in ns; None where nothing proves that it is kept."""
+        try:
+            result = self.bound_chain(chain_id, changes)
+        except SenselessChangeError:
+            return None
+        slack = result.slack
+        return None if slack is None or (slack >= 0 and result.verdict != "met") else slack
+
+    def harms_others(self, chain_id: str, changes: Changes) -> bool:
+        """Whether some changes make the verdict on any other chain worse."""
+        return any(
+            _VERDICT_RANKS[self.bound_chain(other_id, changes).verdict]
+            < _VERDICT_RANKS[self.bound_chain(other_id).verdict]
+            for other_id in self.architecture.chains
+            if other_id != chain_id
+        )
+
+    def _analyse(self, changes: Changes) -> tuple[Architecture, CostNetwork]:
+        """Analyse an architecture with some changes, or recall how it was."""
+        if changes not in self._networks:
+            if self.tries_left <= 0:
+                raise TriesSpentError
+            try:
+                changed_architecture = self._lay_overrides(self.architecture, list(map(str, changes)))
+            except ValueError as error:
+                raise SenselessChangeError(*error.args) from error
+            analysis = analyse_for_chains(changed_architecture)
+            self.tries_left -= 1 + analysis.searched_terms // _TERMS_PER_TRY
+            self._networks[changes] = changed_architecture, CostNetwork.of_analysis(analysis)
+        return self._networks[changes]
