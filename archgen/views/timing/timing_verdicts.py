@@ -149,7 +149,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         Column("At the earliest", 0.9, "right"),
         Column("Largest step", 1.5),
         Column("Deadline", 0.8, "right"),
-        Column("Left of it", 0.8, "right"),
+        Column("Time left", 0.8, "right"),
         Column("Verdict", 0.7),
         Column("Missing", 1.6),
     )
