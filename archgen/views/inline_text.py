@@ -12,6 +12,7 @@ from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Host
 from archgen.model.node import Node, Qos
+from archgen.model.quantity import Quantity
 from archgen.views.shapes import Inlines, Text
 
 BEHAVIOUR_WORDS = {
@@ -49,6 +50,16 @@ _BACKTICKED = re.compile(r"`([^`]+)`")
 def value_or_unknown(value: str | None) -> Inlines:
     """Return the value as inlines, or "not known yet"."""
     return (Text(value),) if value else UNKNOWN_INLINES
+
+
+def quantity_to_inlines(quantity: Quantity | None) -> Inlines:
+    """Return a quantity as it was written, sorted by its value; "not known yet" for None."""
+    return (Text(str(quantity), sort_number=str(quantity.value)),) if quantity else UNKNOWN_INLINES
+
+
+def count_to_inlines(count: int | None) -> Inlines:
+    """Return a count, sorted by its value; "not known yet" for None or none at all."""
+    return (Text(str(count), sort_number=str(count)),) if count else UNKNOWN_INLINES
 
 
 def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:

@@ -35,6 +35,10 @@ class Text:
     """A line break precedes this run."""
     change: Literal["added", "removed", "changed"] | None = None
     """The change that this run reports. Emitters may colour it; its words say the same without colour."""
+    sort_number: str | None = None
+    """The exact number in its base unit (ns, Hz, B, B/s, a share) that a table sorts by: `20000000`, `1/3`. A cell
+    without one sorts behind the cells of its column that have one.
+    """
 
 
 Inlines = tuple[Text, ...]

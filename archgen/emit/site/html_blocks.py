@@ -121,7 +121,7 @@ class PageWriter:
     def _write_row(self, row: tuple[Inlines, ...], anchor: str | None, table: Table) -> str:
         cells = "".join(
             [
-                f"<td{_ALIGNMENT_CLASS[column.align]}>{self.write_inlines(cell)}</td>"
+                f"<td{_ALIGNMENT_CLASS[column.align]}{_write_sort_number(cell)}>{self.write_inlines(cell)}</td>"
                 for column, cell in zip(table.columns, row, strict=True)
             ]
         )
@@ -176,6 +176,15 @@ class PageWriter:
             return ""
         self.written_anchors.add(anchor)
         return f' id="{self.current_page.id_for(anchor)}"'
+
+
+def _write_sort_number(cell: Inlines) -> str:
+    """Return the attribute with the number that a cell sorts by: of several, that of the first one."""
+    # A loop with `is not None`: most cells have none, and this runs for each cell of the site.
+    for run in cell:
+        if run.sort_number is not None:
+            return f' data-sort="{escape_html(run.sort_number)}"'
+    return ""
 
 
 def _write_heads(columns: Iterable[Column]) -> str:

@@ -176,7 +176,14 @@ def _timing_cell(node: Node) -> Inlines:
     summary = "; ".join(
         short_timing for timing in node.timing.values() if (short_timing := inline_text.format_short_timing(timing))
     )
-    return inline_text.to_inlines(summary) if summary else ()
+    return (Text(summary, sort_number=_shortest_period(node)),) if summary else ()
+
+
+def _shortest_period(node: Node) -> str | None:
+    """Return the shortest period of a node in ns, as the number that tables sort by; None where none is written."""
+    periods = [timing.period.value for timing in node.timing.values() if timing.period]
+    periods += [10**9 / timing.rate.value for timing in node.timing.values() if timing.rate and timing.rate.value]
+    return str(min(periods)) if periods else None
 
 
 def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
@@ -263,7 +270,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     architecture = lookup.architecture
     order = host.scheduling or inline_text.format_core_orders(host)
     facts = [
-        ("Cores", inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES),
+        ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),

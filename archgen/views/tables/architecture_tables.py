@@ -11,6 +11,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
 from archgen.model.architecture import Chain, Requirement
 from archgen.model.component import Connection
+from archgen.model.deployment import Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
 from archgen.views import inline_text, requirement_servers
@@ -106,7 +107,7 @@ def make_type_table(lookup: Lookup) -> Table | None:
         (
             inline_text.type_link(conceptual_type.name),
             message_cell(lookup, conceptual_type),
-            inline_text.to_inlines(size) if (size := lookup.format_size(conceptual_type)) else (),
+            size_cell(lookup, conceptual_type),
             inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
             inline_text.to_inlines(describe_mapping(conceptual_type)),
         )
@@ -120,6 +121,17 @@ def make_type_table(lookup: Lookup) -> Table | None:
         Column("Remarks", 1.6),
     )
     return Table("table:types", "Mapping of conceptual types to ROS messages", columns, rows) if rows else None
+
+
+def size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
+    """Return the message size of a type; empty where it is not known."""
+    size = lookup.format_size(conceptual_type)
+    if not size:
+        return ()
+    byte_count = (
+        conceptual_type.size.value if conceptual_type.size else lookup.message_size(conceptual_type.message, None).bytes
+    )
+    return (Text(size, sort_number=str(byte_count)),)
 
 
 def message_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
@@ -240,7 +252,7 @@ def make_host_table(lookup: Lookup) -> Table | None:
     rows = tuple(
         (
             inline_text.to_inlines(Text(host.title, ref=f"host:{host.id}")),
-            inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES,
+            inline_text.count_to_inlines(host.cores),
             inline_text.join_inlines(
                 inline_text.to_inlines(Text(container.id, ref=f"container:{container.id}"))
                 for container in architecture.containers.values()
@@ -262,10 +274,8 @@ def make_link_table(lookup: Lookup) -> Table | None:
         (
             inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}")),
             inline_text.join_inlines(inline_text.to_inlines(Text(host, ref=f"host:{host}")) for host in link.connects),
-            inline_text.value_or_unknown(str(link.bandwidth) if link.bandwidth else None),
-            inline_text.value_or_unknown(
-                f"{link.best or '?'} to {link.worst or '?'}" if link.best or link.worst else None
-            ),
+            inline_text.quantity_to_inlines(link.bandwidth),
+            _latency_cell(link),
         )
         for link in lookup.architecture.links.values()
     )
@@ -273,6 +283,14 @@ def make_link_table(lookup: Lookup) -> Table | None:
     # Links have no page or section of their own: references to one lead to its row.
     anchors = tuple(f"link:{name}" for name in lookup.architecture.links)
     return Table("table:links", "Links between hosts", columns, rows, row_anchors=anchors) if rows else None
+
+
+def _latency_cell(link: Link) -> Inlines:
+    """Return the latency of a link, from best to worst, sorted by the worst."""
+    if not link.best and not link.worst:
+        return inline_text.UNKNOWN_INLINES
+    sort_number = str(link.worst.value) if link.worst else None
+    return (Text(f"{link.best or '?'} to {link.worst or '?'}", sort_number=sort_number),)
 
 
 def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table | None:
@@ -283,7 +301,7 @@ def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table 
         (
             inline_text.to_inlines(Text(chain.title, ref=f"chain:{chain.id}")),
             inline_text.join_inlines((waypoint_link(lookup, point.kind, point.id) for point in chain.through), " → "),
-            inline_text.value_or_unknown(str(chain.deadline) if chain.deadline else None),
+            inline_text.quantity_to_inlines(chain.deadline),
             inline_text.join_inlines(
                 inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
             ),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from archgen.diagnostics.common_wording import floor_percent, shorten_hash
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 from archgen.views.inline_text import count_noun
-from archgen.views.shapes import Block, Column, Figure, Inlines, Paragraph, Table
+from archgen.views.shapes import Block, Column, Figure, Inlines, Paragraph, Table, Text
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 
 _MAX_BARS = 24
@@ -79,17 +80,12 @@ def make_growth_table(history: History) -> Table:
         ),
     )
     rows = tuple(
-        tuple(
-            map(
-                inline_text.to_inlines,
-                (
-                    name_point(point, history),
-                    str(point.project_row.components),
-                    str(point.connections),
-                    *(format_step_share(point.project_row, step) for step in PROGRESS_STEPS),
-                    _format_slashed(point.project_row.findings),
-                ),
-            )
+        (
+            inline_text.to_inlines(name_point(point, history)),
+            inline_text.to_inlines(str(point.project_row.components)),
+            inline_text.to_inlines(str(point.connections)),
+            *(_step_cell(point.project_row, step) for step in PROGRESS_STEPS),
+            inline_text.to_inlines(_format_slashed(point.project_row.findings)),
         )
         for point in reversed(history.points)
     )
@@ -142,6 +138,12 @@ def name_point(point: HistoryPoint, history: History) -> str:
 def format_step_share(row: ProgressRow, step: str) -> str:
     """Format the share of a step in percent, rounded down so that 100 % means all; `-` without components."""
     return f"{floor_percent(getattr(row, step), row.components)} %" if row.components else "-"
+
+
+def _step_cell(row: ProgressRow, step: str) -> Inlines:
+    """Return the cell of a step's share, sorted by the exact share."""
+    share = str(Fraction(getattr(row, step), row.components)) if row.components else None
+    return (Text(format_step_share(row, step), sort_number=share),)
 
 
 def format_findings(findings: FindingCounts) -> str:

@@ -108,10 +108,10 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
     rows = tuple(
         (
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
-            timing_tables.figure_cell(value_format.display_duration(result.bound)),
-            timing_tables.figure_cell(value_format.display_lower_bound(result.best)),
+            timing_tables.duration_cell(result.bound),
+            timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
             _largest_step(timing_lookup, result),
-            timing_tables.figure_cell(value_format.display_duration(result.deadline)) if result.deadline else (),
+            timing_tables.duration_cell(result.deadline) if result.deadline else (),
             inline_text.to_inlines(Text(result.verdict, strong=result.verdict != "met")),
             inline_text.to_inlines(value_format.describe_missing(result.bound, timing_lookup.analysis, 3)),
         )

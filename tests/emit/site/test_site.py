@@ -93,6 +93,12 @@ def test_a_table_has_a_caption_widths_and_rows_with_anchors() -> None:
     )
 
 
+def test_a_cell_with_a_quantity_has_the_exact_number_to_sort_by() -> None:
+    row = ((Text("a"),), (Text("about "), Text("8.3 ms", sort_number="25000000/3")))
+    html = shown(Table("t:1", "Times", (Column("Name"), Column("Time")), (row,)))
+    assert '<td>a</td><td data-sort="25000000/3">about 8.3 ms</td>' in html
+
+
 def test_sections_nest_and_are_listed_above() -> None:
     inner = Section("s:1", "One", (), (Section("s:2", "Two & more", ()),))
     html = body(tree_of(page(sections=(inner, Section("s:3", "Three", ())))))
