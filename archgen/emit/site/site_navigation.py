@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import escape_breakable, escape_html
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.shapes import Page
@@ -83,12 +84,16 @@ class SiteNavigation:
 
     def _write_entry(self, page: Page, ancestry: tuple[str, ...], root: str) -> str:
         """Write an entry. The one that leads to the reader's page has its own list below it, others its length."""
+        mark = status_marks.write_mark(page.mark) if page.mark else ""
         child_count = len(self.children.get(page.anchor, ()))
         count = f' <span class="count" aria-hidden="true">{child_count}</span>' if child_count else ""
         visible_children = self._visible_pages(page.anchor, ancestry) if page.anchor == ancestry[-1] else ()
-        items = NEWLINE.join(f"<li>{self._write_link(child, root)}</li>" for child in visible_children)
+        items = NEWLINE.join(
+            f"<li>{self._write_link(child, root, status_marks.write_mark(child.mark) if child.mark else '')}</li>"
+            for child in visible_children
+        )
         inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
-        return f"<li>{self._write_link(page, root, count)}{inner}</li>"
+        return f"<li>{self._write_link(page, root, f'{mark}{count}')}{inner}</li>"
 
     def _write_link(self, page: Page, root: str, suffix: str = "") -> str:
         path = self.links.pages[page.anchor]

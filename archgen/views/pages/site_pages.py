@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node
 from archgen.views import inline_text
-from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
+from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, timing_chapter
+from archgen.views.pages import context_pages, dashboard, page_marks, timing_chapter
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Facts, Figure, Markdown, Page, Paragraph, Section, Text
@@ -33,7 +34,8 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
-    return _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
+    all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
+    return page_marks.mark_pages(lookup, all_pages)
 
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
@@ -78,14 +80,34 @@ class _PageMaker:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def start_page(self) -> Page:
-        """Make the start page: description, title facts, clickable overview, table of groups."""
+        """Make the start page: the state at a glance, the clickable overview, description, title facts, groups."""
         project = self.architecture.project
-        blocks: list[Block] = [Markdown(project.description)] if project.description else []
+        blocks: list[Block] = list(self.make_figures("overview"))
+        blocks += [Markdown(project.description)] if project.description else []
         blocks.append(Facts(tuple(make_title_facts(self.lookup, self.edition))))
-        blocks += self.make_figures("overview", "components")
         blocks += [table] if (table := architecture_tables.make_group_table(self.lookup)) else []
         section = Section("page:index", project.title, tuple(blocks))
-        return Page("index.html", "page:index", project.title, "overview", section, lead="Software architecture")
+        return Page(
+            "index.html",
+            "page:index",
+            project.title,
+            "overview",
+            section,
+            lead=self._describe_size(),
+            dashboard=dashboard.make_dashboard(self.lookup, self.edition),
+        )
+
+    def _describe_size(self) -> str:
+        """Describe the size of the architecture on one line; counts of nothing are left out."""
+        counted_elements = (
+            ("component", self.architecture.components),
+            ("group", self.architecture.groups),
+            ("partner", self.architecture.partners),
+            ("connection", self.architecture.connections),
+            ("node", self.architecture.nodes),
+        )
+        counts = [inline_text.count_noun(len(elements), noun) for noun, elements in counted_elements if elements]
+        return f"Software architecture{f': {join_words(counts)}' if counts else ''}"
 
     def group_pages(self) -> Iterator[Page]:
         """Make a page for each shown group, followed by its shown components."""
@@ -154,6 +176,11 @@ class _PageMaker:
 
     def spanning_pages(self) -> Iterator[Page]:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
+        components = [c for name in self.lookup.shown_groups() for c in self.lookup.shown_components(name)]
+        component_table = make_component_table(self.lookup, "table:components", "All components", components)
+        yield self._spanning_page(
+            "components", "Components", *self.make_figures("components"), component_table if components else None
+        )
         shown_connections = architecture_tables.shown_connections(self.lookup)
         yield self._spanning_page(
             "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)

@@ -5,7 +5,7 @@ Each function returns None where there would be no rows, because a `Table` witho
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
@@ -17,7 +17,14 @@ from archgen.model.node import Topic
 from archgen.views import inline_text, requirement_servers
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Column, Inlines, Status, Table, Text
+
+_SEVERITY_STATES: Mapping[Severity, Status] = {
+    Severity.ERROR: "error",
+    Severity.WARNING: "warning",
+    Severity.NOTE: "note",
+    Severity.OFF: "note",
+}
 
 
 def make_group_table(lookup: Lookup) -> Table | None:
@@ -169,9 +176,10 @@ def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requi
             inline_text.to_inlines(requirement.title),
             inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
             inline_text.join_inlines(requirement_servers.list_servers(lookup, requirement))
-            or inline_text.to_inlines(Text("no component yet", muted=True)),
+            or inline_text.to_inlines(Text("uncovered", status="uncovered"), Text(" no component yet", muted=True)),
         )
-        for requirement in selected_requirements
+        # What nobody serves comes first.
+        for requirement in sorted(selected_requirements, key=lambda each: requirement_servers.is_served(lookup, each))
     )
     columns = (
         Column("Id", 0.5),
@@ -224,17 +232,41 @@ def make_finding_table(findings: Iterable[Diagnostic], anchor: str = "table:open
     """List findings with their help and their place."""
     rows = tuple(
         (
-            inline_text.to_inlines(Text(finding.severity or "", strong=finding.severity is Severity.ERROR)),
+            severity_chip(finding),
             inline_text.join_lines(_finding_lines(finding)),
             inline_text.to_inlines(
                 Text(f"{finding.span.file}:{finding.span.line}" if finding.span.file else "", code=True)
             ),
             inline_text.to_inlines(finding.rule),
         )
-        for finding in findings
+        for finding in sorted(findings, key=lambda each: -each.effective_severity.rank)
     )
     columns = (Column("Severity", 0.6), Column("Finding", 3), Column("Place", 1.3), Column("Rule", 1))
     return Table(anchor, "Open points", columns, rows) if rows else None
+
+
+_RULE_STATES: Mapping[str, tuple[str, Status]] = {
+    "uncovered-requirement": ("uncovered", "uncovered"),
+    "unjustified-component": ("unjustified", "uncovered"),
+    "unjustified-node": ("unjustified", "uncovered"),
+    "unread-output": ("unread", "warning"),
+}
+"""Rules whose findings are states of their own; the others show how serious they are."""
+
+
+def finding_chip(finding: Diagnostic) -> Inlines:
+    """Return the state that a finding tells as a chip: the rule's own word, else its severity."""
+    severity = finding.effective_severity
+    if severity is Severity.WARNING and finding.rule in _RULE_STATES:
+        word, status = _RULE_STATES[finding.rule]
+        return (Text(word, status=status),)
+    return severity_chip(finding)
+
+
+def severity_chip(finding: Diagnostic) -> Inlines:
+    """Return how serious a finding is, as a chip."""
+    severity = finding.effective_severity
+    return (Text(severity, strong=severity is Severity.ERROR, status=_SEVERITY_STATES[severity]),)
 
 
 def _finding_lines(finding: Diagnostic) -> list[Inlines]:

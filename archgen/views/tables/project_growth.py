@@ -26,7 +26,7 @@ def make_growth_charts(history: History) -> tuple[Chart, ...]:
     notes = tuple(_note_older_points(history, len(shown_points)))
     first, last = shown_points[0], shown_points[-1]
     progress_text = f"{_format_mapped(first)} in {name_point(first, history)}, {_format_mapped(last)} in {name_point(last, history)}."
-    findings_text = f"{_count_findings(first)} findings in {name_point(first, history)}, {_count_findings(last)} in {name_point(last, history)}."
+    findings_text = f"{count_findings(first)} findings in {name_point(first, history)}, {count_findings(last)} in {name_point(last, history)}."
     return (
         Chart(
             "history/progress",
@@ -179,7 +179,7 @@ def _findings_bar(point: HistoryPoint, history: History) -> ChartBar:
     return ChartBar(
         name_point(point, history),
         tuple(segment for segment in segments if segment.length),
-        str(_count_findings(point)),
+        str(count_findings(point)),
     )
 
 
@@ -188,7 +188,7 @@ def _format_mapped(point: HistoryPoint) -> str:
     return f"{point.project_row.mapped} of {point.project_row.components}"
 
 
-def _count_findings(point: HistoryPoint) -> int:
+def count_findings(point: HistoryPoint) -> int:
     """Count the findings of all severities."""
     findings = point.project_row.findings
     return findings.error + findings.warning + findings.note

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.system.timing_system import Activity
-from archgen.views.timing import value_format
+from archgen.views.timing import chain_status, value_format
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +17,7 @@ class TimingLookup:
 
     analysis: Analysis
     chains: tuple[ChainResult, ...] = ()
+    """The judged chains, the worst first."""
     rate_origins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Activities that an inferred rate comes from, by activity id; rates that were written have no entry."""
     activities_of_node: Mapping[str, tuple[Activity, ...]] = field(default_factory=dict)
@@ -28,7 +29,9 @@ def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -
     activities_by_node: dict[str, tuple[Activity, ...]] = {}
     for activity in analysis.system.activities.values():
         activities_by_node[activity.node] = (*activities_by_node.get(activity.node, ()), activity)
-    return TimingLookup(analysis, tuple(chains), value_format.find_rate_origins(analysis), activities_by_node)
+    return TimingLookup(
+        analysis, chain_status.rank_chains(chains), value_format.find_rate_origins(analysis), activities_by_node
+    )
 
 
 def analyse_with_chains(architecture: Architecture) -> TimingLookup:

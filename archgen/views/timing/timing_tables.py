@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from archgen.diagnostics.source_span import Span
-from archgen.timing.analysis import EventPace
+from archgen.timing.analysis import EventPace, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
 from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
 from archgen.views.timing import load_charts, rate_phrases, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -38,6 +40,13 @@ _VERDICT_WORDS = {
     "undecided": "not decided by load alone",
     "unknown": "unknown",
 }
+LOAD_STATES: Mapping[str, Status] = {
+    "overload": "missed",
+    "undecided": "not proven",
+    "unknown": "open",
+    "schedulable": "met",
+}
+"""The states that verdicts on loads are shown as, the worst first."""
 _MISSING_CORES = Text("not written", muted=True)
 _MUTED_UNKNOWN = Text("unknown", muted=True)
 
@@ -174,6 +183,18 @@ def activity_link(timing_lookup: TimingLookup, activity_id: str) -> Inlines:
     return inline_text.to_inlines(Text(activity_id, ref=f"node:{activity.node}" if activity else None, code=True))
 
 
+def rank_hosts(timing_lookup: TimingLookup) -> list[tuple[str, HostLoad]]:
+    """Return the hosts with their loads: the worst verdict first, then the greatest share of the cores."""
+    ranks = list(LOAD_STATES)
+    return sorted(
+        timing_lookup.analysis.hosts.items(),
+        key=lambda item: (
+            ranks.index(item[1].verdict),
+            -(load_charts.share_of_cores(item[1].utilisation, item[1].cores).value or 0),
+        ),
+    )
+
+
 def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
     """List hosts with their load, and the bounds that it is compared with."""
     rows = tuple(
@@ -184,10 +205,10 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
             # Both bounds hold for a single core only.
             share_cell(load.rate_monotonic_bound) if load.cores == 1 else (),
             share_cell(load.earliest_deadline_bound) if load.cores == 1 else (),
-            inline_text.to_inlines(_VERDICT_WORDS[load.verdict]),
+            inline_text.to_inlines(Text(_VERDICT_WORDS[load.verdict], status=LOAD_STATES[load.verdict])),
             inline_text.to_inlines(value_format.describe_missing(load.utilisation, timing_lookup.analysis, 3)),
         )
-        for name, load in timing_lookup.analysis.hosts.items()
+        for name, load in rank_hosts(timing_lookup)
     )
     columns = (
         Column("Host", 1.2),
@@ -196,7 +217,7 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
         Column("Rate-monotonic bound", 0.8, "right"),
         Column("Earliest-deadline bound", 0.8, "right"),
         Column("Verdict", 1.1),
-        Column("Missing", 1.6),
+        Column("Figures missing", 1.6),
     )
     return drop_blank_columns(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
 
@@ -220,7 +241,7 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
         Column("Share", 0.7, "right"),
         Column("Burst", 0.8, "right"),
         Column("Longest queueing", 0.9, "right"),
-        Column("Missing", 1.5),
+        Column("Figures missing", 1.5),
     )
     return drop_blank_columns(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
 

@@ -117,7 +117,8 @@
   }
 
   const obey = new Map();
-  document.querySelectorAll(".table table").forEach((table, at) => {
+  // Cards are short, and in the order that matters.
+  [...document.querySelectorAll(".table table")].filter((table) => !table.closest(".card")).forEach((table, at) => {
     const rows = [...table.tBodies[0].rows];
     const suffix = at ? at + 1 : "";
     if (rows.length > 2) obey.set("sort" + suffix, sortable(table, rows, "sort" + suffix));

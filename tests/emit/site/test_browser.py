@@ -31,6 +31,9 @@ SAMPLE = (
 )
 EXAMPLE = (
     "index.html",
+    "chains.html",
+    "chains/missed_dose_to_mark.html",
+    "findings.html",
     "groups/environment_state.html",
     "components/environment_state.object_recognition.html",
     "hosts.html",
@@ -167,10 +170,10 @@ def test_light_and_dark_are_remembered(visit: Open) -> None:
     colour = "getComputedStyle(document.body).backgroundColor"
     assert page.evaluate(colour) == "rgb(20, 24, 28)"
     page.get_by_role("button", name="Light").click()
-    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+    assert page.evaluate(colour) == "rgb(246, 247, 249)"
     page.get_by_role("link", name="Environment Model").first.click()
     page.wait_for_url("**/groups/g1.html")
-    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+    assert page.evaluate(colour) == "rgb(246, 247, 249)"
 
 
 def test_pictures_follow_light_and_dark(visit: Open) -> None:
@@ -272,7 +275,10 @@ def test_back_brings_back_field_rows_count_and_order(visit: Open, tmp_path: Path
     page.get_by_role("button", name="Deadline").click()
     left = page.evaluate(COLUMN, 1)
     assert left == ["350 ms", "350 ms", "20 ms", "20 ms", "8.3 ms", "8.3 ms", "1/3 ms", "1/3 ms"]
+    # A font that is still under way when the page is left would be a request that failed.
+    page.wait_for_load_state("networkidle")
     page.get_by_role("link", name="chain 0").click()
+    page.wait_for_load_state("networkidle")
     page.wait_for_url("**/x.html")
     page.go_back()
     page.wait_for_url("**/index.html?q=ms&sort=-Deadline")
