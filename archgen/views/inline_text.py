@@ -98,6 +98,14 @@ def node_link(node: Node) -> Text:
     return Text(node.id, ref=f"node:{node.id}", code=True)
 
 
+def host_link(architecture: Architecture, host_id: str | None) -> Inlines:
+    """Link to a host, by its title; "not known yet" for None."""
+    if host_id is None:
+        return UNKNOWN_INLINES
+    host = architecture.hosts.get(host_id)
+    return (Text(host.title if host else host_id, ref=f"host:{host_id}"),)
+
+
 def type_link(type_name: str | None) -> Inlines:
     """Link to a conceptual type; "not known yet" for None."""
     return (Text(type_name, ref=f"type:{type_name}"),) if type_name else UNKNOWN_INLINES

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
+from archgen.emit.site import build_site
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.pipeline import check_project
 from archgen.views.lookup import Lookup, make_lookup
@@ -149,6 +151,46 @@ def test_the_tree_marks_what_is_open_and_where_a_deadline_is_missed(tmp_path: Pa
     assert marks["group:h"] == marks["chain:owed"] == marks["chain:late"] == marks["page:findings"] == "open"
     assert not {"group:quiet", "chain:tight", "chain:roomy", "chain:free", "page:index"} & set(marks)
     assert read(pages["chain:tight"].verdict) == "met · 90 ms left"
+
+
+def test_a_finding_links_what_it_names_its_owner_and_its_rule(tmp_path: Path) -> None:
+    lookup = look_up(tmp_path)
+    edition = DocumentEdition(rule_pages={"unread-output": "Because."})
+    pages = {page.anchor: page for page in site_pages.make_pages(lookup, edition)}
+    table = next(block for block in pages["page:findings"].section.blocks if isinstance(block, Table))
+    assert [column.title for column in table.columns] == ["Severity", "Finding", "Owner", "Place", "Rule"]
+    row = next(row for row in table.rows if "R-3" in read(row[1]))
+    assert [(run.text, run.ref) for run in row[1] if run.ref] == [("R-3", "requirement:R-3")] * 2
+    assert (read(row[2]), row[4][0].ref) == ("nobody yet", "rule:uncovered-requirement")
+    owned = next(row for row in table.rows if ("Partner P", "partner:p") in {(run.text, run.ref) for run in row[2]})
+    assert {run.ref for run in owned[1]} & {
+        "component:g.brake",
+        "component:g.eye",
+        "chain:late",
+        "node:eye",
+        "node:brake",
+    }
+    # The page of a rule that found something; the last point is the chain that no finding is about.
+    assert pages["rule:unread-output"].path == "rules/unread-output.html"
+    points = pages["page:findings"].section.blocks[-1]
+    assert isinstance(points, Bullets)
+    assert [(read(item), item[1].ref) for item in points.items] == [
+        ("open · <= 2 s leftOwedexecution time of mouth unknown", "chain:owed")
+    ]
+
+
+def test_counts_of_the_tree_are_those_of_the_statistics(tmp_path: Path) -> None:
+    robot = ROBOT + "use_cases: {UC-1: Walks}\ncontainers: {box: {host: pc}}\n"
+    pages = tuple(list_pages(look_up(tmp_path, robot)).values())
+    files = build_site(pages, {}, title="R", revision="", notices=(), chapter_files=lambda _path: None).files
+    html = files["index.html"].decode()
+    counts = {
+        name: re.findall(
+            r'class="count"[^>]*>([^<]*)<', next(re.finditer(rf'<a href="{name}.html">.*?</a>', html)).group()
+        )
+        for name in ("requirements", "hosts", "nodes", "chains", "findings")
+    }
+    assert counts == {"requirements": ["3 + 1"], "hosts": ["2 + 1"], "nodes": ["4"], "chains": ["6"], "findings": []}
 
 
 @pytest.mark.parametrize("robot", ["groups: {}\n", "groups: {g: {}}\n", "groups: {g: {components: {a: {}}}}\n"])

@@ -157,7 +157,7 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
 
 def _point_card(lookup: Lookup) -> DashboardCard:
     findings = sorted(lookup.findings, key=lambda finding: -finding.effective_severity.rank)
-    points = [
+    points: list[Inlines] = [
         (
             *architecture_tables.finding_chip(finding),
             Text(" "),
@@ -167,23 +167,25 @@ def _point_card(lookup: Lookup) -> DashboardCard:
         )
         for finding in findings
     ]
-    missed_ids = set(_chains_without_finding(lookup))
-    for result in page_marks.list_troubled_chains(lookup):
-        if result.id in missed_ids:
-            missing = value_format.describe_missing(result.bound, lookup.timing.analysis, 3) if lookup.timing else ""
-            title = Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}", line_break=True)
-            points.append(
-                (
-                    *chain_status.chain_chip(result),
-                    title,
-                    *([Text(missing, muted=True, line_break=True)] if missing else []),
-                )
-            )
+    points += make_chain_points(lookup)
     blocks: tuple[Block, ...] = (Bullets(tuple(points[:_MAX_POINTS])),)
     if not points:
         blocks = (Paragraph(inline_text.to_inlines("Nothing is open.")),)
     link = Text(f"All {len(points)}, by owner and rule", ref="page:findings") if points else None
     return DashboardCard("Open points", blocks, 4, "", link, "points")
+
+
+def make_chain_points(lookup: Lookup) -> list[Inlines]:
+    """Return a point for each chain that is not shown to meet its deadline, and that no finding is about."""
+    silent_ids = set(_chains_without_finding(lookup))
+    points: list[Inlines] = []
+    for result in page_marks.list_troubled_chains(lookup) if lookup.timing else ():
+        if result.id in silent_ids and lookup.timing:
+            title = Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}", line_break=True)
+            missing = value_format.describe_missing(result.bound, lookup.timing.analysis, 3)
+            missing_line = Text(missing, muted=True, line_break=True)
+            points.append((*chain_status.chain_chip(result), title, *([missing_line] if missing else [])))
+    return points
 
 
 def _on_new_line(runs: Inlines) -> Inlines:

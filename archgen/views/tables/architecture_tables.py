@@ -14,7 +14,7 @@ from archgen.model.component import Connection
 from archgen.model.deployment import Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
-from archgen.views import inline_text, requirement_servers
+from archgen.views import element_references, inline_text, requirement_servers
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text
@@ -118,7 +118,7 @@ def make_type_table(lookup: Lookup) -> Table | None:
             inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
             inline_text.to_inlines(describe_mapping(conceptual_type)),
         )
-        for conceptual_type in shown_types(lookup)
+        for conceptual_type in sorted(shown_types(lookup), key=lambda each: each.name.casefold())
     )
     columns = (
         Column("Conceptual type", 1.3),
@@ -228,20 +228,27 @@ def make_free_requirement_table(lookup: Lookup) -> Table | None:
     return Table("table:own_requirements", "Requirements in the components' own words", columns, rows) if rows else None
 
 
-def make_finding_table(findings: Iterable[Diagnostic], anchor: str = "table:open_points") -> Table | None:
-    """List findings with their help and their place."""
+def make_finding_table(
+    lookup: Lookup, findings: Iterable[Diagnostic], anchor: str = "table:open_points"
+) -> Table | None:
+    """List findings with their help, who owns what they are about, their place and their rule; errors first."""
     rows = tuple(
         (
             severity_chip(finding),
-            inline_text.join_lines(_finding_lines(finding)),
-            inline_text.to_inlines(
-                Text(f"{finding.span.file}:{finding.span.line}" if finding.span.file else "", code=True)
-            ),
-            inline_text.to_inlines(finding.rule),
+            inline_text.join_lines(_finding_lines(lookup, finding)),
+            element_references.owner_cell(lookup.architecture, finding.element),
+            element_references.place_cell(finding),
+            inline_text.to_inlines(Text(finding.rule, ref=f"rule:{finding.rule}")),
         )
         for finding in sorted(findings, key=lambda each: -each.effective_severity.rank)
     )
-    columns = (Column("Severity", 0.6), Column("Finding", 3), Column("Place", 1.3), Column("Rule", 1))
+    columns = (
+        Column("Severity", 0.6),
+        Column("Finding", 3),
+        Column("Owner", 0.8),
+        Column("Place", 1.3),
+        Column("Rule", 1),
+    )
     return Table(anchor, "Open points", columns, rows) if rows else None
 
 
@@ -269,13 +276,13 @@ def severity_chip(finding: Diagnostic) -> Inlines:
     return (Text(severity, strong=severity is Severity.ERROR, status=_SEVERITY_STATES[severity]),)
 
 
-def _finding_lines(finding: Diagnostic) -> list[Inlines]:
+def _finding_lines(lookup: Lookup, finding: Diagnostic) -> list[Inlines]:
     """Return the message of a finding and, muted, its help."""
-    return [
-        inline_text.message_to_inlines(message, muted=muted)
-        for message, muted in ((finding.message, False), (finding.help, True))
-        if message
-    ]
+    lines = (
+        element_references.link_message(lookup.architecture, finding),
+        element_references.link_help(lookup.architecture, finding),
+    )
+    return [line for line in lines if line]
 
 
 def make_host_table(lookup: Lookup) -> Table | None:
@@ -286,7 +293,7 @@ def make_host_table(lookup: Lookup) -> Table | None:
             inline_text.to_inlines(Text(host.title, ref=f"host:{host.id}")),
             inline_text.count_to_inlines(host.cores),
             inline_text.join_inlines(
-                inline_text.to_inlines(Text(container.id, ref=f"container:{container.id}"))
+                inline_text.to_inlines(Text(container.title, ref=f"container:{container.id}"))
                 for container in architecture.containers.values()
                 if container.host == host.id
             ),
@@ -302,10 +309,11 @@ def make_host_table(lookup: Lookup) -> Table | None:
 
 def make_link_table(lookup: Lookup) -> Table | None:
     """List the links between hosts."""
+    architecture = lookup.architecture
     rows = tuple(
         (
             inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}")),
-            inline_text.join_inlines(inline_text.to_inlines(Text(host, ref=f"host:{host}")) for host in link.connects),
+            inline_text.join_inlines(inline_text.host_link(architecture, host) for host in link.connects),
             inline_text.quantity_to_inlines(link.bandwidth),
             _latency_cell(link),
         )
