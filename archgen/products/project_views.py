@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from archgen import git
+from archgen.findings import rule_pages
 from archgen.git.project_revision import find_revision
 from archgen.history import count_history
 from archgen.model import selector_evaluation
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.model.selector_parser import SelectorProblem
-from archgen.pipeline import CheckedProject
+from archgen.pipeline import ALL_RULES, CheckedProject
 from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
@@ -83,9 +84,20 @@ def make_views(checked_project: CheckedProject, options: OutputOptions) -> Proje
         drawings=all_drawings,
         statistics=statistics_tables.make_statistics_tables(checked_project.architecture),
         history=project_history,
+        rule_pages=_format_rule_pages(checked_project),
         has_errors=checked_project.has_errors,
     )
     return ProjectViews(lookup, edition, all_drawings)
+
+
+def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
+    """Return the pages of the rules that found something, by name, without the titles."""
+    found_rules = {finding.rule for finding in checked_project.findings}
+    return {
+        rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
+        for rule in sorted(ALL_RULES, key=lambda rule: rule.name)
+        if rule.name in found_rules
+    }
 
 
 def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:

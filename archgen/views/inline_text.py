@@ -12,6 +12,7 @@ from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.declared_timing import InputTiming, Timing
 from archgen.model.deployment import Host
 from archgen.model.node import Node, Qos
+from archgen.model.quantity import Quantity
 from archgen.views.shapes import Inlines, Text
 
 BEHAVIOUR_WORDS = {
@@ -51,6 +52,16 @@ def value_or_unknown(value: str | None) -> Inlines:
     return (Text(value),) if value else UNKNOWN_INLINES
 
 
+def quantity_to_inlines(quantity: Quantity | None) -> Inlines:
+    """Return a quantity as it was written, sorted by its value; "not known yet" for None."""
+    return (Text(str(quantity), sort_number=str(quantity.value)),) if quantity else UNKNOWN_INLINES
+
+
+def count_to_inlines(count: int | None) -> Inlines:
+    """Return a count, sorted by its value; "not known yet" for None or none at all."""
+    return (Text(str(count), sort_number=str(count)),) if count else UNKNOWN_INLINES
+
+
 def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     """Join inlines with a separator, as `str.join` does."""
     runs = list(items)
@@ -85,6 +96,14 @@ def component_link(component: Component) -> Text:
 def node_link(node: Node) -> Text:
     """Link to a node, by its id."""
     return Text(node.id, ref=f"node:{node.id}", code=True)
+
+
+def host_link(architecture: Architecture, host_id: str | None) -> Inlines:
+    """Link to a host, by its title; "not known yet" for None."""
+    if host_id is None:
+        return UNKNOWN_INLINES
+    host = architecture.hosts.get(host_id)
+    return (Text(host.title if host else host_id, ref=f"host:{host_id}"),)
 
 
 def type_link(type_name: str | None) -> Inlines:

@@ -30,6 +30,11 @@ def name_chain(lookup: Lookup, chain: Chain) -> str:
     return f"{chain.id} ({state})" if state else chain.id
 
 
+def is_served(lookup: Lookup, requirement: Requirement) -> bool:
+    """Whether a component or a chain serves a requirement."""
+    return requirement.id in lookup.components_for_requirement or requirement.id in lookup.chains_for_requirement
+
+
 def list_servers(lookup: Lookup, requirement: Requirement) -> Iterator[Inlines]:
     """Yield links to the components that serve a requirement, then to the chains."""
     for component in lookup.components_for_requirement.get(requirement.id, ()):

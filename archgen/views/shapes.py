@@ -16,6 +16,21 @@ Record = Mapping[str, Any]
 """The resolved model as plain data: dicts, lists, strings, numbers, booleans, None."""
 
 
+Status = Literal["met", "not proven", "missed", "open", "uncovered", "error", "warning", "note", "changed"]
+"""States that documents tell in one language of colours and icons: verdicts on deadlines and loads (`met`, `not proven`,
+`missed`, `open` where a figure is owed), what nobody serves (`uncovered`), severities of findings, and `changed`.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Meter:
+    """A bar: the share of a whole (above 1 where it exceeds it), and its state. The rest of a partial one is unknown."""
+
+    share: float
+    status: Status
+    is_partial: bool = False
+
+
 @dataclass(frozen=True, slots=True)
 class Text:
     """A run of text.
@@ -35,6 +50,14 @@ class Text:
     """A line break precedes this run."""
     change: Literal["added", "removed", "changed"] | None = None
     """The change that this run reports. Emitters may colour it; its words say the same without colour."""
+    sort_number: str | None = None
+    """The exact number in its base unit (ns, Hz, B, B/s, a share) that a table sorts by: `20000000`, `1/3`. A cell
+    without one sorts behind the cells of its column that have one.
+    """
+    status: Status | None = None
+    """The state that this run tells. Emitters may show it as a coloured chip; its words say the same."""
+    meter: Meter | None = None
+    """A bar that repeats a figure of the same row; emitters may leave it out."""
 
 
 Inlines = tuple[Text, ...]
@@ -160,6 +183,37 @@ class Outline:
 
 
 @dataclass(frozen=True, slots=True)
+class KeyFigure:
+    """A figure of a dashboard: `value` of `total` (empty for a mere count), the reason below it, the page to go to."""
+
+    title: str
+    value: str
+    total: str
+    note: Inlines
+    ref: str
+
+
+@dataclass(frozen=True, slots=True)
+class DashboardCard:
+    """A card of a dashboard, with the link to the whole of it. `width` is its share of twelve; `kind` its layout."""
+
+    title: str
+    blocks: tuple[Block, ...]
+    width: int
+    remark: str = ""
+    link: Text | None = None
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Dashboard:
+    """A page at a glance: figures, then cards."""
+
+    figures: tuple[KeyFigure, ...]
+    cards: tuple[DashboardCard, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Page:
     """A page of the site.
 
@@ -175,6 +229,12 @@ class Page:
     crumbs: tuple[tuple[str, str], ...] = ()
     lead: str = ""
     """One line below the title: what kind of thing this is, its status, its owner."""
+    verdict: Inlines = ()
+    """The state of the thing, beside the title."""
+    dashboard: Dashboard | None = None
+    """What stands above the page's section, at a glance; the pages that it links to say the same at length."""
+    mark: Literal["open", "missed"] | None = None
+    """What the navigation marks: something here is open, or a deadline is missed."""
 
 
 def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type

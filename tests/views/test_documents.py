@@ -47,6 +47,7 @@ def _edition(checked: CheckedProject, index: Lookup) -> DocumentEdition:
         project_chapters=checked.chapters.texts,
         drawings=graphs,
         statistics=statistics_tables.make_statistics_tables(index.architecture),
+        rule_pages={finding.rule: "Why." for finding in checked.findings},
     )
 
 

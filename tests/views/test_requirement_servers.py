@@ -44,9 +44,9 @@ def test_the_table_of_requirements_names_chains_with_their_state(tmp_path: Path)
     table = make_requirement_table(lookup, lookup.architecture.requirements.values())
     assert table is not None
     assert ["".join(part.text for part in row[-1]) for row in table.rows] == [
+        "uncovered no component yet",
         "chain Late (not proven), chain In good time (met), chain Free (without a deadline)",
         "Eye, chain In good time (met)",
-        "no component yet",
     ]
 
 

@@ -12,7 +12,7 @@ from archgen.views.drawing_set import make_drawings
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.shapes import Facts, Figure, Section, Table
+from archgen.views.shapes import Bullets, Facts, Figure, Section, Table
 from archgen.views.timing import element_timing, timing_tables
 from tests.timings import timed
 
@@ -59,8 +59,17 @@ def test_the_chapter_has_every_table_and_picture(view: Lookup, edition: Document
 
 def test_report_and_site_say_the_same(view: Lookup, edition: DocumentEdition) -> None:
     (chapter,) = (each for each in report_outline.make_report(view, edition).sections if each.anchor == "page:timing")
-    (page,) = (each for each in site_pages.make_pages(view, edition) if each.path == "timing.html")
-    assert _tables(page.section) == _tables(chapter)
+    pages = [each for each in site_pages.make_pages(view, edition) if each.path.startswith("timing")]
+    assert {page.title for page in pages[1:]} == {section.title for section in chapter.sections}
+    tables = {anchor: table for page in pages for anchor, table in _tables(page.section).items()}
+    assert tables == _tables(chapter)
+    # The first page leads to all others.
+    (links,) = (
+        block
+        for block in pages[0].section.blocks
+        if isinstance(block, Bullets) and (block.items[0][0].ref or "").startswith("timing:")
+    )
+    assert [item[0].ref for item in links.items] == [page.anchor for page in pages[1:]]
 
 
 def test_every_activity_has_its_row(view: Lookup) -> None:

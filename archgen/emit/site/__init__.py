@@ -70,6 +70,7 @@ def _page_variables(
     return {
         "heading": replace_forbidden(page.title),
         "lead": replace_forbidden(page.lead),
+        "verdict": writer.write_inlines(page.verdict),
         "root": current_page.root,
         "start": current_page.root + navigation.start,
         "crumbs": [(replace_forbidden(text), href) for text, href in navigation.page_crumbs(page, current_page.root)],
@@ -78,6 +79,7 @@ def _page_variables(
         "contents": [
             (replace_forbidden(section.title), current_page.id_for(section.anchor)) for section in page.section.sections
         ],
+        "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
         "content": writer.write_content(page.section),
     }
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from archgen.emit.picture import Picture
-from archgen.emit.site import page_pictures
+from archgen.emit.site import page_pictures, status_marks
 from archgen.emit.site.chapter_html import ChapterWriter
 from archgen.emit.site.html_text import escape_breakable, escape_html, web_address
 from archgen.emit.site.page_links import CurrentPage
@@ -18,9 +18,12 @@ from archgen.views.shapes import (
     Block,
     Bullets,
     Column,
+    Dashboard,
+    DashboardCard,
     Facts,
     Figure,
     Inlines,
+    KeyFigure,
     Markdown,
     Paragraph,
     Section,
@@ -48,6 +51,32 @@ class PageWriter:
     def write_content(self, section: Section) -> str:
         """Write a page's section without its title, which is the page's."""
         return self._write_inside(section, 1)
+
+    def write_dashboard(self, dashboard: Dashboard) -> str:
+        """Write figures that link to their pages, and cards."""
+        figures = "\n".join([f"<li>{self._write_key_figure(figure)}</li>" for figure in dashboard.figures])
+        cards = "\n".join([self._write_card(card) for card in dashboard.cards])
+        return f'<ul class="figures">\n{figures}\n</ul>\n<div class="cards">\n{cards}\n</div>'
+
+    def _write_key_figure(self, figure: KeyFigure) -> str:
+        """Write a figure with its reason, as one link; as plain text where its page is not part of the site."""
+        total = f' <span class="total">of {escape_html(figure.total)}</span>' if figure.total else ""
+        inner = (
+            f'<span class="title">{escape_html(figure.title)}</span> <span class="value">{escape_html(figure.value)}{total}</span>'
+            f" {self.write_inlines(figure.note)}"
+        )
+        href = self.current_page.href(figure.ref)
+        return f'<a class="figure" href="{href}">{inner}</a>' if href else f'<div class="figure">{inner}</div>'
+
+    def _write_card(self, card: DashboardCard) -> str:
+        remark = f' <span class="muted">{escape_html(card.remark)}</span>' if card.remark else ""
+        link = f' <span class="all">{self.write_inlines((card.link,))}</span>' if card.link else ""
+        blocks = "\n".join([self._write_block(block, 2) for block in card.blocks])
+        classes = f"card w{card.width} {escape_html(card.kind)}".strip()
+        return (
+            f'<section class="{classes}">\n<div class="head"><h2>{escape_html(card.title)}</h2>{remark}{link}</div>\n'
+            f"{blocks}\n</section>"
+        )
 
     def _write_inside(self, section: Section, level: int) -> str:
         parts = [self._write_block(block, level) for block in section.blocks]
@@ -89,10 +118,12 @@ class PageWriter:
         return "".join([self._write_run(run) for run in runs])
 
     def _write_run(self, run: Text) -> str:
-        html = escape_breakable(run.text)
+        if run.meter:
+            return status_marks.write_meter(run.meter)
+        html = status_marks.write_chip(run.status, run.text) if run.status else escape_breakable(run.text)
         if run.code:
             html = f"<code>{html}</code>"
-        if run.strong:
+        if run.strong and not run.status:
             html = f"<strong>{html}</strong>"
         if run.emphasis:
             html = f"<em>{html}</em>"
@@ -121,7 +152,7 @@ class PageWriter:
     def _write_row(self, row: tuple[Inlines, ...], anchor: str | None, table: Table) -> str:
         cells = "".join(
             [
-                f"<td{_ALIGNMENT_CLASS[column.align]}>{self.write_inlines(cell)}</td>"
+                f"<td{_ALIGNMENT_CLASS[column.align]}{_write_sort_number(cell)}>{self.write_inlines(cell)}</td>"
                 for column, cell in zip(table.columns, row, strict=True)
             ]
         )
@@ -176,6 +207,15 @@ class PageWriter:
             return ""
         self.written_anchors.add(anchor)
         return f' id="{self.current_page.id_for(anchor)}"'
+
+
+def _write_sort_number(cell: Inlines) -> str:
+    """Return the attribute with the number that a cell sorts by: of several, that of the first one."""
+    # A loop with `is not None`: most cells have none, and this runs for each cell of the site.
+    for run in cell:
+        if run.sort_number is not None:
+            return f' data-sort="{escape_html(run.sort_number)}"'
+    return ""
 
 
 def _write_heads(columns: Iterable[Column]) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
-from archgen.views.shapes import Figure, Page, Section, Table
+from archgen.views.shapes import Block, Figure, Page, Section, Table
 
 RESERVED_IDS = ("content", "navigation")
 """Ids that the page's template uses."""
@@ -75,7 +75,8 @@ def _assign_ids(page: Page) -> dict[str, str]:
     """Assign each anchor on the page an id of its own, in order of appearance."""
     taken_ids = set(RESERVED_IDS)
     ids = dict[str, str]()
-    for anchor in _list_anchors(page.section):
+    card_blocks = (block for card in page.dashboard.cards for block in card.blocks) if page.dashboard else ()
+    for anchor in (*_list_block_anchors(card_blocks), *_list_anchors(page.section)):
         if anchor in ids:
             continue
         name = base = make_element_id(anchor)
@@ -90,10 +91,14 @@ def _assign_ids(page: Page) -> dict[str, str]:
 
 def _list_anchors(section: Section) -> Iterator[str]:
     yield section.anchor
-    for block in section.blocks:
+    yield from _list_block_anchors(section.blocks)
+    for inner in section.sections:
+        yield from _list_anchors(inner)
+
+
+def _list_block_anchors(blocks: Iterable[Block]) -> Iterator[str]:
+    for block in blocks:
         if isinstance(block, (Table, Figure)):
             yield block.anchor
         if isinstance(block, Table):
             yield from (anchor for anchor in block.row_anchors if anchor)
-    for inner in section.sections:
-        yield from _list_anchors(inner)

@@ -6,15 +6,19 @@ tree, under the heading of their kind; pages below those only where the reader i
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import escape_breakable, escape_html
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.shapes import Page
 
 MAX_LISTED = 200
 """A longer list is not repeated on each of its pages: the page above has all of it, with a filter."""
+UNCOUNTED_KINDS = frozenset({"rules", "timing"})
+"""Kinds of pages that are no elements: how many there are says nothing about the architecture."""
 NEWLINE = "\n"
 
 
@@ -83,17 +87,27 @@ class SiteNavigation:
 
     def _write_entry(self, page: Page, ancestry: tuple[str, ...], root: str) -> str:
         """Write an entry. The one that leads to the reader's page has its own list below it, others its length."""
-        child_count = len(self.children.get(page.anchor, ()))
-        count = f' <span class="count" aria-hidden="true">{child_count}</span>' if child_count else ""
+        mark = status_marks.write_mark(page.mark) if page.mark else ""
+        child_counts = _count_by_kind(self.children.get(page.anchor, ()))
+        count = f' <span class="count" aria-hidden="true">{child_counts}</span>' if child_counts else ""
         visible_children = self._visible_pages(page.anchor, ancestry) if page.anchor == ancestry[-1] else ()
-        items = NEWLINE.join(f"<li>{self._write_link(child, root)}</li>" for child in visible_children)
+        items = NEWLINE.join(
+            f"<li>{self._write_link(child, root, status_marks.write_mark(child.mark) if child.mark else '')}</li>"
+            for child in visible_children
+        )
         inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
-        return f"<li>{self._write_link(page, root, count)}{inner}</li>"
+        return f"<li>{self._write_link(page, root, f'{mark}{count}')}{inner}</li>"
 
     def _write_link(self, page: Page, root: str, suffix: str = "") -> str:
         path = self.links.pages[page.anchor]
         title = self.home_title if path == self.start else page.title
         return f'<a href="{root}{path}">{escape_breakable(title)}{suffix}</a>'
+
+
+def _count_by_kind(pages: Sequence[Page]) -> str:
+    """Count pages, each kind of its own as in the statistics: `5 + 3` for hosts and containers."""
+    counts = Counter(page.kind for page in pages if page.kind not in UNCOUNTED_KINDS)
+    return " + ".join(map(str, counts.values()))
 
 
 def build_navigation(pages: Sequence[Page], links: SiteLinks, kinds: Sequence[tuple[str, str]]) -> SiteNavigation:

@@ -114,7 +114,9 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
 
 def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
     """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
-    is_waiting = any(system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit)
+    is_waiting = any(
+        system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit
+    )
     waiting_units = tuple(_find_waiting_units(system, resource)) if is_waiting else ()
     if not waiting_units or resource.missing:
         yield resource

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from fractions import Fraction
+
 from archgen.model.component import Component, Group, Input, Output
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -153,13 +156,21 @@ def _performance_blocks(component: Component) -> list[Block]:
     rows = tuple(
         (
             inline_text.to_inlines(indicator.title),
-            inline_text.value_or_unknown(indicator.accuracy),
-            inline_text.value_or_unknown(str(indicator.execution_time) if indicator.execution_time else None),
+            _accuracy_cell(indicator.accuracy),
+            inline_text.quantity_to_inlines(indicator.execution_time),
         )
         for indicator in component.performance
     )
     columns = (Column("Indicator"), Column("Accuracy", 1.5), Column("Execution time"))
     return [Table(f"table:performance/{component.id}", f"{component.title}: performance", columns, rows)]
+
+
+def _accuracy_cell(accuracy: str | None) -> Inlines:
+    """Return an accuracy as it was written; one that is a share sorts by it."""
+    percentage = re.match(r"([0-9]+(?:\.[0-9]+)?) ?%", accuracy or "", re.ASCII)
+    if accuracy is None or percentage is None:
+        return inline_text.value_or_unknown(accuracy)
+    return (Text(accuracy, sort_number=str(Fraction(percentage[1]) / 100)),)
 
 
 def _input_blocks(lookup: Lookup, component: Component) -> list[Block]:

@@ -34,12 +34,13 @@ from archgen.views.timing import element_timing
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
 """Drops the figures that were not drawn."""
 HOME_CRUMB = ("Overview", "page:index")
+_FLOW_ORDER = {"topic": 0, "service": 1, "action": 2}
 _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
     """Make a page for each type, requirement, use case, host, container and partner."""
-    for conceptual_type in architecture_tables.shown_types(lookup):
+    for conceptual_type in sorted(architecture_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
         yield _type_page(lookup, conceptual_type)
     for requirement in architecture_tables.shown_requirements(lookup):
         yield _requirement_page(lookup, requirement)
@@ -73,9 +74,10 @@ def make_topic_pages(lookup: Lookup) -> Iterator[Page]:
 
 
 def _shown_topics(lookup: Lookup) -> list[Topic]:
+    # Each kind by name: nobody finds `/scan/front` by eye in the order of the files.
     return [
         topic
-        for topic in lookup.architecture.topics.values()
+        for topic in sorted(lookup.architecture.topics.values(), key=lambda each: (_FLOW_ORDER[each.flow], each.name))
         if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
     ]
 
@@ -136,10 +138,13 @@ def _component_cell(lookup: Lookup, component_id: str | None) -> Inlines:
     )
 
 
-def make_node_table(lookup: Lookup, nodes: list[Node], component: Component | None = None) -> list[Block]:
+def make_node_table(
+    lookup: Lookup, nodes: list[Node], component: Component | None = None, host_id: str | None = None
+) -> list[Block]:
     """List nodes with what they implement, package, status, host and timing; empty for no nodes.
 
-    On the page of a `component`, that component itself is left out of the list of implemented ones.
+    On the page of a `component`, that component itself is left out of the list of implemented ones; on a host's page
+    there is no column for the host.
     """
     if not nodes:
         return []
@@ -152,9 +157,7 @@ def make_node_table(lookup: Lookup, nodes: list[Node], component: Component | No
             ),
             inline_text.value_or_unknown(node.package),
             inline_text.value_or_unknown(node.status),
-            inline_text.to_inlines(Text(node.host, ref=f"host:{node.host}"))
-            if node.host
-            else inline_text.UNKNOWN_INLINES,
+            inline_text.host_link(architecture, node.host) if host_id is None else (),
             _timing_cell(node),
         )
         for node in nodes
@@ -176,7 +179,14 @@ def _timing_cell(node: Node) -> Inlines:
     summary = "; ".join(
         short_timing for timing in node.timing.values() if (short_timing := inline_text.format_short_timing(timing))
     )
-    return inline_text.to_inlines(summary) if summary else ()
+    return (Text(summary, sort_number=_shortest_period(node)),) if summary else ()
+
+
+def _shortest_period(node: Node) -> str | None:
+    """Return the shortest period of a node in ns, as the number that tables sort by; None where none is written."""
+    periods = [timing.period.value for timing in node.timing.values() if timing.period]
+    periods += [10**9 / timing.rate.value for timing in node.timing.values() if timing.rate and timing.rate.value]
+    return str(min(periods)) if periods else None
 
 
 def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
@@ -243,7 +253,7 @@ def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
         blocks.append(Bullets(tuple(chain_link(lookup, chain) for chain in serving_chains)))
     if not serving_components and not serving_chains:
         blocks.append(Paragraph(inline_text.to_inlines("No component serves this requirement yet."), "warning"))
-    crumb = ("Requirements", "page:requirements")
+    crumb = ("Requirements and use cases", "page:requirements")
     section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))
     return _make_page(section, "requirements", crumb, "Requirement")
 
@@ -255,7 +265,7 @@ def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += [table] if table else []
-    crumb = ("Requirements", "page:requirements")
+    crumb = ("Requirements and use cases", "page:requirements")
     return _make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")
 
 
@@ -263,7 +273,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     architecture = lookup.architecture
     order = host.scheduling or inline_text.format_core_orders(host)
     facts = [
-        ("Cores", inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES),
+        ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
@@ -278,7 +288,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
         (
             "Containers",
             inline_text.join_inlines(
-                inline_text.to_inlines(Text(container.id, ref=f"container:{container.id}"))
+                inline_text.to_inlines(Text(container.title, ref=f"container:{container.id}"))
                 for container in architecture.containers.values()
                 if container.host == host.id
             ),
@@ -287,8 +297,10 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     blocks += [Markdown(host.description)] if host.description else []
     blocks += keep_drawn(element_timing.make_load_blocks(lookup, host.id))
-    blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.host == host.id])
-    return _make_page(Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts", "page:hosts"), "Host")
+    blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.host == host.id], host_id=host.id)
+    return _make_page(
+        Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts and containers", "page:hosts"), "Host"
+    )
 
 
 def _name_resources(lookup: Lookup, host: Host) -> Iterator[str]:
@@ -304,9 +316,7 @@ def _container_page(lookup: Lookup, container_id: str) -> Page:
     facts = [
         (
             "Host",
-            inline_text.to_inlines(Text(container.host, ref=f"host:{container.host}"))
-            if container.host
-            else inline_text.UNKNOWN_INLINES,
+            inline_text.host_link(lookup.architecture, container.host),
         ),
         (
             "Threads",
@@ -315,7 +325,7 @@ def _container_page(lookup: Lookup, container_id: str) -> Page:
         *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
     ]
     nodes = make_node_table(lookup, [node for node in lookup.shown_nodes() if node.container == container_id])
-    crumb = ("Hosts", "page:hosts")
+    crumb = ("Hosts and containers", "page:hosts")
     section = Section(f"container:{container_id}", container.title, (Facts(tuple(facts)), *nodes))
     return _make_page(section, "containers", crumb, "Container")
 

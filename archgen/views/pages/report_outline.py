@@ -32,6 +32,8 @@ class DocumentEdition:
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
     statistics: tuple[Table, ...] = ()
     history: History = field(default_factory=History)
+    rule_pages: Mapping[str, str] = field(default_factory=dict)
+    """The pages of the rules that found something, as CommonMark without their titles, by name."""
     has_errors: bool = False
     """The model has errors; documents show what is sound, and say so."""
 
@@ -231,7 +233,10 @@ class _ChapterMaker:
             )
         )
         return self._make_appendix(
-            "findings", "Open points", summary, architecture_tables.make_finding_table(self.lookup.findings)
+            "findings",
+            "Open points",
+            summary,
+            architecture_tables.make_finding_table(self.lookup, self.lookup.findings),
         )
 
     def make_statistics(self) -> list[Section]:

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node
 from archgen.views import inline_text
-from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
+from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, timing_chapter
+from archgen.views.pages import context_pages, dashboard, page_marks, timing_chapter
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
-from archgen.views.shapes import Block, Facts, Figure, Markdown, Page, Paragraph, Section, Text
+from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
 
 
@@ -27,13 +28,15 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         *page_maker.group_pages(),
         *page_maker.chapter_pages(),
         *page_maker.spanning_pages(),
+        *page_maker.rule_pages(),
     ]
     surrounding_pages = list(context_pages.make_context_pages(lookup, page_maker.keep_drawn))
     implementation_pages = (
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
-    return _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
+    all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
+    return page_marks.mark_pages(lookup, all_pages)
 
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
@@ -52,6 +55,14 @@ def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
         taken_paths.add(path.casefold())
         result.append(page if path == page.path else replace(page, path=path))
     return tuple(result)
+
+
+def _drop_facts(blocks: Iterable[Block], names: set[str]) -> tuple[Block, ...]:
+    """Drop the facts that the line below the title, or the way to the page, says already."""
+    return tuple(
+        Facts(tuple(row for row in block.rows if row[0] not in names)) if isinstance(block, Facts) else block
+        for block in blocks
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,14 +89,34 @@ class _PageMaker:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def start_page(self) -> Page:
-        """Make the start page: description, title facts, clickable overview, table of groups."""
+        """Make the start page: the state at a glance, the clickable overview, description, title facts, groups."""
         project = self.architecture.project
-        blocks: list[Block] = [Markdown(project.description)] if project.description else []
+        blocks: list[Block] = list(self.make_figures("overview"))
+        blocks += [Markdown(project.description)] if project.description else []
         blocks.append(Facts(tuple(make_title_facts(self.lookup, self.edition))))
-        blocks += self.make_figures("overview", "components")
         blocks += [table] if (table := architecture_tables.make_group_table(self.lookup)) else []
         section = Section("page:index", project.title, tuple(blocks))
-        return Page("index.html", "page:index", project.title, "overview", section, lead="Software architecture")
+        return Page(
+            "index.html",
+            "page:index",
+            project.title,
+            "overview",
+            section,
+            lead=self._describe_size(),
+            dashboard=dashboard.make_dashboard(self.lookup, self.edition),
+        )
+
+    def _describe_size(self) -> str:
+        """Describe the size of the architecture on one line; counts of nothing are left out."""
+        counted_elements = (
+            ("component", self.architecture.components),
+            ("group", self.architecture.groups),
+            ("partner", self.architecture.partners),
+            ("connection", self.architecture.connections),
+            ("node", self.architecture.nodes),
+        )
+        counts = [inline_text.count_noun(len(elements), noun) for noun, elements in counted_elements if elements]
+        return f"Software architecture{f': {join_words(counts)}' if counts else ''}"
 
     def group_pages(self) -> Iterator[Page]:
         """Make a page for each shown group, followed by its shown components."""
@@ -96,10 +127,9 @@ class _PageMaker:
                 yield self._component_page(group, component)
 
     def _group_page(self, group: Group) -> Page:
-        section = Section(f"group:{group.id}", group.title, self.keep_drawn(make_group_blocks(self.lookup, group)))
-        lead = self._lead_with_owners(
-            f"Group of {inline_text.count_noun(len(group.components), 'component')}", group.owners
-        )
+        blocks = _drop_facts(self.keep_drawn(make_group_blocks(self.lookup, group)), {"Components"})
+        section = Section(f"group:{group.id}", group.title, blocks)
+        lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
         return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME_CRUMB,), lead)
 
     def _lead_with_owners(self, lead: str, owners: Iterable[str]) -> str:
@@ -114,22 +144,24 @@ class _PageMaker:
             table = context_pages.make_node_table(self.lookup, nodes, component)
             sections = [Section(f"implementation:{component.id}", "Implementation", (*blocks, *table))]
         sections += self._finding_sections(component.id)
-        blocks = self.keep_drawn(make_component_blocks(self.lookup, component))
+        repeated_facts = {"Group", "Role"} if component.role else {"Group"}
+        blocks = _drop_facts(self.keep_drawn(make_component_blocks(self.lookup, component)), repeated_facts)
         section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
         crumbs = (HOME_CRUMB, (group.title, f"group:{group.id}"))
-        lead = self._lead_with_owners(f"Component{f' · {component.role}' if component.role else ''}", component.owners)
+        # Not the owner: the facts below have it, as a link.
+        lead = f"Component{f' · {component.role}' if component.role else ''}"
         path = f"components/{component.id}.html"
         return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
 
     def _finding_sections(self, element_id: str) -> list[Section]:
         """Return a section with the findings about an element, or nothing."""
         findings = self.lookup.findings_of.get(element_id, ())
-        table = architecture_tables.make_finding_table(findings, f"table:findings/{element_id}")
+        table = architecture_tables.make_finding_table(self.lookup, findings, f"table:findings/{element_id}")
         return [Section(f"findings:{element_id}", "Open points", (table,))] if table else []
 
     def node_pages(self) -> Iterator[Page]:
         """Make a page for each shown node."""
-        for node in self.lookup.shown_nodes():
+        for node in sorted(self.lookup.shown_nodes(), key=lambda each: each.id):
             yield self._node_page(node)
 
     def _node_page(self, node: Node) -> Page:
@@ -152,8 +184,22 @@ class _PageMaker:
             path = f"chapters/{context_pages.make_page_slug(name.rpartition('.')[0])}.html"
             yield Page(path, section.anchor, title, "chapters", section, (HOME_CRUMB,), "Chapter")
 
+    def rule_pages(self) -> Iterator[Page]:
+        """Make a page for each rule that found something: what it found, why that matters, how to mend it."""
+        crumbs = (HOME_CRUMB, ("Open points", "page:findings"))
+        for name, text in self.edition.rule_pages.items():
+            findings = [finding for finding in self.lookup.findings if finding.rule == name]
+            table = architecture_tables.make_finding_table(self.lookup, findings, f"table:rule/{name}")
+            section = Section(f"rule:{name}", name, (*((table,) if table else ()), Markdown(text)))
+            yield Page(f"rules/{name}.html", section.anchor, name, "rules", section, crumbs, "Rule")
+
     def spanning_pages(self) -> Iterator[Page]:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
+        components = [c for name in self.lookup.shown_groups() for c in self.lookup.shown_components(name)]
+        component_table = make_component_table(self.lookup, "table:components", "All components", components)
+        yield self._spanning_page(
+            "components", "Components", *self.make_figures("components"), component_table if components else None
+        )
         shown_connections = architecture_tables.shown_connections(self.lookup)
         yield self._spanning_page(
             "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
@@ -164,7 +210,7 @@ class _PageMaker:
         )
         yield self._spanning_page(
             "requirements",
-            "Requirements",
+            "Requirements and use cases",
             requirement_table,
             architecture_tables.make_free_requirement_table(self.lookup),
         )
@@ -173,8 +219,15 @@ class _PageMaker:
                 f"archgen finds {architecture_tables.describe_severities(self.lookup.findings)} in this architecture."
             )
         )
+        chain_points = dashboard.make_chain_points(self.lookup)
+        chain_lead = "Chains of effect that are not shown to meet their deadlines, and that no finding is about:"
+        chain_blocks = (Paragraph(inline_text.to_inlines(chain_lead)), Bullets(tuple(chain_points)))
         yield self._spanning_page(
-            "findings", "Open points", summary, architecture_tables.make_finding_table(self.lookup.findings)
+            "findings",
+            "Open points",
+            summary,
+            architecture_tables.make_finding_table(self.lookup, self.lookup.findings),
+            *(chain_blocks if chain_points else ()),
         )
         growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
@@ -195,7 +248,7 @@ class _PageMaker:
                 architecture_tables.make_host_table(self.lookup),
                 architecture_tables.make_link_table(self.lookup),
             )
-            yield self._spanning_page("hosts", "Hosts", *self.make_figures("hosts"), *host_tables)
+            yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
 
     def _timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
@@ -203,7 +256,16 @@ class _PageMaker:
         if self.lookup.timing is not None and self.edition.level == "implementation":
             blocks = timing_chapter.make_timing_blocks(self.lookup, self.lookup.timing, graphs)
             sections = timing_chapter.make_timing_sections(self.lookup, self.lookup.timing, graphs)
-            yield self._spanning_page("timing", "Timing", *blocks, sections=sections)
+            links = Bullets(tuple(inline_text.to_inlines(Text(s.title, ref=s.anchor)) for s in sections))
+            # The links come before the picture of the whole, which is tall.
+            figures = [block for block in blocks if isinstance(block, Figure)]
+            lead_blocks = [block for block in blocks if not isinstance(block, Figure)]
+            yield self._spanning_page("timing", "Timing", *lead_blocks, *([links] if sections else []), *figures)
+            # A page for each: together they were as long as 25 screens.
+            crumbs = (HOME_CRUMB, ("Timing", "page:timing"))
+            for section in sections:
+                path = f"timing/{section.anchor.partition(':')[2]}.html"
+                yield Page(path, section.anchor, section.title, "timing", section, crumbs, "Timing")
         yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
         crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
         for section in timing_chapter.make_chain_sections(self.lookup, graphs):

@@ -5,18 +5,26 @@ Each function returns None where there would be no rows, because a `Table` witho
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
 from archgen.model.architecture import Chain, Requirement
 from archgen.model.component import Connection
+from archgen.model.deployment import Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
-from archgen.views import inline_text, requirement_servers
+from archgen.views import element_references, inline_text, requirement_servers
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Column, Inlines, Status, Table, Text
+
+_SEVERITY_STATES: Mapping[Severity, Status] = {
+    Severity.ERROR: "error",
+    Severity.WARNING: "warning",
+    Severity.NOTE: "note",
+    Severity.OFF: "note",
+}
 
 
 def make_group_table(lookup: Lookup) -> Table | None:
@@ -106,11 +114,11 @@ def make_type_table(lookup: Lookup) -> Table | None:
         (
             inline_text.type_link(conceptual_type.name),
             message_cell(lookup, conceptual_type),
-            inline_text.to_inlines(size) if (size := lookup.format_size(conceptual_type)) else (),
+            size_cell(lookup, conceptual_type),
             inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
             inline_text.to_inlines(describe_mapping(conceptual_type)),
         )
-        for conceptual_type in shown_types(lookup)
+        for conceptual_type in sorted(shown_types(lookup), key=lambda each: each.name.casefold())
     )
     columns = (
         Column("Conceptual type", 1.3),
@@ -120,6 +128,17 @@ def make_type_table(lookup: Lookup) -> Table | None:
         Column("Remarks", 1.6),
     )
     return Table("table:types", "Mapping of conceptual types to ROS messages", columns, rows) if rows else None
+
+
+def size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
+    """Return the message size of a type; empty where it is not known."""
+    size = lookup.format_size(conceptual_type)
+    if not size:
+        return ()
+    byte_count = (
+        conceptual_type.size.value if conceptual_type.size else lookup.message_size(conceptual_type.message, None).bytes
+    )
+    return (Text(size, sort_number=str(byte_count)),)
 
 
 def message_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
@@ -157,9 +176,10 @@ def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requi
             inline_text.to_inlines(requirement.title),
             inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
             inline_text.join_inlines(requirement_servers.list_servers(lookup, requirement))
-            or inline_text.to_inlines(Text("no component yet", muted=True)),
+            or inline_text.to_inlines(Text("uncovered", status="uncovered"), Text(" no component yet", muted=True)),
         )
-        for requirement in selected_requirements
+        # What nobody serves comes first.
+        for requirement in sorted(selected_requirements, key=lambda each: requirement_servers.is_served(lookup, each))
     )
     columns = (
         Column("Id", 0.5),
@@ -208,30 +228,61 @@ def make_free_requirement_table(lookup: Lookup) -> Table | None:
     return Table("table:own_requirements", "Requirements in the components' own words", columns, rows) if rows else None
 
 
-def make_finding_table(findings: Iterable[Diagnostic], anchor: str = "table:open_points") -> Table | None:
-    """List findings with their help and their place."""
+def make_finding_table(
+    lookup: Lookup, findings: Iterable[Diagnostic], anchor: str = "table:open_points"
+) -> Table | None:
+    """List findings with their help, who owns what they are about, their place and their rule; errors first."""
     rows = tuple(
         (
-            inline_text.to_inlines(Text(finding.severity or "", strong=finding.severity is Severity.ERROR)),
-            inline_text.join_lines(_finding_lines(finding)),
-            inline_text.to_inlines(
-                Text(f"{finding.span.file}:{finding.span.line}" if finding.span.file else "", code=True)
-            ),
-            inline_text.to_inlines(finding.rule),
+            severity_chip(finding),
+            inline_text.join_lines(_finding_lines(lookup, finding)),
+            element_references.owner_cell(lookup.architecture, finding.element),
+            element_references.place_cell(finding),
+            inline_text.to_inlines(Text(finding.rule, ref=f"rule:{finding.rule}")),
         )
-        for finding in findings
+        for finding in sorted(findings, key=lambda each: -each.effective_severity.rank)
     )
-    columns = (Column("Severity", 0.6), Column("Finding", 3), Column("Place", 1.3), Column("Rule", 1))
+    columns = (
+        Column("Severity", 0.6),
+        Column("Finding", 3),
+        Column("Owner", 0.8),
+        Column("Place", 1.3),
+        Column("Rule", 1),
+    )
     return Table(anchor, "Open points", columns, rows) if rows else None
 
 
-def _finding_lines(finding: Diagnostic) -> list[Inlines]:
+_RULE_STATES: Mapping[str, tuple[str, Status]] = {
+    "uncovered-requirement": ("uncovered", "uncovered"),
+    "unjustified-component": ("unjustified", "uncovered"),
+    "unjustified-node": ("unjustified", "uncovered"),
+    "unread-output": ("unread", "warning"),
+}
+"""Rules whose findings are states of their own; the others show how serious they are."""
+
+
+def finding_chip(finding: Diagnostic) -> Inlines:
+    """Return the state that a finding tells as a chip: the rule's own word, else its severity."""
+    severity = finding.effective_severity
+    if severity is Severity.WARNING and finding.rule in _RULE_STATES:
+        word, status = _RULE_STATES[finding.rule]
+        return (Text(word, status=status),)
+    return severity_chip(finding)
+
+
+def severity_chip(finding: Diagnostic) -> Inlines:
+    """Return how serious a finding is, as a chip."""
+    severity = finding.effective_severity
+    return (Text(severity, strong=severity is Severity.ERROR, status=_SEVERITY_STATES[severity]),)
+
+
+def _finding_lines(lookup: Lookup, finding: Diagnostic) -> list[Inlines]:
     """Return the message of a finding and, muted, its help."""
-    return [
-        inline_text.message_to_inlines(message, muted=muted)
-        for message, muted in ((finding.message, False), (finding.help, True))
-        if message
-    ]
+    lines = (
+        element_references.link_message(lookup.architecture, finding),
+        element_references.link_help(lookup.architecture, finding),
+    )
+    return [line for line in lines if line]
 
 
 def make_host_table(lookup: Lookup) -> Table | None:
@@ -240,9 +291,9 @@ def make_host_table(lookup: Lookup) -> Table | None:
     rows = tuple(
         (
             inline_text.to_inlines(Text(host.title, ref=f"host:{host.id}")),
-            inline_text.to_inlines(str(host.cores)) if host.cores else inline_text.UNKNOWN_INLINES,
+            inline_text.count_to_inlines(host.cores),
             inline_text.join_inlines(
-                inline_text.to_inlines(Text(container.id, ref=f"container:{container.id}"))
+                inline_text.to_inlines(Text(container.title, ref=f"container:{container.id}"))
                 for container in architecture.containers.values()
                 if container.host == host.id
             ),
@@ -258,14 +309,13 @@ def make_host_table(lookup: Lookup) -> Table | None:
 
 def make_link_table(lookup: Lookup) -> Table | None:
     """List the links between hosts."""
+    architecture = lookup.architecture
     rows = tuple(
         (
             inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}")),
-            inline_text.join_inlines(inline_text.to_inlines(Text(host, ref=f"host:{host}")) for host in link.connects),
-            inline_text.value_or_unknown(str(link.bandwidth) if link.bandwidth else None),
-            inline_text.value_or_unknown(
-                f"{link.best or '?'} to {link.worst or '?'}" if link.best or link.worst else None
-            ),
+            inline_text.join_inlines(inline_text.host_link(architecture, host) for host in link.connects),
+            inline_text.quantity_to_inlines(link.bandwidth),
+            _latency_cell(link),
         )
         for link in lookup.architecture.links.values()
     )
@@ -273,6 +323,14 @@ def make_link_table(lookup: Lookup) -> Table | None:
     # Links have no page or section of their own: references to one lead to its row.
     anchors = tuple(f"link:{name}" for name in lookup.architecture.links)
     return Table("table:links", "Links between hosts", columns, rows, row_anchors=anchors) if rows else None
+
+
+def _latency_cell(link: Link) -> Inlines:
+    """Return the latency of a link, from best to worst, sorted by the worst."""
+    if not link.best and not link.worst:
+        return inline_text.UNKNOWN_INLINES
+    sort_number = str(link.worst.value) if link.worst else None
+    return (Text(f"{link.best or '?'} to {link.worst or '?'}", sort_number=sort_number),)
 
 
 def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table | None:
@@ -283,7 +341,7 @@ def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table 
         (
             inline_text.to_inlines(Text(chain.title, ref=f"chain:{chain.id}")),
             inline_text.join_inlines((waypoint_link(lookup, point.kind, point.id) for point in chain.through), " → "),
-            inline_text.value_or_unknown(str(chain.deadline) if chain.deadline else None),
+            inline_text.quantity_to_inlines(chain.deadline),
             inline_text.join_inlines(
                 inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
             ),

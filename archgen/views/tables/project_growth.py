@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from archgen.diagnostics.common_wording import floor_percent, shorten_hash
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 from archgen.views.inline_text import count_noun
-from archgen.views.shapes import Block, Column, Figure, Inlines, Paragraph, Table
+from archgen.views.shapes import Block, Column, Figure, Inlines, Paragraph, Table, Text
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 
 _MAX_BARS = 24
@@ -25,7 +26,7 @@ def make_growth_charts(history: History) -> tuple[Chart, ...]:
     notes = tuple(_note_older_points(history, len(shown_points)))
     first, last = shown_points[0], shown_points[-1]
     progress_text = f"{_format_mapped(first)} in {name_point(first, history)}, {_format_mapped(last)} in {name_point(last, history)}."
-    findings_text = f"{_count_findings(first)} findings in {name_point(first, history)}, {_count_findings(last)} in {name_point(last, history)}."
+    findings_text = f"{count_findings(first)} findings in {name_point(first, history)}, {count_findings(last)} in {name_point(last, history)}."
     return (
         Chart(
             "history/progress",
@@ -79,17 +80,12 @@ def make_growth_table(history: History) -> Table:
         ),
     )
     rows = tuple(
-        tuple(
-            map(
-                inline_text.to_inlines,
-                (
-                    name_point(point, history),
-                    str(point.project_row.components),
-                    str(point.connections),
-                    *(format_step_share(point.project_row, step) for step in PROGRESS_STEPS),
-                    _format_slashed(point.project_row.findings),
-                ),
-            )
+        (
+            inline_text.to_inlines(name_point(point, history)),
+            inline_text.to_inlines(str(point.project_row.components)),
+            inline_text.to_inlines(str(point.connections)),
+            *(_step_cell(point.project_row, step) for step in PROGRESS_STEPS),
+            inline_text.to_inlines(_format_slashed(point.project_row.findings)),
         )
         for point in reversed(history.points)
     )
@@ -144,6 +140,12 @@ def format_step_share(row: ProgressRow, step: str) -> str:
     return f"{floor_percent(getattr(row, step), row.components)} %" if row.components else "-"
 
 
+def _step_cell(row: ProgressRow, step: str) -> Inlines:
+    """Return the cell of a step's share, sorted by the exact share."""
+    share = str(Fraction(getattr(row, step), row.components)) if row.components else None
+    return (Text(format_step_share(row, step), sort_number=share),)
+
+
 def format_findings(findings: FindingCounts) -> str:
     """Format findings by severity: `1 error, 2 notes`; `-` for none."""
     counts = ((findings.error, "error"), (findings.warning, "warning"), (findings.note, "note"))
@@ -177,7 +179,7 @@ def _findings_bar(point: HistoryPoint, history: History) -> ChartBar:
     return ChartBar(
         name_point(point, history),
         tuple(segment for segment in segments if segment.length),
-        str(_count_findings(point)),
+        str(count_findings(point)),
     )
 
 
@@ -186,7 +188,7 @@ def _format_mapped(point: HistoryPoint) -> str:
     return f"{point.project_row.mapped} of {point.project_row.components}"
 
 
-def _count_findings(point: HistoryPoint) -> int:
+def count_findings(point: HistoryPoint) -> int:
     """Count the findings of all severities."""
     findings = point.project_row.findings
     return findings.error + findings.warning + findings.note

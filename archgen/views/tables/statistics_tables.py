@@ -58,7 +58,7 @@ def format_count(value: int | Fraction) -> str:
 def make_statistics_tables(architecture: Architecture) -> tuple[Table, ...]:
     """Make the tables of size and progress; progress only where there are components."""
     rows = tuple(
-        (inline_text.to_inlines(label), inline_text.to_inlines(value))
+        (inline_text.to_inlines(label), (Text(value, sort_number=value),))
         for _, label, value in format_figures(measure_size(architecture))
     )
     size_table = Table(
@@ -83,7 +83,7 @@ def _progress_row(architecture: Architecture, row: ProgressCounts) -> tuple[Inli
     return (
         _subject_cell(architecture, row),
         inline_text.to_inlines(str(row.components)),
-        *(inline_text.to_inlines(Text(f"{count} ({floor_percent(count, row.components)} %)")) for count in counts),
+        *((Text(f"{count} ({floor_percent(count, row.components)} %)", sort_number=str(count)),) for count in counts),
     )
 
 

@@ -33,15 +33,15 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
             "Reaction time and data age, at the latest",
             inline_text.to_inlines(value_format.display_bound(result.bound, timing_lookup.analysis)),
         ),
-        ("At the earliest", timing_tables.figure_cell(value_format.display_lower_bound(result.best))),
+        ("At the earliest", timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best)),
         ("From the earliest to the latest", _spread_cell(result)),
         (
             "Reaction time without the first wait",
-            timing_tables.figure_cell(value_format.display_duration(result.reduced_reaction)),
+            timing_tables.duration_cell(result.reduced_reaction),
         ),
         (
             "Data age, from the first reading on",
-            timing_tables.figure_cell(value_format.display_duration(result.reduced_age)),
+            timing_tables.duration_cell(result.reduced_age),
         ),
         (
             "Requirements",
@@ -70,11 +70,7 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
 
 
 def _spread_cell(result: ChainResult) -> Inlines:
-    return (
-        ()
-        if result.spread is None
-        else timing_tables.figure_cell(value_format.display_duration(TimingValue(result.spread)))
-    )
+    return () if result.spread is None else timing_tables.duration_cell(TimingValue(result.spread))
 
 
 def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[tuple[str, Inlines]]:
@@ -109,18 +105,14 @@ def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> t
     term = result.terms[index]
     return (
         timing_tables.activity_link(timing_lookup, term.activity),
-        _duration_cell(term.sampling),
-        _duration_cell(term.response),
-        _duration_cell(term.link),
+        timing_tables.duration_cell(term.sampling),
+        timing_tables.duration_cell(term.response),
+        timing_tables.duration_cell(term.link),
         inline_text.to_inlines(term.why),
         inline_text.to_inlines(Text(timing_tables.format_location(term.at), code=True))
         if timing_tables.format_location(term.at)
         else (),
     )
-
-
-def _duration_cell(value: TimingValue) -> Inlines:
-    return timing_tables.figure_cell(value_format.display_duration(value))
 
 
 def make_node_facts(lookup: Lookup, node: Node) -> Iterator[tuple[str, Inlines]]:

@@ -76,15 +76,17 @@ def _edge_row(timing_lookup: TimingLookup, edge: EdgeFit) -> tuple[Inlines, ...]
         _plain_activity_link(timing_lookup, arc.source),
         inline_text.to_inlines(inline_text.topic_link(arc.topic)),
         _plain_activity_link(timing_lookup, arc.target),
-        _unbroken_figure(value_format.display_share(_bound_conditional_loss(edge.loss))) if edge.loss.value else (),
-        inline_text.to_inlines(value_format.display_number(reread_factor, 1))
+        _unbroken_figure(value_format.display_share(_bound_conditional_loss(edge.loss)), edge.loss)
+        if edge.loss.value
+        else (),
+        timing_tables.figure_cell(value_format.display_number(reread_factor, 1), edge.rereads)
         if reread_factor and reread_factor != 1
         else (),
-        _unbroken_figure(value_format.display_duration(edge.beat)) if edge.beat.value else (),
-        inline_text.to_inlines(value_format.display_number(edge.queue.value))
+        _unbroken_figure(value_format.display_duration(edge.beat), edge.beat) if edge.beat.value else (),
+        timing_tables.figure_cell(value_format.display_number(edge.queue.value), edge.queue)
         if queue_overflows and edge.queue.value
         else (),
-        inline_text.to_inlines(str(arc.depth)) if queue_overflows else (),
+        inline_text.count_to_inlines(arc.depth) if queue_overflows else (),
     )
 
 
@@ -93,9 +95,9 @@ def _plain_activity_link(timing_lookup: TimingLookup, activity_id: str) -> Inlin
     return tuple(replace(part, code=False) for part in timing_tables.activity_link(timing_lookup, activity_id))
 
 
-def _unbroken_figure(figure: str) -> Inlines:
+def _unbroken_figure(text: str, value: TimingValue) -> Inlines:
     """Keep a figure and its unit on one line: a break in a narrow column costs a line in every row."""
-    return inline_text.to_inlines(figure.replace(" ", "\u00a0"))
+    return timing_tables.figure_cell(text.replace(" ", "\u00a0"), value)
 
 
 def _bound_conditional_loss(value: TimingValue) -> TimingValue:
@@ -128,13 +130,13 @@ def _service_row(timing_lookup: TimingLookup, server_id: str, load: ServiceLoad)
         inline_text.to_inlines(
             *timing_tables.activity_link(timing_lookup, caller),
             ": ",
-            *timing_tables.figure_cell(value_format.display_duration(load.synchronous_responses[caller])),
+            *timing_tables.duration_cell(load.synchronous_responses[caller]),
         )
         for caller in load.callers
     ]
     return (
         timing_tables.activity_link(timing_lookup, server_id),
         inline_text.to_inlines(str(len(load.callers))),
-        timing_tables.figure_cell(value_format.display_duration(load.worst)),
+        timing_tables.duration_cell(load.worst),
         inline_text.join_lines(wait_lines),
     )

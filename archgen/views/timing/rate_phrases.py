@@ -34,6 +34,11 @@ _BOX_LINE_LENGTH = 24
 _BEHAVIOUR_WORDS = {"event": "event", "on_demand": "on demand", "once": "once"}
 
 
+def longest_period(step: PeriodStep) -> str | None:
+    """Return the longest period of a step in ns, as the number that tables sort by; None where it has none."""
+    return next((str(milliseconds * 10**6) for milliseconds, name in _PERIOD_STEPS if name == step), None)
+
+
 def find_period_step(pace: analysis.EventPace | None) -> PeriodStep:
     """Return the step of the scale: by the period where a rate is known, else by the behaviour."""
     if pace is None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.system.timing_system import Activity
-from archgen.views.timing import value_format
+from archgen.views.timing import chain_status, value_format
 
 if TYPE_CHECKING:
     from archgen.timing.chains.fused_inputs import FusedInputs
@@ -21,6 +21,7 @@ class TimingLookup:
 
     analysis: Analysis
     chains: tuple[ChainResult, ...] = ()
+    """The judged chains, the worst first."""
     rate_origins: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Activities that an inferred rate comes from, by activity id; rates that were written have no entry."""
     activities_of_node: Mapping[str, tuple[Activity, ...]] = field(default_factory=dict)
@@ -39,7 +40,7 @@ def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -
 
     return TimingLookup(
         analysis,
-        tuple(chains),
+        chain_status.rank_chains(chains),
         value_format.find_rate_origins(analysis),
         activities_by_node,
         find_fused_inputs(analysis),

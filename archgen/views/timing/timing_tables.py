@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from archgen.diagnostics.source_span import Span
-from archgen.timing.analysis import EventPace
+from archgen.timing.analysis import EventPace, HostLoad
+from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
 from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
 from archgen.views.timing import load_charts, rate_phrases, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -41,13 +44,42 @@ _VERDICT_WORDS = {
     "undecided": "not decided by load alone",
     "unknown": "unknown",
 }
+LOAD_STATES: Mapping[str, Status] = {
+    "overload": "missed",
+    "undecided": "not proven",
+    "unknown": "open",
+    "schedulable": "met",
+}
+"""The states that verdicts on loads are shown as, the worst first."""
 _MISSING_CORES = Text("not written", muted=True)
 _MUTED_UNKNOWN = Text("unknown", muted=True)
 
 
-def figure_cell(text: str) -> Inlines:
-    """Return a table cell for a formatted figure; an unknown figure is muted, an empty one stays empty."""
-    return (_MUTED_UNKNOWN,) if text == value_format.UNKNOWN_FIGURE else inline_text.to_inlines(text) if text else ()
+def figure_cell(text: str, value: TimingValue) -> Inlines:
+    """Return a table cell for a figure and its text; an unknown figure is muted, an empty one stays empty."""
+    if text == value_format.UNKNOWN_FIGURE:
+        return (_MUTED_UNKNOWN,)
+    return (Text(text, sort_number=None if value.value is None else str(value.value)),) if text else ()
+
+
+def duration_cell(value: TimingValue) -> Inlines:
+    """Return a table cell for the upper bound of a duration."""
+    return figure_cell(value_format.display_duration(value), value)
+
+
+def share_cell(value: TimingValue) -> Inlines:
+    """Return a table cell for a share."""
+    return figure_cell(value_format.display_share(value), value)
+
+
+def size_cell(value: TimingValue) -> Inlines:
+    """Return a table cell for a number of bytes."""
+    return figure_cell(value_format.display_bytes(value), value)
+
+
+def traffic_cell(value: TimingValue) -> Inlines:
+    """Return a table cell for bytes per second."""
+    return figure_cell(value_format.display_traffic(value), value)
 
 
 def make_period_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
@@ -65,7 +97,9 @@ def make_period_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | No
         )
     rows = tuple(
         (
-            inline_text.to_inlines(rate_phrases.PERIOD_STEP_WORDS[step]),
+            inline_text.to_inlines(
+                Text(rate_phrases.PERIOD_STEP_WORDS[step], sort_number=rate_phrases.longest_period(step))
+            ),
             inline_text.to_inlines(str(len(activity_links))),
             inline_text.join_inlines(activity_links),
         )
@@ -106,11 +140,11 @@ def _activity_row(timing_lookup: TimingLookup, activity: Activity, origin_ids: t
     return (
         activity_link(timing_lookup, activity.id),
         inline_text.to_inlines(inline_text.BEHAVIOUR_WORDS[pace.behaviour]) if pace.behaviour else (_MUTED_UNKNOWN,),
-        figure_cell(_format_shown_rate(pace)),
+        figure_cell(_format_shown_rate(pace), pace.rate),
         # What runs on demand or once has no longest gap: nothing promises a next activation.
-        figure_cell(value_format.display_duration(pace.gap)) if pace.behaviour not in {"on_demand", "once"} else (),
+        duration_cell(pace.gap) if pace.behaviour not in {"on_demand", "once"} else (),
         describe_rate_source(timing_lookup, activity, pace, origin_ids),
-        figure_cell(value_format.display_duration(response.worst)) if response else (_MUTED_UNKNOWN,),
+        duration_cell(response.worst) if response else (_MUTED_UNKNOWN,),
         inline_text.to_inlines(_SHORT_TIER_WORDS[response.tier])
         if response and _SHORT_TIER_WORDS[response.tier]
         else (),
@@ -153,20 +187,32 @@ def activity_link(timing_lookup: TimingLookup, activity_id: str) -> Inlines:
     return inline_text.to_inlines(Text(activity_id, ref=f"node:{activity.node}" if activity else None, code=True))
 
 
+def rank_hosts(timing_lookup: TimingLookup) -> list[tuple[str, HostLoad]]:
+    """Return the hosts with their loads: the worst verdict first, then the greatest share of the cores."""
+    ranks = list(LOAD_STATES)
+    return sorted(
+        timing_lookup.analysis.hosts.items(),
+        key=lambda item: (
+            ranks.index(item[1].verdict),
+            -(load_charts.share_of_cores(item[1].utilisation, item[1].cores).value or 0),
+        ),
+    )
+
+
 def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
     """List hosts with their load, and the bounds that it is compared with."""
     rows = tuple(
         (
             inline_text.to_inlines(Text(lookup.architecture.hosts[name].title, ref=f"host:{name}")),
-            inline_text.to_inlines(str(load.cores)) if load.cores else (_MISSING_CORES,),
-            figure_cell(value_format.display_share(load_charts.share_of_cores(load.utilisation, load.cores))),
+            inline_text.count_to_inlines(load.cores) if load.cores else (_MISSING_CORES,),
+            share_cell(load_charts.share_of_cores(load.utilisation, load.cores)),
             # Both bounds hold for a single core only.
-            figure_cell(value_format.display_share(load.rate_monotonic_bound)) if load.cores == 1 else (),
-            figure_cell(value_format.display_share(load.earliest_deadline_bound)) if load.cores == 1 else (),
-            inline_text.to_inlines(_VERDICT_WORDS[load.verdict]),
+            share_cell(load.rate_monotonic_bound) if load.cores == 1 else (),
+            share_cell(load.earliest_deadline_bound) if load.cores == 1 else (),
+            inline_text.to_inlines(Text(_VERDICT_WORDS[load.verdict], status=LOAD_STATES[load.verdict])),
             inline_text.to_inlines(value_format.describe_missing(load.utilisation, timing_lookup.analysis, 3)),
         )
-        for name, load in timing_lookup.analysis.hosts.items()
+        for name, load in rank_hosts(timing_lookup)
     )
     columns = (
         Column("Host", 1.2),
@@ -175,7 +221,7 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
         Column("Rate-monotonic bound", 0.8, "right"),
         Column("Earliest-deadline bound", 0.8, "right"),
         Column("Verdict", 1.1),
-        Column("Missing", 1.6),
+        Column("Figures missing", 1.6),
     )
     return drop_blank_columns(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
 
@@ -185,10 +231,10 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
     rows = tuple(
         (
             inline_text.to_inlines(Text(lookup.architecture.links[name].title, ref=f"link:{name}")),
-            figure_cell(value_format.display_traffic(load.traffic)),
-            figure_cell(value_format.display_share(load.share)),
-            figure_cell(value_format.display_bytes(load.burst)),
-            figure_cell(value_format.display_duration(load.queueing)),
+            traffic_cell(load.traffic),
+            share_cell(load.share),
+            size_cell(load.burst),
+            duration_cell(load.queueing),
             inline_text.to_inlines(value_format.describe_missing(load.traffic, timing_lookup.analysis, 3)),
         )
         for name, load in timing_lookup.analysis.links.items()
@@ -199,7 +245,7 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
         Column("Share", 0.7, "right"),
         Column("Burst", 0.8, "right"),
         Column("Longest queueing", 0.9, "right"),
-        Column("Missing", 1.5),
+        Column("Figures missing", 1.5),
     )
     return drop_blank_columns(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
 
@@ -215,9 +261,9 @@ def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table |
     rows = tuple(
         (
             inline_text.to_inlines(inline_text.topic_link(name)),
-            figure_cell(value_format.display_bytes(topic_loads[name].size)),
-            figure_cell(value_format.display_traffic(topic_loads[name].published)),
-            figure_cell(value_format.display_traffic(topic_loads[name].delivered)),
+            size_cell(topic_loads[name].size),
+            traffic_cell(topic_loads[name].published),
+            traffic_cell(topic_loads[name].delivered),
         )
         for name in topic_names
     )

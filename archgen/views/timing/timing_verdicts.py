@@ -13,7 +13,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Column, Inlines, Paragraph, Table, Text
-from archgen.views.timing import chain_charts, load_charts, timing_tables, value_format
+from archgen.views.timing import chain_charts, chain_status, load_charts, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 
@@ -22,7 +22,8 @@ def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
     sentences: list[str] = []
     if timing_lookup.chains:
         verdicts = [
-            "without a deadline" if _lacks_only_deadline(result) else result.verdict for result in timing_lookup.chains
+            "without a deadline" if chain_status.lacks_only_deadline(result) else result.verdict
+            for result in timing_lookup.chains
         ]
         counts = [
             (name, verdicts.count(name)) for name in ("met", "missed", "not proven", "open", "without a deadline")
@@ -41,11 +42,6 @@ def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
     return Paragraph(inline_text.to_inlines(" ".join(sentences)))
 
 
-def _lacks_only_deadline(result: ChainResult) -> bool:
-    """Whether a chain is open only because it has no deadline."""
-    return result.deadline is None and result.bound.complete and result.bound.value is not None
-
-
 def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Block]:
     """List chains that miss their deadline or have no bound, then overloaded hosts, with the reasons."""
     chains = [
@@ -56,7 +52,9 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
         # Certain misses come before what may be late.
         for verdict in ("missed", "not proven", "open")
         for result in timing_lookup.chains
-        if result.verdict == verdict and not _lacks_only_deadline(result) and result.id in lookup.architecture.chains
+        if result.verdict == verdict
+        and not chain_status.lacks_only_deadline(result)
+        and result.id in lookup.architecture.chains
     ]
     hosts = [
         (Text(lookup.architecture.hosts[name].title, ref=f"host:{name}"), load_charts.describe_load(load))
@@ -132,12 +130,12 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
     rows = tuple(
         (
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
-            timing_tables.figure_cell(value_format.display_duration(result.bound)),
-            timing_tables.figure_cell(value_format.display_lower_bound(result.best)),
+            timing_tables.duration_cell(result.bound),
+            timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
             _largest_step(timing_lookup, result),
-            timing_tables.figure_cell(value_format.display_duration(result.deadline)) if result.deadline else (),
-            timing_tables.figure_cell(value_format.display_slack(result)),
-            inline_text.to_inlines(Text(result.verdict, strong=result.verdict != "met")),
+            timing_tables.duration_cell(result.deadline) if result.deadline else (),
+            chain_status.margin_cell(result),
+            chain_status.verdict_chip(result),
             inline_text.to_inlines(value_format.describe_missing(result.bound, timing_lookup.analysis, 3)),
         )
         for result in timing_lookup.chains
@@ -149,9 +147,9 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         Column("At the earliest", 0.9, "right"),
         Column("Largest step", 1.5),
         Column("Deadline", 0.8, "right"),
-        Column("Time left", 0.8, "right"),
+        Column("Margin", 0.8, "right"),
         Column("Verdict", 0.7),
-        Column("Missing", 1.6),
+        Column("Figures missing", 1.6),
     )
     # The same anchor as `make_chain_table`, which this table replaces; only one of them is ever in a document.
     return (

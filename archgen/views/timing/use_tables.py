@@ -27,7 +27,7 @@ def make_fused_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         (
             timing_tables.activity_link(timing_lookup, fused.activity),
             inline_text.to_inlines(_describe_fusion(fused)),
-            timing_tables.figure_cell(value_format.display_duration(fused.apart)),
+            timing_tables.duration_cell(fused.apart),
             inline_text.to_inlines(_describe_ages(fused)),
         )
         for fused in timing_lookup.fused_inputs
@@ -59,7 +59,7 @@ def make_resource_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         (
             inline_text.to_inlines(name),
             inline_text.to_inlines(load.host or ""),
-            timing_tables.figure_cell(value_format.display_share(load.utilisation)),
+            timing_tables.share_cell(load.utilisation),
             inline_text.to_inlines(_VERDICT_WORDS[load.verdict]),
             inline_text.join_inlines(
                 (*timing_tables.activity_link(timing_lookup, user), Text(f" {value_format.display_duration(wait)}"))
@@ -86,7 +86,7 @@ def make_measured_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         (
             timing_tables.activity_link(timing_lookup, activity.id),
             inline_text.to_inlines(describe_percentiles(activity, tick)),
-            timing_tables.figure_cell(value_format.display_duration(_longest(activity, tick))),
+            timing_tables.duration_cell(_longest(activity, tick)),
             inline_text.to_inlines("longest seen, not proven" if activity.wcet_measured else "written"),
         )
         for activity in timing_lookup.analysis.system.activities.values()

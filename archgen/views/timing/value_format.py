@@ -7,7 +7,7 @@ from dataclasses import replace
 from decimal import ROUND_HALF_UP, Decimal
 from fractions import Fraction
 
-from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.core_placement import is_missing_cores
 
@@ -55,13 +55,6 @@ def display_duration(value: TimingValue) -> str:
     return _format_value(
         replace(value, side="at least" if is_partial else "exact", complete=not is_partial), _format_time
     )
-
-
-def display_slack(result: ChainResult) -> str:
-    """Format what a chain's bound leaves of its deadline, below zero where it is above it; empty where either is unknown."""
-    if result.slack is None:
-        return ""
-    return f"{'-' if result.slack < 0 else ''}{_format_time(abs(result.slack))}"
 
 
 def display_lower_bound(value: TimingValue) -> str:

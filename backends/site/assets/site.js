@@ -38,29 +38,64 @@
   reveal();
 
   // --- tables: sort by a column, show the rows that hold some words ---------------------------------------------
+  // The address says how: `?q=words&sort=-Deadline` for the first table of the page, `q2` and `sort2` for the second.
+  // So Back finds the table as it was left, and a link shows to others what the sender sees.
   const order = new Intl.Collator("en", { numeric: true, sensitivity: "base" });
   const text = (row, at) => row.cells[at].textContent.trim();
 
-  function sortable(table, rows) {
+  // A quantity is written in several units, so its cell has the exact number: an integer or a ratio. NaN: it has none.
+  function number(row, at) {
+    const [top, bottom = 1] = (row.cells[at].dataset.sort || "NaN").split("/").map(Number);
+    return top / bottom;
+  }
+
+  // What has no number stays last both ways: unknown is neither the best nor the worst.
+  function compare(at, down) {
+    return (a, b) => {
+      const [left, right] = [number(a, at), number(b, at)];
+      if (isNaN(left) !== isNaN(right)) return isNaN(left) ? 1 : -1;
+      return isNaN(left) ? order.compare(text(a, at), text(b, at)) * (down ? -1 : 1) : (left - right) * (down ? -1 : 1);
+    };
+  }
+
+  function remember(name, value) {
+    const address = new URL(location.href);
+    if (value) address.searchParams.set(name, value);
+    else address.searchParams.delete(name);
+    try {
+      history.replaceState(history.state, "", address);
+    } catch (refused) {
+      // Some browsers keep the address of a file as it is: the table works all the same.
+    }
+  }
+
+  function sortable(table, rows, name) {
     const heads = [...table.tHead.rows[0].cells];
+    const titles = heads.map((head) => head.textContent);
+    function sort(at, down) {
+      heads.forEach((other) => (other.ariaSort = null));
+      if (at >= 0) heads[at].ariaSort = down ? "descending" : "ascending";
+      table.tBodies[0].append(...(at < 0 ? rows : [...rows].sort(compare(at, down))));
+    }
     heads.forEach((head, at) => {
       const control = element("button", { type: "button", className: "sort" }, ...head.childNodes);
       head.append(control);
       control.addEventListener("click", () => {
         const down = head.ariaSort === "ascending";
-        heads.forEach((other) => (other.ariaSort = null));
-        head.ariaSort = down ? "descending" : "ascending";
-        const sorted = [...rows].sort((a, b) => order.compare(text(a, at), text(b, at)) * (down ? -1 : 1));
-        table.tBodies[0].append(...sorted);
+        sort(at, down);
+        remember(name, (down ? "-" : "") + titles[at]);
       });
     });
+    return (wanted) => sort(titles.indexOf(wanted.replace(/^-/, "")), wanted.startsWith("-"));
   }
 
-  function filterable(table, rows) {
+  function filterable(table, rows, name) {
     const caption = table.caption.textContent;
     const count = element("output", { className: "muted" });
+    // Not completed by the browser: it would bring back the words after the rows were shown.
     const field = element("input", { type: "search", placeholder: "Filter", ariaLabel: "Filter: " + caption });
-    field.addEventListener("input", () => {
+    field.autocomplete = "off";
+    function filter() {
       const wanted = field.value.toLowerCase().split(/\s+/).filter(Boolean);
       let shown = 0;
       for (const row of rows) {
@@ -69,15 +104,33 @@
         if (!row.hidden) shown += 1;
       }
       count.textContent = wanted.length ? shown + " of " + rows.length : "";
+    }
+    field.addEventListener("input", () => {
+      filter();
+      remember(name, field.value.trim());
     });
     table.closest(".table").prepend(element("div", { className: "filter" }, field, count));
+    return (words) => {
+      field.value = words;
+      filter();
+    };
   }
 
-  for (const table of document.querySelectorAll(".table table")) {
+  const obey = new Map();
+  // Cards are short, and in the order that matters.
+  [...document.querySelectorAll(".table table")].filter((table) => !table.closest(".card")).forEach((table, at) => {
     const rows = [...table.tBodies[0].rows];
-    if (rows.length > 2) sortable(table, rows);
-    if (rows.length > 9) filterable(table, rows);
+    const suffix = at ? at + 1 : "";
+    if (rows.length > 2) obey.set("sort" + suffix, sortable(table, rows, "sort" + suffix));
+    if (rows.length > 9) obey.set("q" + suffix, filterable(table, rows, "q" + suffix));
+  });
+  // On each showing of the page, also one that the browser kept whole or whose fields it filled in by itself.
+  function obeyAddress() {
+    const wanted = new URLSearchParams(location.search);
+    for (const [name, show] of obey) show(wanted.get(name) || "");
   }
+  addEventListener("pageshow", obeyAddress);
+  if (location.search) obeyAddress();
 
   // A table that fits needs no box to scroll in: no stop for the Tab key, and its head stays in sight.
   const fitting = new ResizeObserver((entries) => {

@@ -31,6 +31,9 @@ SAMPLE = (
 )
 EXAMPLE = (
     "index.html",
+    "chains.html",
+    "chains/missed_dose_to_mark.html",
+    "findings.html",
     "groups/environment_state.html",
     "components/environment_state.object_recognition.html",
     "hosts.html",
@@ -167,10 +170,10 @@ def test_light_and_dark_are_remembered(visit: Open) -> None:
     colour = "getComputedStyle(document.body).backgroundColor"
     assert page.evaluate(colour) == "rgb(20, 24, 28)"
     page.get_by_role("button", name="Light").click()
-    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+    assert page.evaluate(colour) == "rgb(246, 247, 249)"
     page.get_by_role("link", name="Environment Model").first.click()
     page.wait_for_url("**/groups/g1.html")
-    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+    assert page.evaluate(colour) == "rgb(246, 247, 249)"
 
 
 def test_pictures_follow_light_and_dark(visit: Open) -> None:
@@ -232,6 +235,66 @@ def test_tables_sort_and_filter(visit: Open) -> None:
     page.get_by_role("searchbox").fill("person topic_8")
     assert page.evaluate(column) == ["/robot/topic_85", "/robot/topic_8"]
     assert page.locator("output").inner_text() == "2 of 138"
+
+
+COLUMN = "at => [...document.querySelectorAll('tbody tr')].filter(r => !r.hidden).map(r => r.cells[at].innerText)"
+
+
+def _write_quantities(folder: Path) -> Path:
+    """Write a site of one table of times, with units that order differently as text, and a page that it links to."""
+    known = {"20 ms": "20000000", "15 s": "15000000000", "60 s": "60000000000", "350 ms": "350000000"}
+    known |= {"8.3 ms": "25000000/3", "1/3 ms": "1000000/3"}
+    times = ("20 ms", "15 s", "unknown", "60 s", "350 ms", "8.3 ms", "longer", "1/3 ms")
+    rows = tuple(
+        ((shapes.Text(f"chain {at}", ref="page:x"),), (shapes.Text(text, sort_number=known.get(text)),))
+        for at, text in enumerate(times * 2)
+    )
+    table = shapes.Table("t", "Times", (shapes.Column("Chain"), shapes.Column("Deadline")), rows)
+    start = shapes.Page("index.html", "page:index", "R", "overview", shapes.Section("page:index", "R", (table,)))
+    other = shapes.Page("x.html", "page:x", "X", "x", shapes.Section("page:x", "X", ()), (("R", "page:index"),))
+    made = make_site((start, other), {}, title="R", revision="", notices=(), chapter_files=lambda _: None)
+    write_tree(made, folder / "site")
+    return folder / "site"
+
+
+def test_quantities_sort_by_value_and_unknown_ones_stay_last_both_ways(visit: Open, tmp_path: Path) -> None:
+    page = visit("index.html", root=_write_quantities(tmp_path))
+    known = ["1/3 ms", "8.3 ms", "20 ms", "350 ms", "15 s", "60 s"]
+    page.get_by_role("button", name="Deadline").click()
+    assert list(dict.fromkeys(page.evaluate(COLUMN, 1)))[:6] == known
+    assert set(page.evaluate(COLUMN, 1)[-4:]) == {"unknown", "longer"}
+    page.get_by_role("button", name="Deadline").click()
+    assert list(dict.fromkeys(page.evaluate(COLUMN, 1)))[:6] == known[::-1]
+    assert set(page.evaluate(COLUMN, 1)[-4:]) == {"unknown", "longer"}
+
+
+def test_back_brings_back_field_rows_count_and_order(visit: Open, tmp_path: Path) -> None:
+    page = visit("index.html", root=_write_quantities(tmp_path))
+    page.get_by_role("searchbox").fill("ms")
+    page.get_by_role("button", name="Deadline").click()
+    page.get_by_role("button", name="Deadline").click()
+    left = page.evaluate(COLUMN, 1)
+    assert left == ["350 ms", "350 ms", "20 ms", "20 ms", "8.3 ms", "8.3 ms", "1/3 ms", "1/3 ms"]
+    # A font that is still under way when the page is left would be a request that failed.
+    page.wait_for_load_state("networkidle")
+    page.get_by_role("link", name="chain 0").click()
+    page.wait_for_load_state("networkidle")
+    page.wait_for_url("**/x.html")
+    page.go_back()
+    page.wait_for_url("**/index.html?q=ms&sort=-Deadline")
+    assert page.get_by_role("searchbox").input_value() == "ms"
+    assert page.evaluate(COLUMN, 1) == left
+    assert page.locator("output").inner_text() == "8 of 16"
+    assert page.locator("th").nth(1).get_attribute("aria-sort") == "descending"
+
+
+def test_a_link_with_filter_and_order_shows_what_the_sender_saw(visit: Open, tmp_path: Path) -> None:
+    page = visit("index.html?q=15&sort=Deadline", root=_write_quantities(tmp_path))
+    assert page.evaluate(COLUMN, 0) == ["chain 15", "chain 1", "chain 9"]
+    # The name of no column, and a filter that nothing matches: obeyed as far as it goes, and no error.
+    page = visit("index.html?q=zzz&sort=Nothing", root=tmp_path / "site")
+    assert page.evaluate(COLUMN, 0) == []
+    assert page.locator("output").inner_text() == "0 of 16"
 
 
 def test_the_keyboard_gets_past_the_tree(visit: Open) -> None:

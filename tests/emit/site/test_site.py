@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from html.parser import HTMLParser
 from posixpath import dirname, join, normpath
 
@@ -13,7 +14,23 @@ import pytest
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.emit.site import build_site
-from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Dashboard,
+    DashboardCard,
+    Facts,
+    Figure,
+    KeyFigure,
+    Markdown,
+    Meter,
+    Page,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+)
 
 Draw = Callable[[str, dict[str, str]], Picture]
 
@@ -91,6 +108,57 @@ def test_a_table_has_a_caption_widths_and_rows_with_anchors() -> None:
         '<tr id="link:lan"><td>a</td><td class="right">1</td></tr>\n</tbody>\n</table>\n</div>\n</div>\n'
         '<p><a href="#link:lan">see</a></p>'
     )
+
+
+def test_a_state_is_a_chip_with_icon_word_and_margin() -> None:
+    html = shown(Paragraph((Text("missed · +23.8 ms", status="missed"),)))
+    assert re.sub(r"<svg.*?</svg>", "ICON", html) == (
+        '<p><span class="chip missed">ICONmissed <span class="addition">+23.8 ms</span></span></p>'
+    )
+    assert 'class="chip not-proven"' in shown(Paragraph((Text("not proven", status="not proven"),)))
+    assert "&lt;b&gt;" in shown(Paragraph((Text("<b> · <b>", status="open"),)))
+
+
+@pytest.mark.parametrize(
+    ("meter", "parts"),
+    [
+        (Meter(0.5, "met"), ['class="known" width="36"']),
+        (Meter(0.5, "open", is_partial=True), ['class="hatch"', 'class="known" width="36"']),
+        (Meter(1.5, "missed"), ['class="known" width="48"', 'class="over" x="48" width="24"', 'class="limit"']),
+        (Meter(0, "met"), ['class="known" width="0"']),
+    ],
+)
+def test_a_bar_shows_a_share(meter: Meter, parts: list[str]) -> None:
+    html = shown(Paragraph((Text("", meter=meter),)))
+    assert [part for part in parts if part not in html] == []
+    assert html.count('class="') == len(parts) + 2
+    assert 'aria-hidden="true"' in html
+
+
+def test_a_dashboard_links_its_figures_and_cards() -> None:
+    figure = KeyFigure("Chains", "7", "8", (Text("1 missed", status="missed"),), "group:g")
+    lost = KeyFigure("Hosts", "1", "", (), "page:none")
+    table = Table("t:1", "T", (Column("A"),), (((Text("x", ref="group:g"),),),))
+    card = DashboardCard("Chains <b>", (table,), 8, "worst first", Text("All", ref="group:g"), "chains")
+    start = replace(page(Paragraph((Text("below"),))), dashboard=Dashboard((figure, lost), (card,)))
+    html = re.sub(r"<svg.*?</svg>", "", body(tree_of(start, other())))
+    assert '<a class="figure" href="groups/g.html"><span class="title">Chains</span> <span class="value">7 ' in html
+    assert '<div class="figure"><span class="title">Hosts</span> <span class="value">1</span>' in html
+    assert '<section class="card w8 chains">\n<div class="head"><h2>Chains &lt;b&gt;</h2>' in html
+    assert html.index("below") > html.index('<a href="groups/g.html">x</a>')
+
+
+def test_the_tree_marks_pages_and_a_title_has_its_verdict() -> None:
+    marked = replace(other(), mark="missed", verdict=(Text("missed", status="missed"),))
+    html = tree_of(page(), marked).files["groups/g.html"].decode()
+    assert '<span class="mark missed"><span class="spoken"> (a deadline is missed)</span></span>' in html
+    assert '<div class="title"><h1>Sensing</h1> <span class="chip missed">' in html
+
+
+def test_a_cell_with_a_quantity_has_the_exact_number_to_sort_by() -> None:
+    row = ((Text("a"),), (Text("about "), Text("8.3 ms", sort_number="25000000/3")))
+    html = shown(Table("t:1", "Times", (Column("Name"), Column("Time")), (row,)))
+    assert '<td>a</td><td data-sort="25000000/3">about 8.3 ms</td>' in html
 
 
 def test_sections_nest_and_are_listed_above() -> None:

@@ -1,0 +1,72 @@
+"""The page that a name leads to, and who owns what a finding is about."""
+
+from __future__ import annotations
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.views import inline_text
+from archgen.views.shapes import Inlines, Text
+
+
+def find_reference(architecture: Architecture, name: str) -> str | None:
+    """Return the anchor of the element with this id; of a port that of its component. None where there is none."""
+    for kind, elements in (
+        ("component", architecture.components),
+        ("node", architecture.nodes),
+        ("group", architecture.groups),
+        ("requirement", architecture.requirements),
+        ("use_case", architecture.use_cases),
+        ("chain", architecture.chains),
+        ("host", architecture.hosts),
+        ("container", architecture.containers),
+        ("link", architecture.links),
+        ("type", architecture.types),
+        ("topic", architecture.topics),
+        ("partner", architecture.partners),
+    ):
+        if name in elements:
+            return f"{kind}:{name}"
+    port = architecture.inputs.get(name) or architecture.outputs.get(name)
+    return f"component:{port.component}" if port else None
+
+
+def find_owners(architecture: Architecture, element_id: str | None) -> tuple[str, ...]:
+    """Return the partners who own an element; of a port those of its component. Empty where nobody does."""
+    name = element_id or ""
+    port = architecture.inputs.get(name) or architecture.outputs.get(name)
+    component = architecture.components.get(port.component if port else name)
+    element = component or architecture.nodes.get(name) or architecture.groups.get(name)
+    return element.owners if element else ()
+
+
+def owner_cell(architecture: Architecture, element_id: str | None) -> Inlines:
+    """Return links to the owners of an element; "nobody yet" where it has none."""
+    owners = find_owners(architecture, element_id)
+    return inline_text.owner_links(architecture, owners) if owners else (Text("nobody yet", muted=True),)
+
+
+def link_message(architecture: Architecture, finding: Diagnostic) -> Inlines:
+    """Return a finding's message, with a link at each name that it quotes and that is an element's."""
+    return tuple(_link_run(architecture, finding, run) for run in inline_text.message_to_inlines(finding.message))
+
+
+def link_help(architecture: Architecture, finding: Diagnostic) -> Inlines:
+    """Return a finding's help, muted, with a link at each name that it quotes and that is an element's."""
+    runs = inline_text.message_to_inlines(finding.help or "", muted=True)
+    return tuple(_link_run(architecture, finding, run) for run in runs)
+
+
+def _link_run(architecture: Architecture, finding: Diagnostic, run: Text) -> Text:
+    """Return a quoted name as a link; any other run as it is."""
+    if not run.code:
+        return run
+    reference = find_reference(architecture, run.text)
+    # A port is called by its own name where its component is named beside it.
+    if reference is None and finding.element and finding.element.endswith(f".{run.text}"):
+        reference = find_reference(architecture, finding.element)
+    return Text(run.text, ref=reference, code=True, muted=run.muted) if reference else run
+
+
+def place_cell(finding: Diagnostic) -> Inlines:
+    """Return file and line of a finding; empty where it has no place."""
+    return (Text(f"{finding.span.file}:{finding.span.line}", code=True),) if finding.span.file else ()

@@ -1,0 +1,82 @@
+"""What the navigation marks: the groups and lists in which something is open, or a deadline is missed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Literal
+
+from archgen.timing.analysis import ChainResult
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Page
+from archgen.views.timing import chain_status
+
+Mark = Literal["open", "missed"]
+
+
+def mark_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
+    """Return the pages with their marks, and chains with their verdicts."""
+    chains = {f"chain:{result.id}": result for result in lookup.timing.chains} if lookup.timing else {}
+    marks: dict[str, Mark] = {}
+    for anchor, mark in _list_marks(lookup):
+        # A missed deadline is the worse of the two.
+        if mark == "missed" or anchor not in marks:
+            marks[anchor] = mark
+    return tuple(
+        replace(
+            page,
+            mark=marks.get(page.anchor),
+            verdict=chain_status.chain_chip(chains[page.anchor]) if page.anchor in chains else (),
+        )
+        if page.anchor in marks or page.anchor in chains
+        else page
+        for page in pages
+    )
+
+
+def _list_marks(lookup: Lookup) -> Iterator[tuple[str, Mark]]:
+    """Yield anchors with a mark; one may come several times."""
+    architecture = lookup.architecture
+    if lookup.findings:
+        yield "page:findings", "open"
+    for element_id in lookup.findings_of:
+        yield from ((f"group:{group}", "open") for group in _groups_of(lookup, element_id))
+        if element_id in architecture.requirements:
+            yield "page:requirements", "open"
+    for result in list_troubled_chains(lookup):
+        mark: Mark = "missed" if result.verdict == "missed" else "open"
+        yield f"chain:{result.id}", mark
+        yield "page:chains", mark
+        # Whoever could mend it: all on the way of what is late, else those whose figures are missing.
+        names = (
+            [term.activity for term in result.terms]
+            if result.verdict in {"missed", "not proven"}
+            else result.bound.missing
+        )
+        for name in names:
+            yield from ((f"group:{group}", mark) for group in _groups_of_activity(lookup, name))
+
+
+def list_troubled_chains(lookup: Lookup) -> list[ChainResult]:
+    """Return the chains that are not shown to meet their deadline, the worst first."""
+    return [
+        result
+        for result in (lookup.timing.chains if lookup.timing else ())
+        if result.verdict != "met" and not chain_status.lacks_only_deadline(result)
+    ]
+
+
+def _groups_of(lookup: Lookup, element_id: str) -> set[str]:
+    """Return the groups that an element belongs to: itself, its component's, or those that a node implements."""
+    architecture = lookup.architecture
+    if element_id in architecture.groups:
+        return {element_id}
+    node = architecture.nodes.get(element_id)
+    component_ids = node.implements if node else (element_id,)
+    return {architecture.components[name].group for name in component_ids if name in architecture.components}
+
+
+def _groups_of_activity(lookup: Lookup, activity_id: str) -> set[str]:
+    """Return the groups of the component that an activity works for, or of its node."""
+    activity = lookup.timing.analysis.system.activities.get(activity_id) if lookup.timing else None
+    return _groups_of(lookup, activity.component or activity.node) if activity else set()

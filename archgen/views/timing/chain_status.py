@@ -1,0 +1,100 @@
+"""How chains of effect stand: worst first, with a chip for the verdict, the margin, and a bar of the deadline used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+
+from archgen.timing.analysis import ChainResult
+from archgen.views.shapes import Inlines, Meter, Text
+
+_VERDICT_RANKS = {"missed": 0, "not proven": 1, "open": 2, "met": 3}
+_SHORT_UNITS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
+_SIGNIFICANT_DIGITS = 3
+NO_DEADLINE: Inlines = (Text("no deadline", muted=True),)
+
+
+def rank_chains(results: Iterable[ChainResult]) -> tuple[ChainResult, ...]:
+    """Sort chains, the worst first: missed, not proven, open, met; then by the share of the deadline that is used.
+
+    Chains that lack nothing but a deadline come last: there is nothing to be late for.
+    """
+    return tuple(sorted(results, key=_chain_rank))
+
+
+def _chain_rank(result: ChainResult) -> tuple[int, Fraction]:
+    """Return the sort key of a chain."""
+    if lacks_only_deadline(result):
+        return (len(_VERDICT_RANKS), Fraction(0))
+    return (_VERDICT_RANKS[result.verdict], -(used_share(result) or Fraction(0)))
+
+
+def lacks_only_deadline(result: ChainResult) -> bool:
+    """Whether a chain is open only because it has no deadline."""
+    return result.deadline is None and result.bound.complete and result.bound.value is not None
+
+
+def used_share(result: ChainResult) -> Fraction | None:
+    """Return how much of the deadline the known part of the bound takes; None where either is unknown."""
+    deadline = result.deadline.value if result.deadline else None
+    return result.bound.value / deadline if deadline and result.bound.value is not None else None
+
+
+def chain_chip(result: ChainResult) -> Inlines:
+    """Return the verdict on a chain as a chip, with its margin."""
+    if lacks_only_deadline(result):
+        return NO_DEADLINE
+    margin = describe_margin(result)
+    return (Text(f"{result.verdict} · {margin}" if margin else result.verdict, strong=True, status=result.verdict),)
+
+
+def verdict_chip(result: ChainResult) -> Inlines:
+    """Return the verdict on a chain as a chip, without its margin: that has a column of its own."""
+    if lacks_only_deadline(result):
+        return NO_DEADLINE
+    return (Text(result.verdict, strong=result.verdict != "met", status=result.verdict),)
+
+
+def margin_cell(result: ChainResult) -> Inlines:
+    """Return the margin of a chain for a table, sorted by it; empty where it is not known."""
+    margin = _find_margin(result)
+    return (Text(describe_margin(result), sort_number=str(margin)),) if margin is not None else ()
+
+
+def describe_margin(result: ChainResult) -> str:
+    """Describe what is left of the deadline, `629 ms left`, or by how much it is exceeded, `+23.8 ms`."""
+    margin = _find_margin(result)
+    if margin is None:
+        return ""
+    if margin < 0:
+        # A bound above the deadline says how late a chain may be; a best case above it how late it is at least.
+        sign = {"not proven": "<= ", "missed": ">= "}.get(result.verdict, "")
+        return f"{sign}+{round_duration(-margin)}"
+    return f"{'<= ' if result.verdict == 'open' else ''}{round_duration(margin)} left"
+
+
+def _find_margin(result: ChainResult) -> Fraction | None:
+    """Return what is left of the deadline in ns; None where nothing can be said."""
+    deadline = result.deadline.value if result.deadline else None
+    # What is missed for sure is missed by its best case; an overload has neither figure.
+    reached = result.best.value if result.verdict == "missed" else result.bound.value
+    if deadline is None or reached is None or (result.verdict != "met" and reached == deadline):
+        return None
+    margin = deadline - reached
+    # A verdict that rests on something else (no bound was found, an overload) has no figure for how much.
+    return None if (result.verdict in {"missed", "not proven"}) != (margin < 0) else margin
+
+
+def round_duration(nanoseconds: Fraction) -> str:
+    """Format a duration with three significant digits, in the largest unit that leaves at least one."""
+    factor, unit = next(((factor, unit) for factor, unit in _SHORT_UNITS if nanoseconds >= factor), (1, "ns"))
+    return f"{float(f'{float(nanoseconds / factor):.{_SIGNIFICANT_DIGITS}g}'):g} {unit}"
+
+
+def chain_meter(result: ChainResult) -> Inlines:
+    """Return a bar of how much of its deadline a chain uses; empty where nobody knows."""
+    share = used_share(result)
+    if share is None:
+        return ()
+    meter = Meter(float(share), result.verdict, is_partial=not result.bound.complete)
+    return (Text("", meter=meter, sort_number=str(share)),)
