@@ -14,7 +14,7 @@ from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.search.search_entry import SearchEntry
 
-MAX_PART_BYTES = 400_000
+MAX_PART_BYTES = 250_000
 """The bytes of a part before it is written as a script. A larger one would hold up the page while it is read."""
 _EMPTY_BOX_FINDINGS = 3
 _EXAMPLE_PREFIXES = ("owner:", "tag:", "host:")

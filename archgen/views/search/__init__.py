@@ -13,7 +13,6 @@ from archgen.views.shapes import Page
 def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEntry, ...]:
     """Make the search entries of a site with these pages. Entries of one kind follow one another."""
     entries = [
-        *text_entries.make_finding_entries(lookup),
         *functional_entries.make_component_entries(lookup),
         *functional_entries.make_group_entries(lookup),
         *implementation_entries.make_node_entries(lookup),
@@ -24,6 +23,7 @@ def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEn
         *functional_entries.make_partner_entries(lookup),
         *implementation_entries.make_host_entries(lookup),
         *implementation_entries.make_message_entries(lookup),
+        *text_entries.make_finding_entries(lookup),
         *functional_entries.make_port_entries(lookup),
         *functional_entries.make_connection_entries(lookup),
     ]

@@ -72,7 +72,8 @@
   let loading = false, loaded = 0, failed = false;
 
   function loadScript(name, then) {
-    const script = element("script", { src: base + "assets/search/" + name + ".js" });
+    // Not `async`: scripts that are asked for together run in this order.
+    const script = element("script", { src: base + "assets/search/" + name + ".js", async: false });
     script.addEventListener("load", then);
     script.addEventListener("error", () => {
       failed = true;
@@ -84,8 +85,9 @@
   function load() {
     if (loading) return;
     loading = true;
-    const chain = (names, then) => (names.length ? loadScript(names[0], () => chain(names.slice(1), then)) : then());
-    chain(["ufuzzy", "match", "index"], () => {
+    loadScript("ufuzzy", () => {});
+    loadScript("match", () => {});
+    loadScript("index", () => {
       draw();
       loadPart();
     });
@@ -99,8 +101,8 @@
       // Results while the rest is still being read, but not anew for each of many small parts.
       const due = loaded === parts.length || performance.now() - lastSearch > DRAW_AGAIN;
       if (due && field.value.trim()) search();
-      // A pause, so that keys and drawing have their turn between two parts.
-      setTimeout(loadPart);
+      // One after another, so that keys and drawing have their turn between two parts.
+      loadPart();
     });
   }
 

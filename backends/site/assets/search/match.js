@@ -152,7 +152,8 @@ const archgenSearch = (function () {
       const line = rows.folded[row];
       const length = line.indexOf("\t");
       if (phrase && line.lastIndexOf(phrase, length) >= 0) total += 30;
-      return total - Math.min(length, 80) / 16;
+      // A component's many ports and connections hold its name as well.
+      return total * (rows.weight > 2 ? 1 : 0.55) - Math.min(length, 80) / 16;
     });
   }
 
