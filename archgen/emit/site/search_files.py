@@ -38,8 +38,8 @@ def build_search_files(entries: Iterable[SearchEntry], links: SiteLinks) -> Iter
         ],
         "examples": _choose_examples(rows),
     }
-    yield _make_script("index", "index", index)
-    yield from (_make_script(name, *call) for name, call in scripts)
+    yield _make_script("index", ("index", index))
+    yield from (_make_script(name, call) for name, call in scripts)
 
 
 def _find_address(entry: SearchEntry, links: SiteLinks) -> str | None:
@@ -52,20 +52,22 @@ def _write_names(rows_by_kind: dict[str, list[_Row]]) -> Iterator[tuple[str, tup
     """Yield the name and the arguments of each part: `title, line, keys` with tabs between, and the addresses."""
     for kind, rows in rows_by_kind.items():
         lines = [
-            ("\t".join(map(_clean, (entry.title, entry.line, " ".join(entry.keys)))), address) for entry, address in rows
+            ("\t".join(map(_clean, (entry.title, entry.line, " ".join(entry.keys)))), address)
+            for entry, address in rows
         ]
         for number, part in enumerate(_split_by_size(lines), 1):
             texts, addresses = zip(*part, strict=True)
-            yield f"{_file_stem(kind)}-{number}", ("names", kind, "\n".join(texts), "\n".join(_blank_repeated(addresses)))
+            yield (
+                f"{_file_stem(kind)}-{number}",
+                ("names", kind, "\n".join(texts), "\n".join(_blank_repeated(addresses))),
+            )
 
 
 def _write_texts(rows_by_kind: dict[str, list[_Row]]) -> Iterator[tuple[str, tuple[object, ...]]]:
     """Yield the name and the arguments of each part with texts: `row text`, by the place of the row in its kind."""
     for kind, rows in rows_by_kind.items():
         lines = [
-            (f"{place}\t{piece}",)
-            for place, (entry, _) in enumerate(rows)
-            for piece in _split_text(_clean(entry.text))
+            (f"{place}\t{piece}",) for place, (entry, _) in enumerate(rows) for piece in _split_text(_clean(entry.text))
         ]
         for number, part in enumerate(_split_by_size(lines), 1):
             yield f"{_file_stem(kind)}-text-{number}", ("texts", kind, "\n".join(line for (line,) in part))
@@ -121,7 +123,8 @@ def _clean(text: str) -> str:
     return " ".join(replace_forbidden(text).split())
 
 
-def _make_script(name: str, function: str, *arguments: object) -> tuple[str, bytes]:
-    """Make a script that hands plain data to the page's search."""
+def _make_script(name: str, call: tuple[object, ...]) -> tuple[str, bytes]:
+    """Make a script that hands plain data to the page's search: `call` is a function's name and its arguments."""
+    function, *arguments = call
     data = ",".join(json.dumps(argument, ensure_ascii=False, separators=(",", ":")) for argument in arguments)
     return f"assets/search/{name}.js", f"archgenSearch.{function}({data});\n".encode()

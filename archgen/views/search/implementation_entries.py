@@ -84,7 +84,9 @@ def make_message_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         count = sum(map(len, definition.parts)) if definition else 0
         size = inline_text.count_noun(count, "field") if definition else "definition not at hand"
         line = join_words(message.split("/")[1].replace("srv", "service").replace("msg", "message"), size)
-        yield SearchEntry("message", message, line, refs, text=to_plain_text(definition and definition.comment))
+        yield SearchEntry(
+            "message", message, line, refs, text=to_plain_text(definition.comment if definition else None)
+        )
         if definition:
             yield from _make_field_entries(definition, refs)
 

@@ -77,6 +77,7 @@
     script.addEventListener("load", then);
     script.addEventListener("error", () => {
       failed = true;
+      list.ariaBusy = "false";
       draw();
     });
     document.head.append(script);
@@ -110,7 +111,7 @@
   const isComplete = () => isReady() && loaded === archgenSearch.settings.parts.length;
 
   // --- the box --------------------------------------------------------------------------------------------------
-  const field = element("input", { type: "text", id: "find-field", autocomplete: "off", spellcheck: false, enterKeyHint: "go",
+  const field = element("input", { type: "text", id: "find-field", autocomplete: "off", maxLength: 500, spellcheck: false, enterKeyHint: "go",
     placeholder: "Component, topic, message field, requirement, chapter …", ariaLabel: "Search everything" });
   field.setAttribute("role", "combobox");
   field.setAttribute("aria-controls", "find-list");
@@ -266,6 +267,7 @@
     run += 1;
     lastSearch = performance.now();
     const query = field.value.trim();
+    list.ariaBusy = String(Boolean(query));
     if (!query) {
       kind = null;
       answer = null;
@@ -286,6 +288,7 @@
       // A kind that has nothing left gives way to all.
       if (step.done && kind && !given.kinds.some(([name]) => name === kind)) kind = null;
       answer = given;
+      list.ariaBusy = String(!step.done || !isComplete());
       draw();
       drawn = performance.now();
     }
@@ -311,6 +314,7 @@
       if (options.length) choose((active + step + options.length) % options.length);
     } else if (event.key === "Enter" && inField) options[active]?.click();
     else if (event.key === "Tab" && inField && answer?.kinds.length) nextKind(event.shiftKey ? -1 : 1);
+    else if (event.key === "Escape") dialog.close(); // At once: a browser's own closing comes after the next key.
     else if (isOpener(event)) field.select();
     else return;
     event.preventDefault();

@@ -8,6 +8,7 @@ const archgenSearch = (function () {
   const WEIGHTS = { component: 9, group: 8, node: 6, topic: 6, service: 6, action: 6, message: 6, type: 6, requirement: 6,
     chain: 6, partner: 6, page: 5, chapter: 4, port: 2, field: 2, connection: 1 };
   const FEW = 8; // With fewer exact results, words with one wrong letter are looked for as well.
+  const LONGEST = 60; // Longer words are compared as they are: the pattern of all their mistakes grows with the square.
   const MOST_NEAR = 12; // More words than that no longer help to find what was meant.
 
   const kinds = new Map(); // kind -> { kind, weight, lines, folded, places, texts }
@@ -114,9 +115,10 @@ const archgenSearch = (function () {
         terms.push({ text: small, selector: true, near: [] });
         continue;
       }
-      for (const text of small.split(SEPARATORS)) {
-        if (text) terms.push({ text, selector: false, known: isKnown(text), near: [] });
-      }
+      const texts = small.split(SEPARATORS).filter(Boolean);
+      for (const text of texts) terms.push({ text, selector: false, known: isKnown(text), near: [] });
+      // Signs and pictures alone are no word of the list; they may stand in a line all the same.
+      if (small && !texts.length) terms.push({ text: small, selector: false, known: true, near: [] });
     }
     return terms;
   }
@@ -174,7 +176,7 @@ const archgenSearch = (function () {
 
   // The words nearest to one, the most likely first.
   function nearWords(text) {
-    if (text.length < 3 || !/\p{L}/u.test(text)) return [];
+    if (text.length < 3 || text.length > LONGEST || !/\p{L}/u.test(text)) return [];
     wordList ??= [...words];
     const ranked = (fuzzy.filter(wordList, text) ?? []).map((at) => {
       const word = wordList[at];
