@@ -137,6 +137,7 @@
   let options = [], active = 0, kind = null, answer = null, run = 0, lastSearch = 0, moved = false;
 
   function open() {
+    // Not above a picture that fills the window.
     if (dialog.open || document.querySelector("dialog[open]")) return;
     dialog.showModal();
     field.select();
@@ -332,7 +333,8 @@
 
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.isComposing) return;
-    const writing = event.target.closest("input, textarea, select, [contenteditable]");
+    // A box that was just closed may hold the focus until the page is drawn again.
+    const writing = !dialog.contains(event.target) && event.target.closest("input, textarea, select, [contenteditable]");
     const slash = event.key === "/" && !writing && !event.ctrlKey && !event.metaKey && !event.altKey;
     if (!slash && !isOpener(event)) return;
     event.preventDefault();
