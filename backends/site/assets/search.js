@@ -332,7 +332,7 @@
   const isOpener = (event) => (event.ctrlKey || event.metaKey) && !event.altKey && event.key.toLowerCase() === "k";
 
   document.addEventListener("keydown", (event) => {
-    if (event.defaultPrevented || event.isComposing) return;
+    if (event.defaultPrevented || event.isComposing || dialog.open) return;
     // A box that was just closed may hold the focus until the page is drawn again.
     const writing = !dialog.contains(event.target) && event.target.closest("input, textarea, select, [contenteditable]");
     const slash = event.key === "/" && !writing && !event.ctrlKey && !event.metaKey && !event.altKey;
