@@ -132,13 +132,13 @@
   const dialog = element("dialog", { className: "find-box", ariaLabel: "Search everything" },
     element("div", { className: "field" }, icon("find"), field, count), chips, note,
     element("div", { className: "found" }, clear, list), status, keys);
-  document.body.append(dialog);
 
   let options = [], active = 0, kind = null, answer = null, run = 0, lastSearch = 0, moved = false;
 
   function open() {
     // Not above a picture that fills the window.
     if (dialog.open || document.querySelector("dialog[open]")) return;
+    document.body.append(dialog);
     dialog.showModal();
     field.select();
     load();

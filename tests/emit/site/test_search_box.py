@@ -281,6 +281,7 @@ def test_it_works_where_nothing_can_be_remembered_or_trusted(visit: Open, script
     page = visit(script=script)
     page.keyboard.press("/")
     expect(page.locator(".find-box .heading")).to_have_text(["Open points", "Also understood"])
+    page.keyboard.press("Escape")
     search(page, "navigator")
     assert titles(page)[0] == "Navigator"
 
