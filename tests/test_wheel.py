@@ -78,7 +78,12 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
     with zipfile.ZipFile(built / f"{NAME}-py3-none-any.whl") as wheel:
         held = set(wheel.namelist())
     about = {name.partition("/")[2] for name in held if name.startswith(f"{NAME}.dist-info/")}
-    licences = {"LICENSE", "archgen/emit/fonts/LICENSE.DejaVu", "backends/site/assets/fonts/LICENSE-Inter.txt"}
+    licences = {
+        "LICENSE",
+        "archgen/emit/fonts/LICENSE.DejaVu",
+        "backends/site/assets/fonts/LICENSE-Inter.txt",
+        "backends/site/assets/search/LICENSE-uFuzzy.txt",
+    }
     assert about == {"METADATA", "RECORD", "WHEEL", "entry_points.txt", *(f"licenses/{name}" for name in licences)}
     data = {f"archgen/_data/{path}" for name in DATA for path in below(ROOT / name)}
     expected = {*below(ROOT / "archgen"), *data}
@@ -100,6 +105,8 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
         "emit/fonts/DejaVuSans.ttf",
         "emit/fonts/LICENSE.DejaVu",
         "_data/backends/site/assets/fonts/LICENSE-Inter.txt",
+        "_data/backends/site/assets/search/LICENSE-uFuzzy.txt",
+        "_data/backends/site/assets/search/ufuzzy.js",
         "link/ros_interfaces/jazzy.names.json",
     ],
 )

@@ -11,6 +11,7 @@ from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.syntax.folder_files import read_named_file
 from archgen.views.pages import report_outline
+from archgen.views.search import make_search_entries
 
 MAX_TEMPLATE_BYTES = 200_000_000
 """The largest Word template that is read: as much as one may unpack to."""
@@ -63,6 +64,7 @@ def _start_report(inputs: ProductInputs) -> FinishProduct:
 
 def _start_site(inputs: ProductInputs) -> FinishProduct:
     page_list = inputs.pages
+    search_entries = make_search_entries(inputs.views.lookup, page_list)
 
     def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
         from archgen.emit import site
@@ -75,6 +77,7 @@ def _start_site(inputs: ProductInputs) -> FinishProduct:
             revision=inputs.views.edition.revision,
             notices=report_outline.make_notices(inputs.views.lookup, inputs.views.edition),
             chapter_files=reader.read,
+            search_entries=search_entries,
         )
         return MadeProduct(files, asked_files=reader.asked_files)
 

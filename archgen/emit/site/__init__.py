@@ -17,7 +17,9 @@ from archgen.emit.site.chapter_html import ChapterFiles, ChapterWriter
 from archgen.emit.site.html_blocks import PageWriter
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
+from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
+from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, Paragraph
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ def build_site(  # noqa: PLR0913 - what a site is made of
     revision: str,
     notices: Sequence[Paragraph],
     chapter_files: ChapterFiles,
+    search_entries: Sequence[SearchEntry] = (),
 ) -> FileTree:
     """Build the site. The first page is the start page; `chapter_files` returns the pictures that chapters show.
 
@@ -45,7 +48,11 @@ def build_site(  # noqa: PLR0913 - what a site is made of
     navigation = build_navigation(pages, links, _navigation_kinds(backend))
     chapter_writer = ChapterWriter(chapter_files)
     template = _page_template(backend.folder)
-    files = [*_read_assets(backend.folder), *_picture_files(pictures, links)]
+    files = [
+        *_read_assets(backend.folder),
+        *_picture_files(pictures, links),
+        *build_search_files(search_entries, links),
+    ]
     for page in pages:
         path = links.files[page.path]
         writer = PageWriter(open_page(path, links), pictures, chapter_writer)

@@ -1,0 +1,156 @@
+"""Search entries of the functional level: groups, components, ports, connections, requirements, partners, chains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from archgen.model.component import Component, Connection, Group, Input, Output
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+
+
+def list_owner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
+    """Return the titles of partners, joined by commas."""
+    return ", ".join(lookup.architecture.partners[owner].title for owner in owners)
+
+
+def make_owner_keys(owners: Iterable[str], tags: Iterable[str] = ()) -> tuple[str, ...]:
+    """Return the words that selectors have for owners and tags."""
+    return (*(f"owner:{owner}" for owner in owners), *(f"tag:{tag}" for tag in tags))
+
+
+def make_group_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the shown groups."""
+    for group_id in lookup.shown_groups():
+        group = lookup.architecture.groups[group_id]
+        size = f"group of {inline_text.count_noun(len(group.components), 'component')}"
+        yield SearchEntry(
+            "group",
+            group.title,
+            join_words(size, list_owner_titles(lookup, group.owners)),
+            (f"group:{group.id}",),
+            (group.id, *make_owner_keys(group.owners, group.tags)),
+            to_plain_text(group.description),
+        )
+
+
+def make_component_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the shown components."""
+    for group, component in _shown_components(lookup):
+        tags = dict.fromkeys((*component.tags, *group.tags))
+        yield SearchEntry(
+            "component",
+            component.title,
+            join_words(group.title, list_owner_titles(lookup, component.owners)),
+            (f"component:{component.id}",),
+            (component.id, *make_owner_keys(component.owners, tags)),
+            to_plain_text(component.functionality, component.description),
+        )
+
+
+def make_port_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the inputs and outputs of the shown components."""
+    for group, component in _shown_components(lookup):
+        suffix = join_words(group.title, list_owner_titles(lookup, component.owners))
+        ports: tuple[tuple[str, Input | Output], ...] = (
+            *(("input", port) for port in component.inputs.values()),
+            *(("output", port) for port in component.outputs.values()),
+        )
+        for direction, port in ports:
+            yield SearchEntry(
+                "port",
+                _port_title(component, port.name),
+                join_words(f"{direction} of {suffix}", port.type),
+                (f"table:{direction}s/{component.id}", f"component:{component.id}"),
+                (),
+                to_plain_text(port.description, port.external),
+            )
+
+
+def make_connection_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the connections. One that has an end in scope leads to its reader, or to its source."""
+    architecture = lookup.architecture
+    for connection in architecture.connections:
+        reader = architecture.inputs[connection.input]
+        component = architecture.components[reader.component]
+        sources = dict.fromkeys(architecture.outputs[output].component for output in connection.outputs)
+        types = dict.fromkeys(architecture.outputs[output].type for output in connection.outputs)
+        yield SearchEntry(
+            "connection",
+            f"{_source_title(lookup, connection)} → {_port_title(component, reader.name)}",
+            join_words("connection", *types),
+            (f"table:inputs/{component.id}", *(f"table:outputs/{source}" for source in sources)),
+        )
+
+
+def make_requirement_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield use cases and requirements, also those that components state in their own words."""
+    architecture = lookup.architecture
+    for use_case in architecture.use_cases.values():
+        yield SearchEntry(
+            "use case",
+            f"{use_case.id} {use_case.title}",
+            "use case",
+            (f"use_case:{use_case.id}",),
+            text=to_plain_text(use_case.description),
+        )
+    for requirement in architecture.requirements.values():
+        servers = lookup.components_for_requirement.get(requirement.id, ())
+        served_by = f"served by {', '.join(component.title for component in servers)}" if servers else ""
+        yield SearchEntry(
+            "requirement",
+            f"{requirement.id} {requirement.title}",
+            join_words(", ".join(requirement.use_cases), served_by or "served by no component"),
+            (f"requirement:{requirement.id}",),
+            make_owner_keys((), requirement.tags),
+            to_plain_text(requirement.description),
+        )
+    for _, component in _shown_components(lookup):
+        for use in component.requirements:
+            if not use.is_id:
+                yield SearchEntry(
+                    "requirement", use.text, f"of {component.title}, in its own words", (f"component:{component.id}",)
+                )
+
+
+def make_partner_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the partners."""
+    for partner in lookup.architecture.partners.values():
+        line = join_words("partner", partner.contact)
+        keys = (partner.id, *make_owner_keys((partner.id,)))
+        text = to_plain_text(partner.description)
+        yield SearchEntry("partner", partner.title, line, (f"partner:{partner.id}",), keys, text)
+
+
+def make_chain_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield chains of effect, views and policies."""
+    architecture = lookup.architecture
+    for chain in architecture.chains.values():
+        deadline = f"deadline {chain.deadline}" if chain.deadline else ""
+        line = join_words("chain of effect", deadline, ", ".join(chain.requirements))
+        yield SearchEntry("chain", chain.title, line, (f"chain:{chain.id}", "page:chains"), (chain.id,))
+    for view in architecture.views.values():
+        line = join_words("view", view.show)
+        yield SearchEntry("view", view.title, line, (f"figure:views/{view.id}", "page:views"), (view.id,))
+
+
+def _shown_components(lookup: Lookup) -> Iterator[tuple[Group, Component]]:
+    for group_id in lookup.shown_groups():
+        for component in lookup.shown_components(group_id):
+            yield lookup.architecture.groups[group_id], component
+
+
+def _port_title(component: Component, name: str) -> str:
+    return f"{component.title} · {name}"
+
+
+def _source_title(lookup: Lookup, connection: Connection) -> str:
+    """Return what a connection comes from: an output, or all of a component or group."""
+    architecture = lookup.architecture
+    if connection.kind == "group":
+        return architecture.groups[connection.target].title
+    if connection.kind == "component":
+        return architecture.components[connection.target].title
+    output = architecture.outputs[connection.target]
+    return _port_title(architecture.components[output.component], output.name)

@@ -1,0 +1,129 @@
+"""Search entries of the implementation level: nodes, topics, hosts, types, messages and their fields."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+from archgen.model.known_interfaces import Interface
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys
+from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+
+
+def make_node_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the shown nodes."""
+    architecture = lookup.architecture
+    for node in lookup.shown_nodes():
+        implemented = ", ".join(architecture.components[name].title for name in node.implements)
+        host = architecture.hosts.get(node.host or "")
+        keys = (*([f"host:{host.id}"] if host else []), *make_owner_keys(node.owners, node.tags))
+        yield SearchEntry(
+            "node",
+            node.full_name,
+            join_words(
+                host.title if host else None,
+                f"implements {implemented}" if implemented else None,
+                list_owner_titles(lookup, node.owners),
+            ),
+            (f"node:{node.id}",),
+            (node.id, *([node.package] if node.package else []), *keys),
+            to_plain_text(node.description, *node.parameters),
+        )
+
+
+def make_topic_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield topics, services and actions."""
+    nodes = lookup.architecture.nodes
+    for topic in lookup.architecture.topics.values():
+        writers = dict.fromkeys(nodes[writer.node].id for writer in topic.writers)
+        source = f"from {', '.join(writers)}" if writers else "from nobody"
+        readers = len({reader.node for reader in topic.readers})
+        reader_word = "reader" if topic.flow == "topic" else "client"
+        yield SearchEntry(
+            topic.flow,
+            topic.name,
+            join_words(", ".join(topic.messages), source, inline_text.count_noun(readers, reader_word)),
+            (f"topic:{topic.name}",),
+        )
+
+
+def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield hosts, containers, resources and links."""
+    architecture = lookup.architecture
+    for host in architecture.hosts.values():
+        cores = inline_text.count_noun(host.cores, "core") if host.cores else None
+        keys = (host.id, f"host:{host.id}", *make_owner_keys((), host.tags))
+        text = to_plain_text(host.description)
+        yield SearchEntry("host", host.title, join_words("host", cores), (f"host:{host.id}",), keys, text)
+    for container in architecture.containers.values():
+        line = join_words("container", f"on {container.host}" if container.host else None)
+        yield SearchEntry("container", container.title, line, (f"container:{container.id}",), (container.id,))
+    for resource in architecture.resources.values():
+        line = join_words("resource", f"of {resource.host}" if resource.host else None)
+        yield SearchEntry("resource", resource.title, line, (f"host:{resource.host}",), (resource.id,))
+    for link in architecture.links.values():
+        line = join_words("link", ", ".join(link.connects))
+        yield SearchEntry("link", link.title, line, (f"link:{link.id}", "page:hosts"), (link.id,))
+
+
+def make_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the conceptual types."""
+    for conceptual_type in lookup.architecture.types.values():
+        line = join_words("type", conceptual_type.message, conceptual_type.status)
+        text = to_plain_text(conceptual_type.comment)
+        yield SearchEntry("type", conceptual_type.name, line, (f"type:{conceptual_type.name}",), text=text)
+
+
+def make_message_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the messages in use, with their fields and constants, and the messages that they contain."""
+    interfaces = lookup.architecture.interfaces
+    for message, refs in _collect_messages(lookup).items():
+        definition = interfaces.definitions.get(message)
+        count = sum(map(len, definition.parts)) if definition else 0
+        size = inline_text.count_noun(count, "field") if definition else "definition not at hand"
+        line = join_words(message.split("/")[1].replace("srv", "service").replace("msg", "message"), size)
+        yield SearchEntry(
+            "message", message, line, refs, text=to_plain_text(definition.comment if definition else None)
+        )
+        if definition:
+            yield from _make_field_entries(definition, refs)
+
+
+def _make_field_entries(definition: Interface, refs: tuple[str, ...]) -> Iterator[SearchEntry]:
+    short_name = definition.name.rsplit("/", 1)[1]
+    line = f"of {definition.name}"
+    for part, part_fields in zip(definition.part_names, definition.parts, strict=True):
+        prefix = join_words(short_name, part)
+        for field in part_fields:
+            title = f"{prefix} · {field.name}"
+            text = to_plain_text(field.comment)
+            yield SearchEntry("field", title, join_words(field.type + field.array, line), refs, text=text)
+    for part_constants in definition.constants:
+        for constant in part_constants:
+            title = f"{short_name} · {constant.name}"
+            text = to_plain_text(constant.comment)
+            yield SearchEntry("field", title, join_words(f"{constant.type} = {constant.value}", line), refs, text=text)
+
+
+def _collect_messages(lookup: Lookup) -> dict[str, tuple[str, ...]]:
+    """Return the messages that types and topics use, and those inside of them, with where each is to be seen."""
+    architecture = lookup.architecture
+    users: defaultdict[str, list[str]] = defaultdict(list)
+    for conceptual_type in architecture.types.values():
+        if conceptual_type.message:
+            users[conceptual_type.message].append(f"type:{conceptual_type.name}")
+    for topic in architecture.topics.values():
+        for message in topic.messages:
+            users[message].append(f"topic:{topic.name}")
+    # A message that another one contains is to be seen where that one is. The list grows while it is walked.
+    pending = list(users)
+    for message in pending:
+        definition = architecture.interfaces.definitions.get(message)
+        for field in (field for part in definition.parts for field in part) if definition else ():
+            if "/" in field.type and field.type not in users:
+                users[field.type] = list(users[message])
+                pending.append(field.type)
+    # A few are enough: all but the first count only where the part that a site shows leaves the first one out.
+    return {message: (f"message:{message}", *refs) for message, refs in users.items()}
