@@ -44,8 +44,10 @@ class WorkingLines:
         else:
             has_counts = any(term.events.formula != str(term.events.number) for term in working.terms)
             counts_text = "; of each ceil((t + how much later it may come) / how often)" if has_counts else ""
+            core_text = f", on core {working.core} alone" if working.core is not None else ""
             yield ReasonLine(
-                depth, f"the least t > 0 in which all of this is done is {self._write(working.window)}{counts_text}:"
+                depth,
+                f"the least t > 0 in which all of this is done{core_text} is {self._write(working.window)}{counts_text}:",
             )
             yield from self.list_terms(working.terms, depth + 1)
             yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)

@@ -29,7 +29,7 @@ from archgen.timing.load.event_streams import EventStreams, streams_of_calls
 from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import EntryWay, Priority
-from archgen.timing.load.thread_work import ThreadWork, build_thread, lower_crowded_threads
+from archgen.timing.load.thread_work import EventModels, ThreadWork, build_thread, lower_crowded_threads
 from archgen.timing.load.work_terms import (
     ONCE,
     CountFormulas,
@@ -43,29 +43,22 @@ from archgen.timing.load.work_terms import (
     shorten_working,
 )
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import works_in_order
+from archgen.timing.system.timing_system import TimingSystem
 
 
-def list_plain_workings(state: PropagationState, resource: ProcessingResource, name: str) -> Iterator[FigureWorking]:
+def list_plain_workings(
+    system: TimingSystem, resource: ProcessingResource, models: EventModels, name: str
+) -> Iterator[FigureWorking]:
     """Yield how the response of an activity may have been found on a core where each is looked at by itself."""
-    threads = lower_crowded_threads(
-        state.system,
-        [build_thread(state.system, unit, state.event_models) for unit in (*resource.units, *resource.foreign_units)],
-        state.event_models,
-    )
-    thread = next(each for each in threads if name in each.unit)
-    level = thread.lowest_priority
-    others = [
-        each
-        for each in threads
-        if each is not thread
-        and (level is None or (each.highest_priority is not None and each.highest_priority >= level))
-    ]
-    formulas, budget = CountFormulas(state.system.tick), SearchBudget()
+    thread, others = split_threads(system, resource, models, name)
+    formulas, budget = CountFormulas(system.tick), SearchBudget()
     if any(each.cause for each in (thread, *others)):
         return
     load = GrowingLoad(work for each in others for work in each.works).demand_function()
     own_works = dict(zip(thread.unit, thread.works, strict=True))
-    if len(thread.unit) == 1 and (level is not None or not others) and own_works[name].streams:
+    is_alone = thread.lowest_priority is not None or not others
+    if len(thread.unit) == 1 and is_alone and own_works[name].streams and thread.in_order:
         count, arrival, finish = find_worst_activation(own_works[name], load, budget)
         own_term = WorkTerm(((name, own_works[name].cost),), EventCount(count, str(count)), "its own")
         terms = [own_term, *_count_threads(formulas, others, finish)]
@@ -80,13 +73,39 @@ def list_plain_workings(state: PropagationState, resource: ProcessingResource, n
     yield FigureWorking(window, window, group_terms(terms))
 
 
+def split_threads(
+    system: TimingSystem, resource: ProcessingResource, models: EventModels, name: str
+) -> tuple[ThreadWork, list[ThreadWork]]:
+    """Return the thread of an activity on a core, and the others there for which it may have to wait."""
+    threads = lower_crowded_threads(
+        system,
+        [build_thread(system, unit, models) for unit in (*resource.units, *resource.foreign_units)],
+        models,
+    )
+    thread = next(each for each in threads if name in each.unit)
+    level = thread.lowest_priority
+    others = [
+        each
+        for each in threads
+        if each is not thread
+        and (level is None or (each.highest_priority is not None and each.highest_priority >= level))
+    ]
+    return thread, others
+
+
 def list_dedicated_workings(state: PropagationState, name: str) -> Iterator[FigureWorking]:
     """Yield how the response of an activity on a core of its own was found."""
     streams, cost = state.event_models[name], state.system.activities[name].wcet
     if not isinstance(streams, UnknownCause) and cost is not None:
-        count, arrival, finish = find_worst_activation(ActivityWork(cost, streams), NO_DEMAND, SearchBudget())
-        term = WorkTerm(((name, cost),), EventCount(count, str(count)), "its own")
-        yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
+        work = ActivityWork(cost, streams)
+        if works_in_order(state.system, state.system.activities[name]):
+            count, arrival, finish = find_worst_activation(work, NO_DEMAND, SearchBudget())
+            term = WorkTerm(((name, cost),), EventCount(count, str(count)), "its own")
+            yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
+            return
+        window = longest_busy_period(GrowingLoad((work,)).demand_function(), SearchBudget())
+        events = CountFormulas(state.system.tick).count_events(streams, window)
+        yield FigureWorking(window, window, group_terms([WorkTerm(((name, cost),), events, "its own")]))
 
 
 def _count_threads(formulas: CountFormulas, threads: Iterable[ThreadWork], window: int) -> Iterator[WorkTerm]:
@@ -130,7 +149,7 @@ class InnerCoreWorkings:
         )
         if start_costs:
             yield self._add_start(bound, start_costs)
-        if thread.lowest_priority is not None and len(thread.unit) == 1:
+        if thread.lowest_priority is not None and len(thread.unit) == 1 and thread.in_order:
             streams = self._activation_streams(ways, bound)
             if streams:
                 lead = min(way.best_before for way in ways)

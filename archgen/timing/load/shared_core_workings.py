@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from archgen.frozen import dataclass
@@ -14,6 +14,7 @@ from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
+from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.work_terms import (
     CountFormulas,
     EventCount,
@@ -33,6 +34,8 @@ class SharedCoreWorkings:
     solver: SharedCoreSolver
     state: PropagationState
     formulas: CountFormulas
+    responses: Mapping[str, WorstResponse]
+    """What the solver found, before anything else limits it."""
 
     def list_responses(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity may have been found."""

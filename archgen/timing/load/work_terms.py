@@ -148,6 +148,8 @@ class FigureWorking:
     beside_terms: tuple[WorkTerm, ...] = ()
     shares: tuple[ThreadShare, ...] = ()
     pending: int = 0
+    core: int | None = None
+    """The core that alone gives the figure of what may run on several."""
 
     @property
     def work(self) -> int:

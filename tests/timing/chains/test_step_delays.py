@@ -343,7 +343,7 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "  a takes 1 ms at most @0:0",
         "  b waits 21 ms: reads /g/a/out every 20 ms at the latest, which may wait 1 ms to be stored @14:48",
         "  b takes 3 ms at most @0:0",
-        "  10 ms + 1 ms + 20 ms + 3 ms = 34 ms @0:0",
+        "  10 ms + 1 ms + 21 ms + 3 ms = 35 ms @0:0",
         "  why an element takes so long: --why ELEMENT @0:0",
     ]
     assert explain(analysis, model, "far") == [
@@ -358,7 +358,7 @@ def test_why_links_hosts_and_declared_responses() -> None:
         "  link to d: 2 ms @0:0",
         "  d waits 40 ms: reads /g/c/out every 40 ms at the latest @16:48",
         "  d takes 5 ms at most @0:0",
-        "  10 ms + 1 ms + 20 ms + 3 ms + 2 ms + 40 ms + 5 ms + 2 ms + 40 ms + 5 ms = 128 ms @0:0",
+        "  10 ms + 1 ms + 21 ms + 3 ms + 2 ms + 40 ms + 5 ms + 2 ms + 40 ms + 5 ms = 129 ms @0:0",
         "  why an element takes so long: --why ELEMENT @0:0",
         "  assumes: queueing on link lan (up to 1 ms) is within its latency @0:0",
         "  assumes: link wan keeps its written latency, though 10 ms of traffic can wait for it @0:0",
