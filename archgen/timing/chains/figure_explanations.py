@@ -210,6 +210,7 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
         yield from _working_lines(analysis, name, depth + 1)
         for formula, words in list_lateness_formulas(analysis, name):
             yield ReasonLine(depth + 1, f"late {formula}: {words}")
+        yield from _storing_lines(analysis, name, depth)
 
 
 def _working_lines(analysis: Analysis, name: str, depth: int) -> Iterator[ReasonLine]:
@@ -234,6 +235,23 @@ def _working_lines(analysis: Analysis, name: str, depth: int) -> Iterator[Reason
             yield from lines.explain_response(run_working, depth)
         else:
             yield ReasonLine(depth, "the same work as above, and nothing is taken off")
+
+
+def _storing_lines(analysis: Analysis, name: str, depth: int) -> Iterator[ReasonLine]:
+    """Explain how long a message that an activity only reads may wait to be stored."""
+    wait = analysis.storing_waits.get(name)
+    if analysis.state is None or wait is None or not wait.value:
+        return
+    time = figure_wording.format_duration(wait.value)
+    yield ReasonLine(
+        depth,
+        f"{name}: what it only reads may wait {time} to be stored, and be missed by an activation that comes until then",
+    )
+    working = ResponseWorkings(analysis.state).find_storing_wait(name)
+    if working is not None:
+        yield from WorkingLines(analysis.system.tick).explain_response(working, depth + 1)
+    else:
+        yield ReasonLine(depth + 1, "as long as its thread or its cores may be busy with other work")
 
 
 def _describe_unfound_response(analysis: Analysis, name: str) -> str:

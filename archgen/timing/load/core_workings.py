@@ -5,9 +5,10 @@ Each function offers the ways in which the analysis may have found a figure; the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from fractions import Fraction
+from types import MappingProxyType
 
 from archgen.frozen import dataclass
 from archgen.timing.figures.timing_values import UnknownCause
@@ -46,6 +47,8 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.thread_pools import works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
+OWN_JOBS = "its own jobs before the one that comes too soon"
+
 
 def list_plain_workings(
     system: TimingSystem, resource: ProcessingResource, models: EventModels, name: str
@@ -71,6 +74,27 @@ def list_plain_workings(
     window = longest_busy_period(add_demands(demand, DemandFunction(lambda _: start_work)), budget, start_work)
     terms = [*_count_threads(formulas, (thread, *others), window), WorkTerm(tuple(start_costs), ONCE, "at the start")]
     yield FigureWorking(window, window, group_terms(terms))
+
+
+def find_plain_hold(
+    system: TimingSystem, resource: ProcessingResource, models: EventModels, name: str, hold: int
+) -> FigureWorking | None:
+    """Return what holds up the storing of an activity's inputs for so long, on such a core; None where it is not known."""
+    thread, others = split_threads(system, resource, models, name)
+    if any(each.cause for each in (thread, *others)):
+        return None
+    formulas = CountFormulas(system.tick)
+    terms = [
+        WorkTerm(((name, work.cost),), formulas.count_held_jobs(work.streams, hold), OWN_JOBS)
+        for each, work in zip(thread.unit, thread.works, strict=True)
+        if each == name
+    ]
+    terms += [
+        term
+        for term in _count_threads(formulas, (thread, *others), hold)
+        if all(each != name for each, _ in term.parts)
+    ]
+    return FigureWorking(hold, hold, group_terms(terms), is_hold=True)
 
 
 def split_threads(
@@ -230,15 +254,32 @@ class InnerCoreWorkings:
         terms = [*self._list_terms(bound, window), WorkTerm(start_costs, ONCE, "at the start")]
         return FigureWorking(window, window, group_terms(terms))
 
-    def _list_terms(self, bound: LevelBound, window: int, but_name: str = "") -> Iterator[WorkTerm]:
-        """Yield the work of a level in a window (in ticks), but that of `but_name`."""
-        counts: dict[Origin, EventCount] = {}
+    def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
+        """Yield what may hold up the storing of an activity's inputs for so long."""
+        bound = self.solver.bounds[self.solver.core.thread_of[name].lowest_priority]
+        origin = Origin("activity", name)
+        streams = self._streams_of(bound, origin)
+        if name in self.solver.core.inner_triggers.entry_ids and streams:
+            own_jobs = {origin: self.formulas.count_held_jobs(streams, hold)}
+            terms = group_terms(self._list_terms(bound, hold, own_counts=own_jobs))
+            yield FigureWorking(hold, hold, terms, is_hold=True)
+        yield replace(self._whole_period(bound, ()), is_hold=True)
+
+    def _list_terms(
+        self,
+        bound: LevelBound,
+        window: int,
+        but_name: str = "",
+        own_counts: Mapping[Origin, EventCount] = MappingProxyType({}),
+    ) -> Iterator[WorkTerm]:
+        """Yield the work of a level in a window (in ticks), but that of `but_name`; of own jobs so much is counted."""
+        counts = dict(own_counts)
         for name, activations in bound.demand.level.activations.items():
             cost = self.solver.core.system.activities[name].wcet
             for origin, multiplicity in activations.items() if cost and name != but_name else ():
                 if origin not in counts:
                     counts[origin] = self._count_origin(bound, origin, window)
-                reason = self._describe_origin(origin)
+                reason = OWN_JOBS if origin in own_counts else self._describe_origin(origin)
                 yield WorkTerm(((name, (cost or 0) * multiplicity),), counts[origin], reason)
 
     def _count_origin(self, bound: LevelBound, origin: Origin, window: int) -> EventCount:

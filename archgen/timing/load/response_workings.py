@@ -6,12 +6,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import field, replace
 
 from archgen.frozen import dataclass
+from archgen.timing.analysis import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import DivergedError
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import CoreSolver
-from archgen.timing.load.core_workings import InnerCoreWorkings, list_dedicated_workings, list_plain_workings
+from archgen.timing.load.core_workings import (
+    InnerCoreWorkings,
+    find_plain_hold,
+    list_dedicated_workings,
+    list_plain_workings,
+)
 from archgen.timing.load.event_models import PropagationState, arriving_model
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
@@ -93,6 +99,28 @@ class ResponseWorkings:
             return
         yield from workings.list_responses(name)
         yield from self._list_single_cores(name, workings)
+
+    def find_storing_wait(self, name: str) -> FigureWorking | None:
+        """Return how long what an activity only reads may wait to be stored, as work; None where that is not known."""
+        wait = self.state.storing_waits.get(name)
+        if wait is None or not wait.value:
+            return None
+        return choose_working(_until_diverged(self._list_holds(name, wait.value, wait.tier)), wait.value)
+
+    def _list_holds(self, name: str, hold: int, tier: ResponseTier) -> Iterator[FigureWorking]:
+        resource = self.find_resource(name) or ProcessingResource(name, None, 1, ((name,),))
+        workings = self._work_out_core(name, resource) if name in self._step_of else None
+        if resource.waits or self.state.system.activities[name].uses:
+            return
+        if tier == "whole host":
+            workings = self._work_out_host(resource.host or "")
+        if workings is not None:
+            yield from workings.list_holds(name, hold)
+            return
+        models = self._models_on(resource)
+        working = find_plain_hold(self.state.system, resource, models, name, hold)
+        if working is not None:
+            yield working
 
     def _models_on(self, resource: ProcessingResource) -> dict[str, EventStreams | UnknownCause]:
         """Return the event models as a resource sees them."""

@@ -60,6 +60,19 @@ def recompute_response(lines: list[str], name: str) -> Fraction | None:
     return total or None
 
 
+def recompute_storing_wait(lines: list[str], name: str) -> Fraction | None:
+    """Add up the work that may hold up what is only to be stored; None where nothing waits, 0 where no work is listed."""
+    start = next((at for at, line in enumerate(lines) if line.startswith(f"{name}: what it only reads may wait")), None)
+    if start is None:
+        return None
+    below = lines[start + 1 :]
+    end = next((at for at, line in enumerate(below) if re.match(r"\S+: ", line)), len(below))
+    blocked = [next(read_equations(line)).computed for line in below[:end] if line.startswith("B = (")]
+    own_end = next((at for at, line in enumerate(below) if line.startswith("A = ")), end)
+    own = [next(read_equations(line)).computed for line in below[:own_end] if re.match(r"\d+ x ", line)]
+    return sum((*own, *blocked), Fraction(0))
+
+
 def is_close(computed: Fraction, exact: Fraction) -> bool:
     """Whether a figure is right, as far as it can be from figures with three decimals."""
     return abs(computed - exact) <= max(exact / 2000, Fraction(1, 2000))
@@ -158,6 +171,20 @@ def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_bu
     assert min(blocked, added) > 5
 
 
+def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_listed(
+    case_study: Results, unpinned_case_study: Results
+) -> None:
+    counts: list[int] = []
+    for results in (case_study, unpinned_case_study):
+        waits = {name: wait.value or Fraction(0) for name, wait in results[0].storing_waits.items()}
+        for name in results[0].system.activities:
+            computed = recompute_storing_wait(print_reasons(results, name), name)
+            assert (computed is None) == (not waits.get(name)), name
+            assert computed is None or is_close(computed, waits[name]), (name, computed, waits[name])
+        counts.append(sum(1 for wait in waits.values() if wait))
+    assert min(counts) > 5
+
+
 @pytest.mark.parametrize(
     "text", [random_text(seed) for seed in range(60)] + [random_style_text(seed) for seed in range(28)]
 )
@@ -172,3 +199,10 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> Non
         else:
             assert working is not None, name
             assert (working.value, working.is_consistent) == (response.value, True)
+        wait = analysis.state.storing_waits.get(name)
+        storing_working = workings.find_storing_wait(name)
+        if wait is None or not wait.value:
+            assert storing_working is None
+        else:
+            assert storing_working is not None, name
+            assert (storing_working.value, storing_working.is_consistent) == (wait.value, True)
