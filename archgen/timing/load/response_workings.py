@@ -12,17 +12,13 @@ from archgen.timing.load.busy_windows import DivergedError
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import CoreSolver
-from archgen.timing.load.core_workings import (
-    InnerCoreWorkings,
-    find_plain_hold,
-    list_dedicated_workings,
-    list_plain_workings,
-)
+from archgen.timing.load.core_workings import InnerCoreWorkings
 from archgen.timing.load.event_models import PropagationState, arriving_model
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.plain_core_workings import find_plain_hold, list_dedicated_workings, list_plain_workings
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import open_budget
 from archgen.timing.load.shared_core_responses import SharedCoreSolver

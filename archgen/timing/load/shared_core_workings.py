@@ -10,12 +10,12 @@ from archgen.frozen import dataclass
 from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.core_paths import CorePath
-from archgen.timing.load.core_workings import OWN_JOBS
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import split_lanes
+from archgen.timing.load.plain_core_workings import OWN_JOBS
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
 from archgen.timing.load.thread_work import WorstResponse
