@@ -14,7 +14,7 @@ Read the folders in this order; each one imports only from those before it and f
   `event_models` (what is activated, arrives and leaves), `load_system` (callbacks that store, priorities that count),
   `storing_waits`, `event_propagation` (all resources, to a fixed point), `link_queueing` (links as well); `host_loads` and
   `host_verdicts`; last, for whoever asks why, how each figure comes about: `work_terms`,
-  `plain_core_workings`, `core_workings`, `shared_core_workings`, `response_workings`.
+  `plain_core_workings`, `core_workings`, `shared_core_workings`, `queue_workings`, `response_workings`.
 - `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`, `activation_rates`,
   `triggered_rates`, `output_rates`; then `link_traffic`, `link_workings`, `edge_fit`, `service_waiting`.
 - `chains`: end to end. `trigger_arrivals` and `step_delays` (what a step adds), `cost_network` and `path_search` (which

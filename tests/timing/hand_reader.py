@@ -18,7 +18,8 @@ _UNITS = {
 _TOKEN = re.compile(
     r"(?P<figure>~?\d+(?:\.\d+)? (?:ns|us|ms|s|Hz|%|kB/s|MB/s|B/s|kB|MB|B)(?![\w/]))"
     r"|(?P<number>~?\d+(?:\.\d+)?(?![\w.]))|(?P<function>(?:ceil|floor|min|max)(?=\())|(?P<sign>[-+(),]|[/x](?= ))"
-    r"|(?P<equals><?=)|(?P<word>\S+\[[^]]*\]|\S+?(?=[,:;)]?(?:\s|$)))|(?P<stop>[:;])"
+    r"|(?P<equals><?=)|(?P<word>\S+\[[^]]*\]|\S+ stores \S+?(?=[,:;)]?(?:\s|$))"
+    r"|\S+?(?=[,:;)]*(?:\s|$)))|(?P<stop>[:;])"
 )
 
 

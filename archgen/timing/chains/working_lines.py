@@ -50,6 +50,8 @@ class WorkingLines:
                 if working.is_hold
                 else f"the least t > 0 in which all of this is done{core_text}"
             )
+            if working.is_queue:
+                head, counts_text = "what is done in the queue until its end, its own work included,", ""
             yield ReasonLine(depth, f"{head} is {self._write(working.window)}{counts_text}:")
             yield from self.list_terms(working.terms, depth + 1)
             yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
@@ -115,7 +117,8 @@ class WorkingLines:
         reasons: list[str] = []
         if working.arrival:
             parts.append(self._write(working.arrival))
-            reasons.append(f"activation {working.activation} comes {parts[-1]} after the first at the earliest")
+            who = "it" if working.is_queue else f"activation {working.activation}"
+            reasons.append(f"{who} comes {parts[-1]} after the first at the earliest")
         if working.lead:
             parts.append(self._write(working.lead))
             reasons.append(

@@ -18,7 +18,11 @@ from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.load_system import list_written_priorities
+from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.plain_core_workings import find_plain_hold, list_dedicated_workings, list_plain_workings
+from archgen.timing.load.queue_responses import QUEUE_TIERS, find_core_queue
+from archgen.timing.load.queue_workings import list_queue_workings
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import open_budget
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
@@ -89,12 +93,30 @@ class ResponseWorkings:
         if self.state.responses[name].tier == "whole host":
             yield from self._list_whole_host(name, resource)
             return
+        if self.state.responses[name].tier in QUEUE_TIERS:
+            yield from self._list_queue(name, resource)
+            return
         workings = self._work_out_core(name, resource)
         if workings is None:
             yield from list_plain_workings(self.state.system, resource, self._models_on(resource), name)
             return
         yield from workings.list_responses(name)
         yield from self._list_single_cores(name, workings)
+
+    def _list_queue(self, name: str, resource: ProcessingResource) -> Iterator[FigureWorking]:
+        """Yield how the order that is written for a queue bounds a response."""
+        state, workings = self.state, self._work_out_core(name, resource)
+        priorities = list_written_priorities(self.written_state.system, state.system)
+        queue, response = find_core_queue(state.system, resource, priorities), state.responses[name].value
+        if queue is None or response is None or isinstance(workings, SharedCoreWorkings):
+            return
+        model_of = state.event_models.__getitem__
+        if workings is not None:
+            solver = workings.solver
+            # A solver does its work once.
+            ways_to = CoreSolver(solver.core, solver.find_model, solver.budget).solve().ways_to
+            model_of = OrderedCore(queue, solver.core.inner_triggers, solver.find_model, ways_to).find_activation_model
+        yield from list_queue_workings(queue, model_of, name, response, CountFormulas(state.system.tick))
 
     def find_storing_wait(self, name: str) -> FigureWorking | None:
         """Return how long what an activity only reads may wait to be stored, as work; None where that is not known."""

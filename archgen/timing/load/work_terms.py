@@ -84,6 +84,11 @@ class CountFormulas:
         formula = self._write_periods([window, jitter], period, 1).removeprefix("ceil")
         return EventCount(number, f"floor{formula}")
 
+    def count_until(self, streams: EventStreams, time: int) -> EventCount:
+        """Count the events of a window with both of its ends."""
+        number, before = max_arrivals(streams, time + 1), self.count_held_jobs(streams, time)
+        return EventCount(number, f"{before.formula} + 1" if before.formula != str(before.number) else str(number))
+
     def count_gate(self, rule: GateRule, inputs: Sequence[EventCount], window: int) -> EventCount:
         """Count what a gate lets through, of the events at its inputs."""
         number = rule.count_leaving([count.number for count in inputs], window)
@@ -161,6 +166,8 @@ class FigureWorking:
     pending: int = 0
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
+    is_queue: bool = False
+    """Whether `window` is the work that comes before the end of an activation in a queue, itself included."""
     is_hold: bool = False
     """Whether `window` is the longest time in which there is so much to do, until an activation that is not counted."""
 

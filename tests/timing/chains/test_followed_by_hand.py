@@ -12,12 +12,14 @@ from archgen import pipeline
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.chains.figure_explanations import explain_word
+from archgen.timing.load.queue_responses import QUEUE_TIERS
 from archgen.timing.load.response_workings import ResponseWorkings
 from archgen.timing.run_analysis import analyse_architecture
 from tests.running import RAMCIP
 from tests.timing.hand_reader import read_equations
 from tests.timing.random_styles import random_style_text
 from tests.timing.random_systems import architecture, random_text
+from tests.timing.random_threads import random_threads_text
 from tests.timing.test_unpinned_case_study import copy_without_cores
 
 Results = tuple[Analysis, dict[str, ChainResult]]
@@ -206,3 +208,14 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> Non
         else:
             assert storing_working is not None, name
             assert (storing_working.value, storing_working.is_consistent) == (wait.value, True)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_responses_of_threads_and_queues_follow_from_the_work_that_is_listed(seed: int) -> None:
+    model = architecture(random_threads_text(seed))
+    results = analyse_architecture(model), dict[str, ChainResult]()
+    for name, response in results[0].responses.items():
+        lines = print_reasons(results, name)
+        assert [(line, each) for line in lines for each in read_equations(line) if not each.holds] == [], name
+        if response.tier in QUEUE_TIERS | {"host", "priorities"} and response.worst.value:
+            assert is_close(recompute_response(lines, name) or Fraction(0), response.worst.value), (name, response.tier)
