@@ -10,11 +10,9 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.load.response_workings import ResponseWorkings
 
 
-def list_working_lines(analysis: Analysis, name: str, depth: int) -> Iterator[ReasonLine]:
+def list_working_lines(analysis: Analysis, workings: ResponseWorkings, name: str, depth: int) -> Iterator[ReasonLine]:
     """Explain what a response is made of, and the time of the longest run that ends with the activity."""
-    if analysis.state is None:
-        return
-    workings, lines = ResponseWorkings(analysis.state), WorkingLines(analysis.system.tick)
+    lines = WorkingLines(analysis.system.tick)
     working = workings.find_response(name)
     if working is not None:
         yield from lines.explain_response(working, depth)
@@ -34,17 +32,17 @@ def list_working_lines(analysis: Analysis, name: str, depth: int) -> Iterator[Re
             yield ReasonLine(depth, "the same work as above, and nothing is taken off")
 
 
-def list_storing_lines(analysis: Analysis, name: str, depth: int) -> Iterator[ReasonLine]:
+def list_storing_lines(analysis: Analysis, workings: ResponseWorkings, name: str, depth: int) -> Iterator[ReasonLine]:
     """Explain how long a message that an activity only reads may wait to be stored."""
     wait = analysis.storing_waits.get(name)
-    if analysis.state is None or wait is None or not wait.value:
+    if wait is None or not wait.value:
         return
     time = figure_wording.format_duration(wait.value)
     yield ReasonLine(
         depth,
-        f"{name}: what it only reads may wait {time} to be stored, and be missed by an activation that comes until then",
+        f"{name}: what it only reads may wait {time} to be stored, and is missed by an activation until then",
     )
-    working = ResponseWorkings(analysis.state).find_storing_wait(name)
+    working = workings.find_storing_wait(name)
     if working is not None:
         yield from WorkingLines(analysis.system.tick).explain_response(working, depth + 1)
     else:

@@ -129,7 +129,7 @@ def _list_rounds(task: QueuedTask, tasks: Sequence[QueuedTask], response: int) -
 def _count_until(task: QueuedTask, time: int, formulas: CountFormulas) -> WorkTerm:
     """Count what comes in a closed window, nothing where that ends before it begins."""
     count = formulas.count_until(task.streams, time) if time >= 0 else EventCount(0, "0")
-    reason = f"up to {formulas.write_duration(time)}" if time >= 0 else ""
+    reason = f"those that come until {formulas.write_duration(time)}" if time >= 0 else ""
     return WorkTerm(((task.name, task.cost),), count, reason)
 
 
