@@ -8,7 +8,6 @@ from operator import attrgetter
 
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason, ResourceLoad, ResponseTime
-from archgen.timing.load.event_propagation import split_resources
 from archgen.timing.load.host_loads import (
     build_response_times,
     build_run_responses,
@@ -21,7 +20,7 @@ from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
-from archgen.timing.system.core_placement import find_resources
+from archgen.timing.system.core_placement import find_resources, split_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
 

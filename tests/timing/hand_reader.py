@@ -17,8 +17,9 @@ _UNITS = {
 """In ns and bytes."""
 _TOKEN = re.compile(
     r"(?P<figure>~?\d+(?:\.\d+)? (?:ns|us|ms|s|Hz|%|kB/s|MB/s|B/s|kB|MB|B)(?![\w/]))"
-    r"|(?P<number>~?\d+(?:\.\d+)?(?![\w.]))|(?P<function>(?:ceil|min|max)(?=\())|(?P<sign>[-+(),]|[/x](?= ))"
-    r"|(?P<equals><?=)|(?P<word>\S+\[[^]]*\]|\S+?(?=[,:;)]?(?:\s|$)))|(?P<stop>[:;])"
+    r"|(?P<number>~?\d+(?:\.\d+)?(?![\w.]))|(?P<function>(?:ceil|floor|min|max)(?=\())|(?P<sign>[-+(),]|[/x](?= ))"
+    r"|(?P<equals><?=)|(?P<word>\S+\[[^]]*\]|\S+ stores \S+?(?=[,:;)]?(?:\s|$))"
+    r"|\S+?(?=[,:;)]*(?:\s|$)))|(?P<stop>[:;])"
 )
 
 
@@ -49,8 +50,14 @@ def read_equations(text: str) -> Iterator[Equation]:
             terms = " ".join(_write_term(*each) for each in left)
             is_rounded = "~" in text or "%" in right[1]
             slack = Fraction(1, 10**6) if is_rounded else Fraction(0)
-            names = {"F": Fraction, "min": min, "max": max, "ceil": lambda part, slack=slack: math.ceil(part - slack)}
-            computed = Fraction(eval(terms, {"__builtins__": {}}, names))  # noqa: S307 - digits, signs and three functions
+            names = {
+                "F": Fraction,
+                "min": min,
+                "max": max,
+                "ceil": lambda part, slack=slack: math.ceil(part - slack),
+                "floor": lambda part, slack=slack: math.floor(part + slack),
+            }
+            computed = Fraction(eval(terms, {"__builtins__": {}}, names))  # noqa: S307 - digits, signs and four functions
             yield Equation(computed, Fraction(eval(_write_term(*right), {"__builtins__": {}}, names)), is_rounded)  # noqa: S307
 
 

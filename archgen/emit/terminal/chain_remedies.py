@@ -10,6 +10,7 @@ from archgen.diagnostics.text_columns import TextRow
 from archgen.simulation.chain_evidence import ChainEvidence
 from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.figures import figure_wording
 from archgen.timing.search.proving_changes import ChainRemedy
 
@@ -53,6 +54,14 @@ def describe_remedy(remedy: ChainRemedy) -> tuple[str, ...]:
         ), f"then at most {figure_wording.format_duration(remedy.bound.value or Fraction(0))}"
     more_text = "; more could be tried" if remedy.is_cut else ""
     return (f"nothing of what was tried: {describe_tried(remedy)}{more_text}",)
+
+
+def replace_advice(advice: ChainAdvice, remedy: ChainRemedy | None) -> ChainAdvice:
+    """Return the sentences on a chain, with the change that proves it as what to do, where one was found."""
+    if remedy is None or not remedy.changes:
+        return advice
+    change, bound = describe_remedy(remedy)
+    return advice._replace(first_step=f"This would prove it, found by trying: {change} ({bound}).")
 
 
 def describe_tried(remedy: ChainRemedy) -> str:

@@ -33,7 +33,10 @@ def format_timing(
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
     sections = (
         ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values(), evidence)),
-        ("What is late or not proven to be in time, why, and what to do", _advice_rows(analysis, chains.values())),
+        (
+            "What is late or not proven to be in time, why, and what to do",
+            _advice_rows(analysis, chains.values(), evidence),
+        ),
         (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(chains, evidence)),
         ("Hosts", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
@@ -80,12 +83,13 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
         )
 
 
-def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
     """Yield three sentences on each chain that does not surely meet its deadline, misses first."""
     for verdict in ("missed", "not proven", "open"):
         for result in chains:
             advice = advise_on_chain(analysis, result) if result.verdict == verdict else None
             if advice is not None:
+                advice = chain_remedies.replace_advice(advice, evidence.remedies.get(result.id))
                 yield from zip((result.id, "", ""), (sentence for sentence in advice if sentence), strict=False)
 
 
@@ -303,12 +307,12 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     yield from align_rows(rows, width)
     if result.id in evidence.witnesses:
         yield f"  {chain_remedies.describe_witness(result.id, evidence.witnesses[result.id])}"
-    advice = advise_on_chain(analysis, result)
+    advice, remedy = advise_on_chain(analysis, result), evidence.remedies.get(result.id)
     if advice is not None:
         yield ""
-        yield from (f"  {sentence}" for sentence in advice if sentence)
-    if result.id in evidence.remedies:
-        yield f"  what would prove it: {', '.join(chain_remedies.describe_remedy(evidence.remedies[result.id]))}"
+        yield from (f"  {sentence}" for sentence in chain_remedies.replace_advice(advice, remedy) if sentence)
+    if remedy is not None and (advice is None or not remedy.changes):
+        yield f"  what would prove it: {', '.join(chain_remedies.describe_remedy(remedy))}"
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 

@@ -98,7 +98,7 @@ class TraceRegistry:
 
     def _find_only_node(self, process: Process) -> str:
         names = self._names_by_process.get(process, set()) if process[1] else set()
-        return next(iter(names)) if len(names) == 1 else ""
+        return min(names) if len(names) == 1 else ""
 
     def _find_named(self, table: str, process: Process, handle: str) -> tuple[str, str] | None:
         """Return the full name of the node that something belongs to, and its own name."""

@@ -5,18 +5,20 @@ Nothing is tried out here: what to do follows from the largest part alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Literal, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ResponseTier
+from archgen.timing.chains.gap_formulas import find_storing_part
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE, is_boundless
 from archgen.timing.system.core_placement import is_missing_cores
+from archgen.timing.system.thread_pools import name_lane
 
 _NAMED_LOADS = 3
 """So many of the elements that load a host most are named."""
@@ -44,7 +46,7 @@ def advise_on_chain(analysis: Analysis, result: ChainResult) -> ChainAdvice | No
     return ChainAdvice(
         _describe_lateness(analysis, result, result.deadline.value),
         _describe_parts(analysis, parts[:2]),
-        _suggest_for_cause(analysis, result) or (_suggest_for_part(analysis, parts[0]) if parts else ""),
+        _suggest_for_cause(analysis, result) or (_suggest_for_part(analysis, parts[0], result.terms) if parts else ""),
     )
 
 
@@ -171,14 +173,57 @@ def _suggest_figure(analysis: Analysis, name: str) -> str:
     return f"Measure how often {name} works and write it (`rate:`)" if is_unpaced else ""
 
 
-def _suggest_for_part(analysis: Analysis, part: _ChainPart) -> str:
+def _suggest_for_part(analysis: Analysis, part: _ChainPart, terms: Sequence[ChainTerm]) -> str:
     """Suggest what makes the largest part smaller."""
     name = part.term.activity
     if part.kind == "link":
         return f"Send less to {name}, or measure its link and write what it really takes (`latency:`)."
     if part.kind == "waits":
-        return _suggest_for_wait(analysis, name)
-    return _suggest_for_response(analysis, name)
+        is_mostly_stored = 2 * find_storing_part(analysis, name, part.duration) > part.duration
+        return _suggest_for_storing(analysis, name) if is_mostly_stored else _suggest_for_wait(analysis, name)
+    return _suggest_for_run(analysis, part, terms) or _suggest_for_response(analysis, name)
+
+
+def _suggest_for_storing(analysis: Analysis, name: str) -> str:
+    """Suggest what lets the callback that stores what an element reads have its turn sooner."""
+    system, activity = analysis.system, analysis.system.activities[name]
+    lane = name_lane(system, activity)
+    mates = [other.id for other in system.activities.values() if other.id != name and name_lane(system, other) == lane]
+    if mates:
+        step = f"Let fewer callbacks share a thread with {name} (a container of its own, or more `threads:`)"
+    elif activity.host is None:
+        step = f"Let {name} work less often, or for a shorter time (`wcet:`)"
+    elif system.cores.get(activity.host) == 1 or len(activity.cores) == 1:
+        now = f", now {activity.priority}" if activity.priority is not None else ""
+        other_way = f"move work off {activity.host} (`host:`)" if not activity.cores else "a core of its own (`core:`)"
+        step = f"Give {name} a higher priority than the others there (`priority:`{now}), or {other_way}"
+    else:
+        step = f"Give {name} a core of its own (`core:`), or a priority above the others there (`priority:`)"
+    return f"{step}, so that what it reads is stored sooner; `stored: at_once` only where nothing has to store it."
+
+
+def _suggest_for_run(analysis: Analysis, part: _ChainPart, terms: Sequence[ChainTerm]) -> str:
+    """Suggest what shortens a run of several steps on several cores; empty where there is none, or it is mostly work."""
+    name = part.term.activity
+    activity, response = analysis.system.activities[name], analysis.responses[name]
+    own_work = (activity.wcet or 0) * analysis.system.tick
+    steps = _list_run(analysis, part, terms)
+    if response.tier not in {"cores", "whole host"} or len(steps) == 1 or 2 * own_work >= part.duration:
+        return ""
+    return (
+        f"Give {join_words(steps)}, which run one after the other, cores of {activity.host} with little else on them "
+        "(`core:`), or a priority above the others there (`priority:`)."
+    )
+
+
+def _list_run(analysis: Analysis, part: _ChainPart, terms: Sequence[ChainTerm]) -> list[str]:
+    """Return the steps of a chain of which each fires the next on the host of a part, with that of the part."""
+    first = last = terms.index(part.term)
+    while first and terms[first].activity in analysis.runs:
+        first -= 1
+    while last + 1 < len(terms) and terms[last + 1].activity in analysis.runs:
+        last += 1
+    return [term.activity for term in terms[first : last + 1]]
 
 
 def _suggest_for_wait(analysis: Analysis, name: str) -> str:

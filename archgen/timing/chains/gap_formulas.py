@@ -77,7 +77,14 @@ def _write_lateness(analysis: Analysis, state: PropagationState, arc: Arc, jitte
 def list_wait_formulas(analysis: Analysis, name: str, wait: Fraction) -> Iterator[tuple[str, str]]:
     """Yield how long a chain's step waits at an activity: its largest gap, or what its triggers let it wait."""
     activity, formulas = analysis.system.activities[name], list(list_gap_formulas(analysis, name))
-    if analysis.paces[name].gap.value == wait:
+    storing_wait = find_storing_part(analysis, name, wait)
+    if storing_wait:
+        yield from list_wait_formulas(analysis, name, wait - storing_wait)
+        yield (
+            f"waits {_write(wait - storing_wait)} + {_write(storing_wait)} = {_write(wait)}",
+            "until it is activated, and until what it reads is stored",
+        )
+    elif analysis.paces[name].gap.value == wait:
         yield from ((f"gap {formula}", words) for formula, words in formulas)
     elif activity.behaviour == "event":
         # The last formula is that of its own gap; those before are what arrives.
@@ -86,6 +93,13 @@ def list_wait_formulas(analysis: Analysis, name: str, wait: Fraction) -> Iterato
         )
         yield from ((f"gap {formula}", words) for formula, words in (formulas[:-1] if has_own else formulas))
         yield from _write_thinning(analysis, activity, wait)
+
+
+def find_storing_part(analysis: Analysis, name: str, wait: Fraction) -> Fraction:
+    """Return how much of a step's wait is that for being stored: 0 where the step does not wait for that."""
+    gap = TriggerArrivals(analysis).activation_gap(name).value
+    storing_wait = analysis.storing_waits[name].value if name in analysis.storing_waits else None
+    return storing_wait if gap is not None and storing_wait and gap + storing_wait == wait else Fraction(0)
 
 
 def _write_thinning(analysis: Analysis, activity: Activity, wait: Fraction) -> Iterator[tuple[str, str]]:

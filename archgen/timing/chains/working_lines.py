@@ -44,9 +44,15 @@ class WorkingLines:
         else:
             has_counts = any(term.events.formula != str(term.events.number) for term in working.terms)
             counts_text = "; of each ceil((t + how much later it may come) / how often)" if has_counts else ""
-            yield ReasonLine(
-                depth, f"the least t > 0 in which all of this is done is {self._write(working.window)}{counts_text}:"
+            core_text = f", on core {working.core} alone" if working.core is not None else ""
+            head = (
+                "the longest t in which there may be work all the time, until an activation that comes too soon,"
+                if working.is_hold
+                else f"the least t > 0 in which all of this is done{core_text}"
             )
+            if working.is_queue:
+                head, counts_text = "what is done in the queue until its end, its own work included,", ""
+            yield ReasonLine(depth, f"{head} is {self._write(working.window)}{counts_text}:")
             yield from self.list_terms(working.terms, depth + 1)
             yield from self._sum_up([self._write(term.total) for term in working.terms], working.window, depth + 1)
         yield from self._explain_rest(working, depth)
@@ -54,23 +60,29 @@ class WorkingLines:
     def _explain_shared(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
         """Yield A, the work of the threads that are waited for, and B, in which all cores are busy with others."""
         own_work = sum(term.total for term in working.terms)
+        head = (
+            "the longest t with A + B >= t, until an activation that comes too soon,"
+            if working.is_hold
+            else "the least t > 0 with A + B <= t"
+        )
         yield ReasonLine(
-            depth, f"the least t > 0 with A + B <= t is {self._write(working.window)}: A is the work of its own threads, "
+            depth, f"{head} is {self._write(working.window)}: A is the work of its own threads, "
             f"B the time in which all {working.core_count} cores may be busy with others"
         )  # fmt: skip
         yield from self.list_terms(working.terms, depth + 1)
         parts = [self._write(term.total) for term in working.terms]
-        yield ReasonLine(depth + 1, f"A = {' + '.join(parts)}{f' = {self._write(own_work)}' if len(parts) > 1 else ''}")
+        sum_text = f" = {self._write(own_work)}" if len(parts) > 1 else ""
+        yield ReasonLine(depth + 1, f"A = {' + '.join(parts)}{sum_text}" if parts else "A = 0 ms")
         if working.blocked_time:
             yield from self._explain_blocking(working, depth + 1)
         else:
             count = len(working.shares)
             others = f"the {count} other threads that have work" if count else "no other thread has work, which"
             yield ReasonLine(depth + 1, f"B = 0 ms: {others} cannot keep {working.core_count} cores busy all at once")
-        relation = "=" if working.work == working.window else "<="
+        relation = "=" if working.work == working.window else "<=" if working.work < working.window else ">="
         yield ReasonLine(
             depth + 1,
-            f"{self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}, A + B",
+            f"{self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}, A + B{' until then' if working.is_hold else ''}",
         )
 
     def _explain_blocking(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
@@ -105,7 +117,8 @@ class WorkingLines:
         reasons: list[str] = []
         if working.arrival:
             parts.append(self._write(working.arrival))
-            reasons.append(f"activation {working.activation} comes {parts[-1]} after the first at the earliest")
+            who = "it" if working.is_queue else f"activation {working.activation}"
+            reasons.append(f"{who} comes {parts[-1]} after the first at the earliest")
         if working.lead:
             parts.append(self._write(working.lead))
             reasons.append(

@@ -5,14 +5,13 @@ Each function offers the ways in which the analysis may have found a figure; the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from fractions import Fraction
+from types import MappingProxyType
 
 from archgen.frozen import dataclass
-from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import (
-    NO_DEMAND,
     ActivityWork,
     DemandFunction,
     DivergedError,
@@ -28,8 +27,8 @@ from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, streams_of_calls
 from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.plain_core_workings import OWN_JOBS
 from archgen.timing.load.run_ways import EntryWay, Priority
-from archgen.timing.load.thread_work import ThreadWork, build_thread, lower_crowded_threads
 from archgen.timing.load.work_terms import (
     ONCE,
     CountFormulas,
@@ -42,58 +41,6 @@ from archgen.timing.load.work_terms import (
     multiply_count,
     shorten_working,
 )
-from archgen.timing.system.core_placement import ProcessingResource
-
-
-def list_plain_workings(state: PropagationState, resource: ProcessingResource, name: str) -> Iterator[FigureWorking]:
-    """Yield how the response of an activity may have been found on a core where each is looked at by itself."""
-    threads = lower_crowded_threads(
-        state.system,
-        [build_thread(state.system, unit, state.event_models) for unit in (*resource.units, *resource.foreign_units)],
-        state.event_models,
-    )
-    thread = next(each for each in threads if name in each.unit)
-    level = thread.lowest_priority
-    others = [
-        each
-        for each in threads
-        if each is not thread
-        and (level is None or (each.highest_priority is not None and each.highest_priority >= level))
-    ]
-    formulas, budget = CountFormulas(state.system.tick), SearchBudget()
-    if any(each.cause for each in (thread, *others)):
-        return
-    load = GrowingLoad(work for each in others for work in each.works).demand_function()
-    own_works = dict(zip(thread.unit, thread.works, strict=True))
-    if len(thread.unit) == 1 and (level is not None or not others) and own_works[name].streams:
-        count, arrival, finish = find_worst_activation(own_works[name], load, budget)
-        own_term = WorkTerm(((name, own_works[name].cost),), EventCount(count, str(count)), "its own")
-        terms = [own_term, *_count_threads(formulas, others, finish)]
-        yield FigureWorking(finish - arrival, finish, group_terms(terms), count, arrival)
-        return
-    # What works only at the start has no events, but takes its own time.
-    start_costs = [(each, work.cost) for each, work in own_works.items() if not work.streams and work.cost]
-    start_work = sum(cost for _, cost in start_costs)
-    demand = add_demands(load, GrowingLoad(thread.works).demand_function())
-    window = longest_busy_period(add_demands(demand, DemandFunction(lambda _: start_work)), budget, start_work)
-    terms = [*_count_threads(formulas, (thread, *others), window), WorkTerm(tuple(start_costs), ONCE, "at the start")]
-    yield FigureWorking(window, window, group_terms(terms))
-
-
-def list_dedicated_workings(state: PropagationState, name: str) -> Iterator[FigureWorking]:
-    """Yield how the response of an activity on a core of its own was found."""
-    streams, cost = state.event_models[name], state.system.activities[name].wcet
-    if not isinstance(streams, UnknownCause) and cost is not None:
-        count, arrival, finish = find_worst_activation(ActivityWork(cost, streams), NO_DEMAND, SearchBudget())
-        term = WorkTerm(((name, cost),), EventCount(count, str(count)), "its own")
-        yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
-
-
-def _count_threads(formulas: CountFormulas, threads: Iterable[ThreadWork], window: int) -> Iterator[WorkTerm]:
-    for thread in threads:
-        for name, work in zip(thread.unit, thread.works, strict=True):
-            if work.streams and work.cost:
-                yield WorkTerm(((name, work.cost),), formulas.count_events(work.streams, window))
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +77,7 @@ class InnerCoreWorkings:
         )
         if start_costs:
             yield self._add_start(bound, start_costs)
-        if thread.lowest_priority is not None and len(thread.unit) == 1:
+        if thread.lowest_priority is not None and len(thread.unit) == 1 and thread.in_order:
             streams = self._activation_streams(ways, bound)
             if streams:
                 lead = min(way.best_before for way in ways)
@@ -211,15 +158,32 @@ class InnerCoreWorkings:
         terms = [*self._list_terms(bound, window), WorkTerm(start_costs, ONCE, "at the start")]
         return FigureWorking(window, window, group_terms(terms))
 
-    def _list_terms(self, bound: LevelBound, window: int, but_name: str = "") -> Iterator[WorkTerm]:
-        """Yield the work of a level in a window (in ticks), but that of `but_name`."""
-        counts: dict[Origin, EventCount] = {}
+    def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
+        """Yield what may hold up the storing of an activity's inputs for so long."""
+        bound = self.solver.bounds[self.solver.core.thread_of[name].lowest_priority]
+        origin = Origin("activity", name)
+        streams = self._streams_of(bound, origin)
+        if name in self.solver.core.inner_triggers.entry_ids and streams:
+            own_jobs = {origin: self.formulas.count_held_jobs(streams, hold)}
+            terms = group_terms(self._list_terms(bound, hold, own_counts=own_jobs))
+            yield FigureWorking(hold, hold, terms, is_hold=True)
+        yield replace(self._whole_period(bound, ()), is_hold=True)
+
+    def _list_terms(
+        self,
+        bound: LevelBound,
+        window: int,
+        but_name: str = "",
+        own_counts: Mapping[Origin, EventCount] = MappingProxyType({}),
+    ) -> Iterator[WorkTerm]:
+        """Yield the work of a level in a window (in ticks), but that of `but_name`; of own jobs so much is counted."""
+        counts = dict(own_counts)
         for name, activations in bound.demand.level.activations.items():
             cost = self.solver.core.system.activities[name].wcet
             for origin, multiplicity in activations.items() if cost and name != but_name else ():
                 if origin not in counts:
                     counts[origin] = self._count_origin(bound, origin, window)
-                reason = self._describe_origin(origin)
+                reason = OWN_JOBS if origin in own_counts else self._describe_origin(origin)
                 yield WorkTerm(((name, (cost or 0) * multiplicity),), counts[origin], reason)
 
     def _count_origin(self, bound: LevelBound, origin: Origin, window: int) -> EventCount:

@@ -50,6 +50,10 @@ class PropagationState:
     """The arcs by which ways go on to an activity from another of its core."""
     work_ends: dict[str, WorstResponse] = field(default_factory=dict)
     """When the work is done of those with a declared response whose threads wait for resources."""
+    single_ends: dict[str, int] = field(default_factory=dict)
+    """When the work is done of those whose cores are looked at one by one."""
+    load_state: PropagationState | None = None
+    """The same of all that loads processors, where callbacks that store inputs take time: they are activities there."""
     entering_models: dict[int, EventStreams | UnknownCause] = field(default_factory=dict)
     """Event models of what comes by the arcs that enter such a core (by identity), as its responses rest on them."""
     leaving_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)

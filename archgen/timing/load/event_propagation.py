@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from typing import TypeVar
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause, sum_ratios
@@ -27,20 +28,20 @@ from archgen.timing.load.run_ways import EntryWay, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_responses import solve_shared_cores
 from archgen.timing.load.shared_cores import prepare_shared_cores
-from archgen.timing.load.single_cores import SingleCores, delay_by_response
+from archgen.timing.load.single_cores import SingleCores, find_single_cores
 from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
-from archgen.timing.load.waiting_threads import delayed_model, find_waiting_responses, find_waiting_stores
+from archgen.timing.load.waiting_threads import find_waiting_responses, find_waiting_stores, model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import (
     ProcessingResource,
-    divide_resource,
     find_resources,
-    part_waiting_units,
+    split_resources,
 )
 from archgen.timing.system.timing_system import Arc, TimingSystem, samples_inputs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
+_Figure = TypeVar("_Figure")
 _MAX_SWEEPS = 300
 """Sweeps over a loop before it is given up as diverged."""
 _MAX_WAITING_ACTIVATIONS = 200
@@ -56,19 +57,34 @@ def propagate_events(
     """
     load_system = build_load_system(system)
     load_triggers = triggers if load_system is system else find_triggers(load_system)
-    state = _Propagation(
+    load_state = _Propagation(
         PropagationState(load_system, load_triggers),
         find_resources(load_system),
         group_budgets or GroupBudgets(),
         list_written_priorities(system, load_system),
     ).run_to_fixed_point()
-    # What is asked of the state later is about the activities that somebody wrote.
-    state.system, state.triggers = system, triggers
-    for name in load_system.activities.keys() - system.activities.keys():
-        for table in (state.event_models, state.responses, state.ways_to, state.run_arcs, state.storing_waits):
-            table.pop(name, None)
-        state.diverged.discard(name)
-    return state
+    return load_state if load_system is system else _restrict_state(load_state, system, triggers)
+
+
+def _restrict_state(load_state: PropagationState, system: TimingSystem, triggers: TriggerGraph) -> PropagationState:
+    """Return what is known of the activities that somebody wrote, without those that only store inputs."""
+
+    def keep_written(figures: Mapping[str, _Figure]) -> dict[str, _Figure]:
+        return {name: figure for name, figure in figures.items() if name in system.activities}
+
+    return replace(
+        load_state,
+        system=system,
+        triggers=triggers,
+        event_models=keep_written(load_state.event_models),
+        responses=keep_written(load_state.responses),
+        diverged=load_state.diverged & system.activities.keys(),
+        storing_waits=keep_written(load_state.storing_waits),
+        ways_to=keep_written(load_state.ways_to),
+        run_arcs=keep_written(load_state.run_arcs),
+        leaving_models={},
+        load_state=load_state,
+    )
 
 
 class _Propagation:
@@ -121,7 +137,7 @@ class _Propagation:
         self._prepare_whole_hosts()
         self.single_cores = self._find_single_cores()
         # From below, as everything that is found by repetition.
-        self.work_ends = {
+        self.state.single_ends = {
             name: self.state.system.activities[name].wcet or 0
             for step in self.single_cores
             for name in self.resources[step].members
@@ -171,12 +187,8 @@ class _Propagation:
 
     def _find_single_cores(self) -> dict[str, SingleCores]:
         """Return the cores, one by one, of what shares several of them with what is pinned to some of them."""
-        cores_of = {name: resource.core_set for resource in self.resources.values() for name in resource.members}
-        return {
-            step: SingleCores(self.state.system, self.resources[step], cores_of, self.waiting_ids)
-            for step in self.shared_cores
-            if self.resources[step].foreign_units and not any(self.inner_triggers[step].inner_arcs.values())
-        }
+        shared_steps = [step for step in self.shared_cores if not any(self.inner_triggers[step].inner_arcs.values())]
+        return find_single_cores(self.state.system, self.resources, shared_steps, self.waiting_ids)
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
@@ -226,11 +238,7 @@ class _Propagation:
 
     def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:
         """Return the event model of work that another core may have begun."""
-        if name in self.waiting_ids:
-            return delayed_model(self.state, name, self.waiting_ids)
-        return delay_by_response(
-            self.state.event_models[name], self.state.responses.get(name), self.work_ends.get(name)
-        )
+        return model_roaming_work(self.state, name, self.waiting_ids)
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
@@ -273,7 +281,7 @@ class _Propagation:
         """Add what hosts taken as one core rest on, and what rests on them."""
         for step, core in self.whole_hosts.items():
             successors[step] += self.resources_of_host[step]
-            for name in core.inner_triggers.entry_ids:
+            for name in sorted(core.inner_triggers.entry_ids):
                 successors[name].append(step)
 
     def _response_steps(self, name: str) -> Iterator[str]:
@@ -512,14 +520,14 @@ class _Propagation:
                 self.shared_cores[step], find_model, ({**state.responses, **state.work_ends}, limits), budget
             )
         )
-        old_ends = dict(self.work_ends)
+        old_ends = dict(self.state.single_ends)
         if step in self.single_cores:
             self._limit_to_single_cores(step, new_responses, new_ways)
         new_responses = {
             name: self._limit_response(name, _name_tier(self.resources[step], response))
             for name, response in new_responses.items()
         }
-        changed = old_ends != self.work_ends or any(
+        changed = old_ends != self.state.single_ends or any(
             not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
         )
         state.entering_models.update(entering_models)
@@ -541,8 +549,8 @@ class _Propagation:
             state.event_models, {**state.responses, **responses, **state.work_ends}, self.budget_of[step]
         )
         for name in self.resources[step].members:
-            self.work_ends.pop(name, None)
-        self.work_ends.update(bounds)
+            self.state.single_ends.pop(name, None)
+        self.state.single_ends.update(bounds)
         for name, bound in bounds.items():
             response = responses[name]
             if response.value is not None and bound < response.value and response.tier != "declared":
@@ -566,13 +574,6 @@ class _Propagation:
             if previous_models is None
             else frozenset(name for name in current_models if current_models[name] is not previous_models[name])
         )
-
-
-def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
-    """Yield the parts of resources whose responses are found at once."""
-    for resource in resource_list:
-        for part in divide_resource(system, resource):
-            yield from part_waiting_units(system, part)
 
 
 def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:

@@ -27,7 +27,7 @@ class OrderedCore:
 
     def limit(self, responses: dict[str, WorstResponse], busy_period: int, budget: SearchBudget) -> None:
         """Limit responses, and the delays of ways, to what the order makes of them."""
-        bounds = self.queue.bound_responses(self._activation_model, busy_period, budget)
+        bounds = self.queue.bound_responses(self.find_activation_model, busy_period, budget)
         limited_delays: dict[tuple[str, ...], int | None] = {}
         for name in self.inner_triggers.order:
             responses[name] = responses[name].limit_to(bounds.get(name), self.queue.order)
@@ -41,7 +41,7 @@ class OrderedCore:
                 ways.append(way._replace(delay=delay))
             self.ways_to[name] = tuple(ways)
 
-    def _activation_model(self, name: str) -> EventStreams | UnknownCause:
+    def find_activation_model(self, name: str) -> EventStreams | UnknownCause:
         """Return the event model of an activity's activations: what enters, behind the steps before it."""
         # These are delayed by at most as much as any order may delay them: nothing here rests on the order itself.
         if name in self.inner_triggers.silent_ids:

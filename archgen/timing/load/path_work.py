@@ -110,18 +110,18 @@ class PathWork:
             lane_works.append(lane_work)
             pending_works.append(pending_work)
         if not any(pending_works) and not path.crowds:
-            return divide_among_cores(_split_lanes(path, lane_works), 0, core_count)
+            return divide_among_cores(split_lanes(path, lane_works), 0, core_count)
         most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
         blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
         if path.crowds:
             return blocked_time
         # All that each thread may have in the end: less, where a single one has most of it.
         all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
-        blocked_time = min(blocked_time, divide_among_cores(_split_lanes(path, all_works), 0, core_count))
+        blocked_time = min(blocked_time, divide_among_cores(split_lanes(path, all_works), 0, core_count))
         if max(lane_works) > blocked_time:
             most_pending = self.find_most_pending(path)
             blocked_time = min(
-                blocked_time, divide_among_cores(_split_lanes(path, lane_works), most_pending, core_count)
+                blocked_time, divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
             )
         return blocked_time
 
@@ -152,7 +152,7 @@ class PathWork:
         return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
 
 
-def _split_lanes(path: CorePath, lane_works: Sequence[int]) -> Sequence[int]:
+def split_lanes(path: CorePath, lane_works: Sequence[int]) -> Sequence[int]:
     """Return the work of each lane that one core at a time may do: what is reentrant counts as several lanes."""
     if all(width == 1 for width in path.lane_widths):
         return lane_works

@@ -52,7 +52,7 @@ class QueuedTask(NamedTuple):
 def bound_fifo(tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int:
     """Return the response of each task where what came first is first."""
     spend, longest = budget.start_search(), 0
-    for arrival in _arrivals_before(busy_period, ((each, 0) for each in tasks)):
+    for arrival in list_arrivals(busy_period, ((each, 0) for each in tasks)):
         spend(len(tasks))
         longest = max(longest, sum(each.cost * each.count_until(arrival) for each in tasks) - arrival)
     return longest
@@ -95,7 +95,7 @@ def bound_non_preemptive(
         if arrival and arrival >= busy_period:
             break
         own_work = blocking + count * task.cost
-        start = _find_start(own_work, [(each, None) for each in urgent], spend)
+        start = find_start(own_work, [(each, None) for each in urgent], spend)
         longest = max(longest, start + task.cost - arrival)
     return longest
 
@@ -110,26 +110,26 @@ def bound_edf(
     others = [each for each in tasks if each is not task]
     own_deadline = task.deadline
     # A deadline that nobody knows may always be the earlier one: as if it were long ago.
-    leads = [(each, _lead(each, own_deadline)) for each in others]
+    leads = [(each, find_lead(each, own_deadline)) for each in others]
     jumps = [(task, 0), *((each, lead) for each, lead in leads if lead is not None)]
-    for arrival in _arrivals_before(busy_period, jumps):
+    for arrival in list_arrivals(busy_period, jumps):
         own_work = task.cost * max(task.count_until(arrival), 1)
         limits = [(each, None if lead is None else arrival + lead) for each, lead in leads]
         if preemptive:
-            end = _find_end(own_work, limits, spend)
+            end = find_end(own_work, limits, spend)
         else:
             later = [each.cost for each, limit in limits if limit is not None and limit < 0]
-            end = _find_start(own_work - task.cost + max(later, default=0), limits, spend) + task.cost
+            end = find_start(own_work - task.cost + max(later, default=0), limits, spend) + task.cost
         longest = max(longest, end - arrival)
     return longest
 
 
-def _lead(other: QueuedTask, own_deadline: int) -> int | None:
+def find_lead(other: QueuedTask, own_deadline: int) -> int | None:
     """Return how much later another task may come and still be first; None where it always may."""
     return None if other.deadline is None else own_deadline - other.deadline
 
 
-def _find_end(own_work: int, limits: Sequence[tuple[QueuedTask, int | None]], spend: Spend) -> int:
+def find_end(own_work: int, limits: Sequence[tuple[QueuedTask, int | None]], spend: Spend) -> int:
     """Return when own work is done that others may interrupt: those that come before then, and up to their limit."""
     end = own_work
     while True:
@@ -140,7 +140,7 @@ def _find_end(own_work: int, limits: Sequence[tuple[QueuedTask, int | None]], sp
         end = work
 
 
-def _find_start(work_before: int, limits: Sequence[tuple[QueuedTask, int | None]], spend: Spend) -> int:
+def find_start(work_before: int, limits: Sequence[tuple[QueuedTask, int | None]], spend: Spend) -> int:
     """Return when a job begins that waits for some work, and for all that comes up to its begin and up to their limit."""
     start = work_before
     while True:
@@ -155,7 +155,7 @@ def _work_of(task: QueuedTask, time: int, limit: int | None) -> int:
     return task.cost * task.count_until(time if limit is None else min(time, limit))
 
 
-def _arrivals_before(end: int, shifted_tasks: Iterable[tuple[QueuedTask, int]]) -> Iterator[int]:
+def list_arrivals(end: int, shifted_tasks: Iterable[tuple[QueuedTask, int]]) -> Iterator[int]:
     """Yield 0 and all instants before an end at which tasks come, each less its shift, in ascending order."""
 
     def arrivals_of(task: QueuedTask, shift: int) -> Iterator[int]:

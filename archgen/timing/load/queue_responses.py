@@ -31,6 +31,8 @@ _QUEUE_ORDERS: Mapping[SchedulingOrder | None, QueueOrder] = {
     "ros2_executor": "ros2_executor",
     "edf": "edf",
 }
+QUEUE_TIERS = frozenset(_QUEUE_ORDERS.values())
+"""The tiers of responses that such an order bounds."""
 _RANKS = {"periodic": 0, "event": 1, "on_demand": 2}
 """The place of what fires an activity in a round of rclcpp's executor."""
 

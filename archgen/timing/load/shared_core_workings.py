@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
@@ -12,8 +13,12 @@ from archgen.timing.load.core_paths import CorePath
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.load_system import list_storing_ids
+from archgen.timing.load.path_work import split_lanes
+from archgen.timing.load.plain_core_workings import OWN_JOBS
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
+from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.work_terms import (
     CountFormulas,
     EventCount,
@@ -33,6 +38,8 @@ class SharedCoreWorkings:
     solver: SharedCoreSolver
     state: PropagationState
     formulas: CountFormulas
+    responses: Mapping[str, WorstResponse]
+    """What the solver found, before anything else limits it."""
 
     def list_responses(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity may have been found."""
@@ -99,6 +106,21 @@ class SharedCoreWorkings:
                 arrival = next_arrival
         except DivergedError:
             return
+
+    def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
+        """Yield what may hold up the storing of an activity's inputs for so long."""
+        for thread_id in (name, *list_storing_ids(self.solver.cores.system.activities[name])):
+            path = self.solver.paths.look_up((thread_id,))
+            if path.last_step is None:
+                workings: Iterable[FigureWorking] = self._follow_path((thread_id,), hold)
+                yield from (replace(working, is_hold=True) for working in workings)
+            else:
+                streams = self.solver.find_activation_streams(path.last_step)
+                count = self.formulas.count_held_jobs(streams, hold)
+                working = self._explain_window(path, (thread_id,), count.number, 0, hold)
+                own_term = WorkTerm(((thread_id, path.last_step.cost),), count, OWN_JOBS)
+                own_terms = group_terms([own_term, *self._list_own_terms(path, hold)])
+                yield replace(working, terms=own_terms, activation=0, is_hold=True)
 
     def _explain_window(
         self, path: CorePath, steps: tuple[str, ...], count: int, arrival: int, window: int
@@ -201,8 +223,13 @@ class SharedCoreWorkings:
             (lane_works, work.find_most_pending(path), True),
         ]
         for works, pending, is_cut in whole_shares:
-            limit, _ = _cut_time(works, pending, cores.core_count) if is_cut or not pending else (None, 0)
-            counted = [Fraction(each) if limit is None else min(Fraction(each), limit) for each in works]
+            is_limited = (is_cut or not pending) and not path.crowds
+            lane_works_by_core = split_lanes(path, works)
+            limit = _cut_time([*lane_works_by_core], pending, cores.core_count) if is_limited else None
+            counted = [
+                Fraction(each) if limit is None else min(Fraction(each), limit * width)
+                for each, width in zip(works, path.lane_widths, strict=True)
+            ]
             if -(-(sum(counted) + pending) // cores.core_count) == blocked_time:
                 shares = zip(units, works, counted, strict=True)
                 thread_shares = tuple(ThreadShare(unit, whole, -(-part // 1)) for unit, whole, part in shares if whole)
@@ -210,6 +237,7 @@ class SharedCoreWorkings:
         return (), 0, False
 
 
-def _cut_time(works: list[int], pending: int, core_count: int) -> tuple[Fraction, int]:
+def _cut_time(works: list[int], pending: int, core_count: int) -> Fraction:
+    """Return the time for which no thread works longer: that in which all cores may be busy."""
     numerator, denominator = find_blocked_time(works, pending, core_count) if works else (pending, core_count)
-    return Fraction(numerator, denominator), denominator
+    return Fraction(numerator, denominator)

@@ -7,7 +7,7 @@ runs, are used up as fast as time passes: the bound is that of the core alone, w
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from archgen.timing.figures.timing_values import UnknownCause
@@ -58,15 +58,22 @@ class SingleCores:
                     bounds[name] = min(bound, bounds.get(name, bound))
         return bounds
 
-    def _bound_on_core(  # noqa: PLR0913, PLR0917 - all of it is looked at on one core
+    def list_placements(
+        self, name: str, event_models: EventModels, responses: Mapping[str, WorstResponse]
+    ) -> Iterator[tuple[ProcessingResource, dict[str, EventStreams | UnknownCause]]]:
+        """Yield each core with an activity's thread and all that may run there, and the event models seen from it."""
+        unit = next(each for each in self.resource.units if name in each)
+        for core, core_units in self.units_by_core.items():
+            yield self._place_on_core(unit, core_units, core, event_models, responses)
+
+    def _place_on_core(
         self,
         unit: ThreadUnit,
         core_units: tuple[ThreadUnit, ...],
         core: int,
         event_models: EventModels,
         responses: Mapping[str, WorstResponse],
-        budget: SearchBudget,
-    ) -> dict[str, int]:
+    ) -> tuple[ProcessingResource, dict[str, EventStreams | UnknownCause]]:
         neighbours = tuple(other_unit for other_unit in self.resource.units if other_unit != unit)
         resource = ProcessingResource(
             self.resource.id, self.resource.host, 1, (unit,), (*core_units, *neighbours), core_set=(core,)
@@ -81,8 +88,35 @@ class SingleCores:
             for each in (unit, *resource.foreign_units)
             for name in each
         }
+        return resource, models
+
+    def _bound_on_core(  # noqa: PLR0913, PLR0917 - all of it is looked at on one core
+        self,
+        unit: ThreadUnit,
+        core_units: tuple[ThreadUnit, ...],
+        core: int,
+        event_models: EventModels,
+        responses: Mapping[str, WorstResponse],
+        budget: SearchBudget,
+    ) -> dict[str, int]:
+        resource, models = self._place_on_core(unit, core_units, core, event_models, responses)
         found_responses = find_responses(self.system, resource, models, AnalysisEffort(budget))
         return {name: response.value for name, response in found_responses.items() if response.value is not None}
+
+
+def find_single_cores(
+    system: TimingSystem,
+    resources: Mapping[str, ProcessingResource],
+    shared_steps: Iterable[str],
+    waiting_ids: Collection[str],
+) -> dict[str, SingleCores]:
+    """Return the cores, one by one, of the resources (by key) that share several of them with what is pinned to some."""
+    cores_of = {name: resource.core_set for resource in resources.values() for name in resource.members}
+    return {
+        step: SingleCores(system, resources[step], cores_of, waiting_ids)
+        for step in shared_steps
+        if resources[step].foreign_units
+    }
 
 
 def delay_by_response(

@@ -31,6 +31,7 @@ from archgen.timing.load.busy_windows import (
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, delay_streams
 from archgen.timing.load.resource_waits import Rivals, find_load, find_rivals, find_use_times
+from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -89,6 +90,13 @@ def delayed_model(
         # That a thread has too much to do does not say so of its core.
         return DIVERGED_CAUSE if response is None or not response.cause.missing else response.cause
     return delay_streams(model, response.value)
+
+
+def model_roaming_work(state: PropagationState, name: str, waiting_ids: Collection[str]) -> EventStreams | UnknownCause:
+    """Return the event model of work that another core may have begun."""
+    if name in waiting_ids:
+        return delayed_model(state, name, waiting_ids)
+    return delay_by_response(state.event_models[name], state.responses.get(name), state.single_ends.get(name))
 
 
 def _bound_unit(

@@ -73,6 +73,22 @@ class CountFormulas:
             return f"ceil({span}{times} x {rate})"
         return f"ceil({span}{times} / {period_text})"
 
+    def count_held_jobs(self, streams: EventStreams, window: int) -> EventCount:
+        """Count the events of a window that ends with one more, which is not counted."""
+        number = max(max_arrivals(streams, window + 1) - 1, 0)
+        if len(streams) != 1 or streams[0].batch_size != 1 or streams[0].events_per_period != 1:
+            return EventCount(number, str(number))
+        period, jitter, distance, _, _ = streams[0]
+        if distance and window // distance < (window + jitter) // period:
+            return EventCount(number, f"floor({self.write_duration(window)} / {self.write_duration(distance)})")
+        formula = self._write_periods([window, jitter], period, 1).removeprefix("ceil")
+        return EventCount(number, f"floor{formula}")
+
+    def count_until(self, streams: EventStreams, time: int) -> EventCount:
+        """Count the events of a window with both of its ends."""
+        number, before = max_arrivals(streams, time + 1), self.count_held_jobs(streams, time)
+        return EventCount(number, f"{before.formula} + 1" if before.formula != str(before.number) else str(number))
+
     def count_gate(self, rule: GateRule, inputs: Sequence[EventCount], window: int) -> EventCount:
         """Count what a gate lets through, of the events at its inputs."""
         number = rule.count_leaving([count.number for count in inputs], window)
@@ -148,6 +164,12 @@ class FigureWorking:
     beside_terms: tuple[WorkTerm, ...] = ()
     shares: tuple[ThreadShare, ...] = ()
     pending: int = 0
+    core: int | None = None
+    """The core that alone gives the figure of what may run on several."""
+    is_queue: bool = False
+    """Whether `window` is the work that comes before the end of an activation in a queue, itself included."""
+    is_hold: bool = False
+    """Whether `window` is the longest time in which there is so much to do, until an activation that is not counted."""
 
     @property
     def work(self) -> int:
@@ -161,6 +183,8 @@ class FigureWorking:
             return self.value == sum(working.value for working in self.addends) and all(
                 working.is_consistent for working in self.addends
             )
+        if self.is_hold and self.core_count > 1:
+            return self.work >= self.window == self.value
         # On several cores a longer window may ask for less: then the first one that is long enough is not all used.
         work = self.work
         is_whole = work == self.window or (self.core_count > 1 and work < self.window)

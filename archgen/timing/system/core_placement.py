@@ -9,7 +9,7 @@ it has, only what is pinned has a core that is known, and a single thread, which
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from archgen.model.graph_search import find_strong_components
@@ -86,6 +86,13 @@ def find_resources(system: TimingSystem) -> tuple[ProcessingResource, ...]:
         for resource in _resources_of_host(system, host, members)
     )
     return (*on_hosts, *_resources_of_pools(system))
+
+
+def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
+    """Yield the parts of resources whose responses are found at once."""
+    for resource in resource_list:
+        for part in divide_resource(system, resource):
+            yield from part_waiting_units(system, part)
 
 
 def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:

@@ -90,7 +90,7 @@ def _build_executors(architecture: Architecture) -> Iterator[Executor]:
 
 def _find_container_host(architecture: Architecture, container: Container) -> str | None:
     """Return the host of a container: its own, or the one that its nodes name, where they agree."""
-    node_hosts = {node.host for node in architecture.nodes.values() if node.container == container.id}
+    node_hosts = dict.fromkeys(node.host for node in architecture.nodes.values() if node.container == container.id)
     return container.host or (next(iter(node_hosts)) if len(node_hosts) == 1 else None)
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from archgen.emit.terminal import chain_remedies
 from archgen.simulation.chain_witnesses import ChainWitness
+from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.search.proving_changes import ChainRemedy
@@ -52,3 +53,22 @@ def test_what_would_prove_a_chain(changes: tuple[TriedChange, ...], text: tuple[
     tried = (("priority", ("a", "b", "c", "d", "e")), ("callback_groups", ("n",)), ("reentrant", ("n",)))
     remedy = ChainRemedy("c", changes, TimingValue(40 * MS), tried, is_cut=True)
     assert chain_remedies.describe_remedy(remedy) == text
+
+
+@pytest.mark.parametrize(
+    ("changes", "first_step"),
+    [
+        (
+            (TriedChange("a", "timing.core", "3"),),
+            "This would prove it, found by trying: --set a.timing.core=3 (then at most 40 ms).",
+        ),
+        ((), "Give it up."),
+    ],
+)
+def test_the_change_that_proves_a_chain_is_the_one_thing_to_do(
+    changes: tuple[TriedChange, ...], first_step: str
+) -> None:
+    advice = ChainAdvice("It may take long.", "The largest part: all.", "Give it up.")
+    remedy = ChainRemedy("c", changes, TimingValue(40 * MS), (), is_cut=False)
+    assert chain_remedies.replace_advice(advice, remedy) == advice._replace(first_step=first_step)
+    assert chain_remedies.replace_advice(advice, None) == advice

@@ -37,7 +37,7 @@ def advise(nodes: dict[str, str], wires: str, rest: str, deadline: str = "50 ms"
             {"s @p": SENSOR, "r @p": "behaviour: periodic, period: 300 ms, wcet: 2 ms, bcet: 2 ms"},
             "50 ms",
             "It may take up to ",
-            "The largest parts: 300 ms that r lets it wait (reads /g/s/out every 300 ms at the latest); 100 ms that s",
+            "The largest parts: 305 ms that r lets it wait (reads /g/s/out every 300 ms at the latest, which may wait 5 ms to be stored); 100 ms that s",
             "Let r work more often (`period:`, now every 300 ms at the latest), or let what it reads fire it (`trigger:`).",
         ),
         (
@@ -115,3 +115,43 @@ def test_who_waits_for_others_gets_a_priority_and_who_works_long_is_shortened(
     said = advise(nodes, "x>s s>r", rest, "1 ms")
     assert said[2].startswith(first_step)
     assert said[1].startswith("The largest part")
+
+
+@pytest.mark.parametrize(
+    ("place", "reader", "cores", "first_step"),
+    [
+        ("@p", "", 1, "Give r a higher priority than the others there (`priority:`), or move work off p (`host:`), so that what"),
+        ("@p", ", core: 0", 2, "Give r a higher priority than the others there (`priority:`), or a core of its own (`core:`), so"),
+        ("@p", "", 2, "Give r a core of its own (`core:`), or a priority above the others there (`priority:`), so that what it"),
+        ("+box", "", 1, "Let fewer callbacks share a thread with r (a container of its own, or more `threads:`), so that what"),
+    ],
+)  # fmt: skip
+def test_where_most_of_a_wait_is_for_being_stored_that_is_what_to_change(
+    place: str, reader: str, cores: int, first_step: str
+) -> None:
+    slow = "behaviour: periodic, period: 1 s, wcet: 300 ms"
+    nodes = {
+        "s @q": "behaviour: periodic, period: 20 ms, wcet: 1 ms",
+        f"r {place}": f"behaviour: periodic, period: 40 ms, wcet: 1 ms{reader}",
+        f"slow {place}": f"{slow}{reader}",
+    }
+    if cores > 1 and not reader:
+        nodes |= {"more @p": slow, "most @p": slow}
+    rest = f"hosts: {{p: {{cores: {cores}}}, q: {{cores: 1}}}}\nlinks: {{lan: {{connects: [p, q], latency: 0 ms}}}}"
+    box = "\ncontainers: {box: {host: p, threads: 1}}" if place == "+box" else ""
+    said = advise(nodes, "s>r", f"{rest}{box}", "2 ms")
+    assert "that r lets it wait (reads /g/s/out every 40 ms at the latest, which may wait " in said[1].partition(";")[0]
+    assert said[2].startswith(first_step)
+    assert said[2].endswith("is stored sooner; `stored: at_once` only where nothing has to store it.")
+
+
+def test_a_run_on_several_cores_that_others_hold_up_needs_cores_of_its_own() -> None:
+    nodes = {"s @q": "period: 500 ms, wcet: 1 ms", "a @p": "wcet: 20 ms", "r @p": "wcet: 10 ms"}
+    nodes |= {f"o{number} @p": "period: 500 ms, wcet: 100 ms" for number in range(6)}
+    rest = "hosts: {p: {cores: 2}, q: {cores: 1}}\nlinks: {lan: {connects: [p, q], latency: 0 ms}}"
+    said = advise(nodes, "s>a a>r", rest, "2 ms", "a, r")
+    assert said[1].startswith("The largest parts: 375 ms in a, which needs 20 ms itself; the rest is other work on p")
+    assert said[2] == (
+        "Give a and r, which run one after the other, cores of p with little else on them (`core:`), "
+        "or a priority above the others there (`priority:`)."
+    )

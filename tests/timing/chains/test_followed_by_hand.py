@@ -12,12 +12,14 @@ from archgen import pipeline
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.chains.figure_explanations import explain_word
+from archgen.timing.load.queue_responses import QUEUE_TIERS
 from archgen.timing.load.response_workings import ResponseWorkings
 from archgen.timing.run_analysis import analyse_architecture
 from tests.running import RAMCIP
 from tests.timing.hand_reader import read_equations
 from tests.timing.random_styles import random_style_text
 from tests.timing.random_systems import architecture, random_text
+from tests.timing.random_threads import random_threads_text
 from tests.timing.test_unpinned_case_study import copy_without_cores
 
 Results = tuple[Analysis, dict[str, ChainResult]]
@@ -58,6 +60,19 @@ def recompute_response(lines: list[str], name: str) -> Fraction | None:
         elif equation and ("comes" in line or "begins" in line):
             total = equation.computed
     return total or None
+
+
+def recompute_storing_wait(lines: list[str], name: str) -> Fraction | None:
+    """Add up the work that may hold up what is only to be stored; None where nothing waits, 0 where no work is listed."""
+    start = next((at for at, line in enumerate(lines) if line.startswith(f"{name}: what it only reads may wait")), None)
+    if start is None:
+        return None
+    below = lines[start + 1 :]
+    end = next((at for at, line in enumerate(below) if re.match(r"\S+: ", line)), len(below))
+    blocked = [next(read_equations(line)).computed for line in below[:end] if line.startswith("B = (")]
+    own_end = next((at for at, line in enumerate(below) if line.startswith("A = ")), end)
+    own = [next(read_equations(line)).computed for line in below[:own_end] if re.match(r"\d+ x ", line)]
+    return sum((*own, *blocked), Fraction(0))
 
 
 def is_close(computed: Fraction, exact: Fraction) -> bool:
@@ -158,6 +173,20 @@ def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_bu
     assert min(blocked, added) > 5
 
 
+def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_listed(
+    case_study: Results, unpinned_case_study: Results
+) -> None:
+    counts: list[int] = []
+    for results in (case_study, unpinned_case_study):
+        waits = {name: wait.value or Fraction(0) for name, wait in results[0].storing_waits.items()}
+        for name in results[0].system.activities:
+            computed = recompute_storing_wait(print_reasons(results, name), name)
+            assert (computed is None) == (not waits.get(name)), name
+            assert computed is None or is_close(computed, waits[name]), (name, computed, waits[name])
+        counts.append(sum(1 for wait in waits.values() if wait))
+    assert min(counts) > 5
+
+
 @pytest.mark.parametrize(
     "text", [random_text(seed) for seed in range(60)] + [random_style_text(seed) for seed in range(28)]
 )
@@ -172,3 +201,21 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> Non
         else:
             assert working is not None, name
             assert (working.value, working.is_consistent) == (response.value, True)
+        wait = analysis.state.storing_waits.get(name)
+        storing_working = workings.find_storing_wait(name)
+        if wait is None or not wait.value:
+            assert storing_working is None
+        else:
+            assert storing_working is not None, name
+            assert (storing_working.value, storing_working.is_consistent) == (wait.value, True)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_responses_of_threads_and_queues_follow_from_the_work_that_is_listed(seed: int) -> None:
+    model = architecture(random_threads_text(seed))
+    results = analyse_architecture(model), dict[str, ChainResult]()
+    for name, response in results[0].responses.items():
+        lines = print_reasons(results, name)
+        assert [(line, each) for line in lines for each in read_equations(line) if not each.holds] == [], name
+        if response.tier in QUEUE_TIERS | {"host", "priorities"} and response.worst.value:
+            assert is_close(recompute_response(lines, name) or Fraction(0), response.worst.value), (name, response.tier)
