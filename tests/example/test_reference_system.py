@@ -147,6 +147,7 @@ def test_the_hot_path(architecture: Architecture, analysis: Analysis, name: str)
         (0 * ms, 10 * ms),
         (100 * ms, 10 * ms),
         (0 * ms, 10 * ms),
-        (0 * ms, 10 * ms),
+        # One thread for the two halves of the detector.
+        (0 * ms, 20 * ms),
         (0 * ms, 10 * ms),
     ]

@@ -17,7 +17,7 @@ _CHAIN_FIGURES = {
     "bound": "what a figure is never above, whatever happens at the same time (`best case`: never below)",
 }
 _HOST_VERDICTS = {
-    "schedulable": "each response is within the period, or the load is so low that it would be with priorities by rate",
+    "schedulable": "each response is within its deadline (the period where none is written), or the load is so low that it would be with priorities by rate",
     "overload": "more is to be done than the cores (or a resource) can do",
     "undecided": "the cores can do it; not each response is proven to be within its period",
 }

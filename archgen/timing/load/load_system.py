@@ -111,7 +111,9 @@ def _group_connected(
     system: TimingSystem, host: str, core_sets: Mapping[tuple[str, ...], CoreSet]
 ) -> Iterator[tuple[CoreSet, list[str]]]:
     """Yield the cores of a host that are linked by what may run on several of them, with what runs there."""
-    all_cores = tuple(range(system.cores.get(host) or 1 + max((max(each, default=0) for each in core_sets.values()), default=0)))
+    all_cores = tuple(
+        range(system.cores.get(host) or 1 + max((max(each, default=0) for each in core_sets.values()), default=0))
+    )
     free_cores = find_free_cores(len(all_cores), core_sets.values())
     allowed_sets = {unit: core_set or free_cores for unit, core_set in core_sets.items()}
     neighbours: dict[int, list[int]] = {core: [] for core in all_cores}

@@ -66,17 +66,18 @@ def list_troubled_chains(lookup: Lookup) -> list[ChainResult]:
     ]
 
 
-def _groups_of(lookup: Lookup, element_id: str) -> set[str]:
+def _groups_of(lookup: Lookup, element_id: str) -> list[str]:
     """Return the groups that an element belongs to: itself, its component's, or those that a node implements."""
     architecture = lookup.architecture
     if element_id in architecture.groups:
-        return {element_id}
+        return [element_id]
     node = architecture.nodes.get(element_id)
     component_ids = node.implements if node else (element_id,)
-    return {architecture.components[name].group for name in component_ids if name in architecture.components}
+    groups = (architecture.components[name].group for name in component_ids if name in architecture.components)
+    return list(dict.fromkeys(groups))
 
 
-def _groups_of_activity(lookup: Lookup, activity_id: str) -> set[str]:
+def _groups_of_activity(lookup: Lookup, activity_id: str) -> list[str]:
     """Return the groups of the component that an activity works for, or of its node."""
     activity = lookup.timing.analysis.system.activities.get(activity_id) if lookup.timing else None
-    return _groups_of(lookup, activity.component or activity.node) if activity else set()
+    return _groups_of(lookup, activity.component or activity.node) if activity else []
