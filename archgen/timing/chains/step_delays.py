@@ -23,6 +23,7 @@ from archgen.timing.figures.value_arithmetic import (
     name_missing_element,
     sum_bounds,
 )
+from archgen.timing.system.thread_pools import is_reentrant
 from archgen.timing.system.timing_system import Activity, Arc, is_sampled, is_selective_arc
 
 _SELECTIVE_ASSUMPTIONS = {
@@ -70,6 +71,9 @@ class StepDelays:
     def sampling_wait(self, arc: Arc) -> TimingValue:
         """Return S of a step: how long a sample may lie until the reader takes it, and until it is sent at all."""
         reading_wait, condition_wait = self._reading_wait(arc), self._condition_wait(arc)
+        overtaking_wait = self.overtaking_wait(arc)
+        if overtaking_wait is not ZERO_VALUE:
+            return sum_bounds((reading_wait, condition_wait, overtaking_wait))
         # Compared with `is`: adding up is slow, and nearly all arcs have no condition.
         return reading_wait if condition_wait is ZERO_VALUE else sum_bounds((reading_wait, condition_wait))
 
@@ -88,7 +92,7 @@ class StepDelays:
             )
             return StepDelay(
                 value,
-                f"triggered by {arc.topic}{waiting_text}{_thinning_text(reader)}",
+                f"triggered by {arc.topic}{waiting_text}{_thinning_text(reader)}{_overtaking_text(self.overtaking_wait(arc))}",
                 _span_of_keys(reader, "trigger"),
             )
         if reader.behaviour is None or reader.behaviour == "once":
@@ -98,7 +102,7 @@ class StepDelays:
             _gap_text(self.arrivals.activation_gap(reader.id)),
             _storing_text(self.storing_wait(arc)),
         )
-        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}"
+        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}{_overtaking_text(self.overtaking_wait(arc))}"
         return StepDelay(value, why, _span_of_keys(reader, "period", "rate"))
 
     def holding_age(self, arc: Arc) -> TimingValue:
@@ -230,6 +234,27 @@ class StepDelays:
             return ZERO_VALUE
         return self.analysis.storing_waits.get(arc.target, ZERO_VALUE)
 
+    def overtaking_wait(self, arc: Arc) -> TimingValue:
+        """Return for how long a newer message may be replaced by an older one that it has overtaken.
+
+        That is so where activations of a reentrant source run at once, and a message waits to be read. All that began before
+        one has ended R after its activation; what begins then, at most a gap later, is the last to come, and comes at most R
+        later. `ZERO_VALUE` (the very object) where messages come in the order of their activations.
+        """
+        system = self.analysis.system
+        source, reader = system.activities[arc.source], system.activities[arc.target]
+        if arc.role != "data" or not is_reentrant(system, source):
+            return ZERO_VALUE
+        is_read_at_once = self.arrivals.fires_reader(arc) and reader.mode == "any"
+        if is_read_at_once and reader.every == 1 and not reader.throttle:
+            return ZERO_VALUE
+        response, gap = self.response_value(source.id), self.arrivals.activation_gap(source.id)
+        if source.period and response.value is not None and response.complete:
+            spread = response.value - (source.bcet or 0) * system.tick
+            if spread <= (source.period - source.jitter) * system.tick:
+                return ZERO_VALUE
+        return sum_bounds((response, gap))
+
     def _condition_wait(self, arc: Arc) -> TimingValue:
         """Return what an output that is not always published adds: its promised gap, or an assumption."""
         system = self.analysis.system
@@ -266,6 +291,13 @@ def _gap_text(gap: TimingValue) -> str:
         if gap.value is not None and is_known_bound(gap)
         else ""
     )
+
+
+def _overtaking_text(wait: TimingValue) -> str:
+    """Return the words for the time for which an older message may stand in a newer one's place."""
+    if not wait.value or not is_known_bound(wait):
+        return ""
+    return f", which an older one may replace for {figure_wording.format_duration(wait.value)}"
 
 
 def _storing_text(wait: TimingValue) -> str:

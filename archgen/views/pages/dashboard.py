@@ -212,12 +212,18 @@ def _requirement_card(lookup: Lookup) -> DashboardCard | None:
     return DashboardCard("Requirements", blocks, 3, counts, link, "cells")
 
 
+def _count_missing_steps(row: ProgressCounts) -> int:
+    """Return how many steps are still to be done, over all components."""
+    done_counts: list[int] = [getattr(row, step) for step in PROGRESS_STEPS]
+    return row.components * len(done_counts) - sum(done_counts)
+
+
 def _progress_card(lookup: Lookup) -> DashboardCard | None:
     partner_rows = [row for row in measure_progress(lookup.architecture) if row.scope == "partner" and row.components]
     if not partner_rows:
         return None
     # Who has most left to do comes first.
-    partner_rows.sort(key=lambda row: -sum(row.components - getattr(row, step) for step in PROGRESS_STEPS))
+    partner_rows.sort(key=_count_missing_steps, reverse=True)
     columns = (
         Column("Partner", 1.6),
         Column("Components", 1, "right"),
