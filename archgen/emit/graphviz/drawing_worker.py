@@ -6,6 +6,7 @@ output is kept apart, and whoever waits at the other end sees the pipe close.
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
 import struct
@@ -17,6 +18,8 @@ from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Drawing
 
 _LENGTH_PREFIX = struct.Struct("<Q")
+PROCESSOR_SECONDS = 30
+"""Seconds of the processor that one drawing may take: what else the machine does must not decide what a picture looks like."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +82,22 @@ def main() -> None:
 def _draw_task(task: DrawingTask) -> Picture | DrawingFailure:
     from archgen.emit.graphviz.graph_drawing import draw_picture
 
+    _limit_processor_time()
     try:
         return draw_picture(task.drawing, task.links, task.formats, simple=task.simple, warning=task.warning)
     except Exception as error:  # noqa: BLE001 - whatever it is costs this picture, not the others
         return DrawingFailure("layout", f"{type(error).__name__}: {error}")
+
+
+def _limit_processor_time() -> None:
+    """Have the system end this process where the next drawing takes too long (not on Windows)."""
+    try:
+        import resource
+    except ImportError:
+        return
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    limit = math.ceil(usage.ru_utime + usage.ru_stime) + PROCESSOR_SECONDS
+    _, hard_limit = resource.getrlimit(resource.RLIMIT_CPU)
+    if hard_limit != resource.RLIM_INFINITY:
+        limit = min(limit, hard_limit)
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, hard_limit))

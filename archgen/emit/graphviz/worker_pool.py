@@ -7,6 +7,7 @@ as well, the picture comes without any format. The other pictures are not affect
 from __future__ import annotations
 
 import queue
+import signal
 import subprocess
 import sys
 import threading
@@ -15,13 +16,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen.emit.graphviz import font_config
-from archgen.emit.graphviz.drawing_worker import DrawingFailure, DrawingTask, receive_message, send_message
+from archgen.emit.graphviz.drawing_worker import (
+    PROCESSOR_SECONDS,
+    DrawingFailure,
+    DrawingTask,
+    receive_message,
+    send_message,
+)
 from archgen.emit.picture import Picture
 from archgen.resources import worker_environment
 from archgen.views.chart_shapes import Chart
 
-DRAWING_TIMEOUT = 30.0
-"""Seconds that one drawing may take."""
+DRAWING_TIMEOUT = 300.0
+"""Seconds that one drawing may take by the clock: for what hangs, and for a machine without limits on processor time."""
 
 ProgressCallback = Callable[[int, int], None]
 CommandLine = Sequence[str]
@@ -188,12 +195,17 @@ class DrawingWorker:
         try:
             return self._exchange_messages(task)
         except (EOFError, OSError):
-            self.stop_process()
-            return DrawingFailure(
-                "layout", f"it took longer than {timeout:g} s" if self._timed_out else "Graphviz broke down"
-            )
+            return DrawingFailure("layout", self._explain_end(self.stop_process(), timeout))
         finally:
             alarm.cancel()
+
+    def _explain_end(self, exit_status: int | None, timeout: float) -> str:
+        """Say why the process ended before it answered."""
+        if self._timed_out:
+            return f"it took longer than {timeout:g} s"
+        if exit_status is not None and exit_status == -getattr(signal, "SIGXCPU", 0):
+            return f"it took longer than {PROCESSOR_SECONDS} s of the processor"
+        return "Graphviz broke down"
 
     def _exchange_messages(self, task: DrawingTask) -> Picture | DrawingFailure:
         process = self.start_process()
@@ -221,15 +233,17 @@ class DrawingWorker:
         if self._process:
             self._process.kill()
 
-    def stop_process(self) -> None:
-        """End the process. It can be started again."""
+    def stop_process(self) -> int | None:
+        """End the process, and return its exit status, None where there was none. It can be started again."""
         process, self._process = self._process, None
+        exit_status = None
         if process:
             process.kill()
-            process.wait()
+            exit_status = process.wait()
             for pipe in (process.stdin, process.stdout):
                 if pipe:
                     try:
                         pipe.close()
                     except OSError:  # what was still to be written has no reader any more
                         continue
+        return exit_status
