@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 @shared_options.level_option
 @shared_options.revision_option
 @shared_options.history_option
+@shared_options.component_pictures_option
 @shared_options.keep_going_option
 @shared_options.trust_option
 def command(  # noqa: PLR0913 - one for each option
@@ -52,6 +53,7 @@ def command(  # noqa: PLR0913 - one for each option
     level: DetailLevel | None,
     revision: str | None,
     history: bool,
+    component_pictures: bool | None,
     keep_going: bool,
     trust: str | None,
 ) -> None:
@@ -75,6 +77,7 @@ def command(  # noqa: PLR0913 - one for each option
         command_support.print_warning,
         history,
         trusted_revision,
+        component_pictures,
     )
     target = output or checked_project.output_folder
     with command_support.explain_write_errors():

@@ -55,6 +55,12 @@ history_option = click.option(
     help="Show how the project grew month by month, from git.  [default: history]",
 )
 
+component_pictures_option = click.option(
+    "--component-pictures/--no-component-pictures",
+    default=None,
+    help="Draw a picture of each component for the site, or leave them to its map.  [default: up to 300 components]",
+)
+
 trust_option = click.option(
     "--trust",
     metavar="REV",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 @shared_options.level_option
 @shared_options.revision_option
 @shared_options.history_option
+@shared_options.component_pictures_option
 @shared_options.keep_going_option
 def command(  # noqa: PLR0913 - one for each option
     *,
@@ -29,6 +30,7 @@ def command(  # noqa: PLR0913 - one for each option
     level: DetailLevel | None,
     revision: str | None,
     history: bool,
+    component_pictures: bool | None,
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a web site that opens from the disk."""
@@ -44,6 +46,7 @@ def command(  # noqa: PLR0913 - one for each option
         command_support.make_progress_printer(),
         command_support.print_warning,
         history,
+        component_pictures=component_pictures,
     )
     target = output or checked_project.output_folder / "site"
     with command_support.explain_write_errors():

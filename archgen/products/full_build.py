@@ -14,7 +14,7 @@ from archgen.pipeline import CheckedProject
 from archgen.products import build_stamp, project_views, report_cache
 from archgen.products.backend_products import choose_backends, make_backend_product
 from archgen.products.product_inputs import Product, ProductInputs
-from archgen.products.product_table import PRODUCTS, REPORT
+from archgen.products.product_table import PRODUCTS, REPORT, SITE
 from archgen.products.product_writing import StartedProducts, start_products, write_started
 from archgen.products.trusted_backends import TrustedRevision
 
@@ -53,7 +53,12 @@ def build_outputs(
     """
     # Settled once: git is asked a single time, and the stamps depend on the revision that is printed.
     revision = project_views.choose_revision(inputs.checked_project, inputs.options)
-    inputs = replace(inputs, options=replace(inputs.options, revision=revision))
+    shows_components = any(product is not SITE and product.picture_formats is not None for product in products)
+    inputs = replace(
+        inputs,
+        options=replace(inputs.options, revision=revision),
+        draws_components=shows_components or inputs.pictures_components,
+    )
     stamp_keys = _make_stamp_keys(inputs, products)
     fresh_names = {
         product.name
@@ -119,7 +124,7 @@ def _list_inputs(inputs: ProductInputs) -> Iterator[object]:
     """
     checked_project, options = inputs.checked_project, inputs.options
     project, sources, chapters = checked_project.architecture.project, checked_project.sources, checked_project.chapters
-    yield project.id, project.title, options.selector_text, options.level, options.revision
+    yield project.id, project.title, options.selector_text, options.level, options.revision, options.component_pictures
     # `sources` has the text of every file that was read, interface definitions included.
     yield (
         checked_project.yaml_files,

@@ -31,3 +31,5 @@ class OutputOptions:
     """Whether documents show how the project grew; only possible where git can tell."""
     trusted_revision: TrustedRevision | None = None
     """Decides which backends of the project itself may run; None allows all of them."""
+    component_pictures: bool | None = None
+    """Whether the site has a picture of each component; None: up to `product_inputs.MAX_PICTURED_COMPONENTS` of them."""

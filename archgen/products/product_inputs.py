@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -13,8 +13,15 @@ from archgen.pipeline import CheckedProject
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews
+from archgen.views import drawing_set
+from archgen.views.chart_shapes import Drawing
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.shapes import Outline, Page
+
+MAX_PICTURED_COMPONENTS = 300
+"""With more, the site has no picture of each component unless it is asked for: of 1,000 they take minutes to draw, and
+the map shows the same at once.
+"""
 
 
 # Without slots: `cached_property` stores its values in the object's dictionary.
@@ -26,11 +33,31 @@ class ProductInputs:
     options: OutputOptions
     template: Path | None = None
     """The user's template of the Word report."""
+    draws_components: bool = True
+    """Whether any product shows the pictures of single components."""
+
+    @property
+    def pictures_components(self) -> bool:
+        """Whether the site has a picture of each component."""
+        wish = self.options.component_pictures
+        return len(self._list_shown_components()) <= MAX_PICTURED_COMPONENTS if wish is None else wish
+
+    def _list_shown_components(self) -> Collection[str]:
+        selection = self.options.selection
+        return self.checked_project.architecture.components if selection is None else selection.components
 
     @cached_property
     def views(self) -> ProjectViews:
         """The look-ups and drawings."""
-        return project_views.make_views(self.checked_project, self.options)
+        return project_views.make_views(self.checked_project, self.options, draws_components=self.draws_components)
+
+    @cached_property
+    def site_drawings(self) -> Mapping[str, Drawing]:
+        """The drawings that the site shows, by id."""
+        drawings = self.views.drawings
+        if self.pictures_components:
+            return drawings
+        return {name: each for name, each in drawings.items() if not drawing_set.is_component_drawing(each)}
 
     @cached_property
     def outline(self) -> Outline:
@@ -40,7 +67,8 @@ class ProductInputs:
     @cached_property
     def pages(self) -> tuple[Page, ...]:
         """The site's pages."""
-        return tuple(site_pages.make_pages(self.views.lookup, self.views.edition))
+        edition = replace(self.views.edition, drawings=self.site_drawings)
+        return tuple(site_pages.make_pages(self.views.lookup, edition))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +108,8 @@ class Product:
     """The formats of the pictures that it shows; None if it shows none."""
     picture_patterns: tuple[str, ...] = ("*",)
     """The ids of the pictures that it shows."""
+    list_drawings: Callable[[ProductInputs], Mapping[str, Drawing]] = lambda inputs: inputs.views.drawings
+    """The drawings among which these are."""
     entry_file: str = ""
     """The file of its folder to open first."""
     follows_inputs: bool = True

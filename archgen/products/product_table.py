@@ -72,7 +72,7 @@ def _start_site(inputs: ProductInputs) -> FinishProduct:
         reader = _RecordingReader(inputs.checked_project.chapters.read_picture)
         files = site.build_site(
             page_list,
-            pictures,
+            {name: picture for name, picture in pictures.items() if name in inputs.site_drawings},
             title=inputs.checked_project.architecture.project.title,
             revision=inputs.views.edition.revision,
             notices=report_outline.make_notices(inputs.views.lookup, inputs.views.edition),
@@ -107,7 +107,9 @@ def _start_packed(inputs: ProductInputs) -> FinishProduct:
 
 # A PNG for programs that know no SVG; an SVG with text as outlines, since the reader's Word may lack the font.
 REPORT = Product("report", "report.docx", _start_report, ("png", "svg_outlines"))
-SITE = Product("site", "site", _start_site, ("svg",), entry_file="index.html")
+SITE = Product(
+    "site", "site", _start_site, ("svg",), entry_file="index.html", list_drawings=lambda inputs: inputs.site_drawings
+)
 DIAGRAMS = make_diagrams_product(("svg", "png"))
 PACKED = Product("packed", "packed.yaml", _start_packed)
 

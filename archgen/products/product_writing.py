@@ -57,13 +57,15 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
 def _choose_drawings(inputs: ProductInputs, products: Sequence[Product]) -> tuple[Drawing, ...]:
     """Return the drawings that any of the products shows."""
     patterns = dict.fromkeys(pattern for product in products for pattern in product.picture_patterns)
+    shown_names = {
+        name
+        for product in products
+        for name in product.list_drawings(inputs)
+        if any(pattern == "*" or fnmatch.fnmatchcase(name, pattern) for pattern in product.picture_patterns)
+    }
+    drawings = tuple(drawing for name, drawing in inputs.views.drawings.items() if name in shown_names)
     if "*" in patterns:
-        return tuple(inputs.views.drawings.values())
-    drawings = tuple(
-        drawing
-        for name, drawing in inputs.views.drawings.items()
-        if any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
-    )
+        return drawings
     if not drawings:
         msg = f"no picture is called {' or '.join(patterns)}"
         raise file_tree.OutputError(msg, _name_pictures(inputs.views.drawings))

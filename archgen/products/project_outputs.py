@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from archgen.emit import file_tree
@@ -25,7 +26,8 @@ def write_report(
 
 def write_site(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
     """Write the static site into a folder."""
-    write_product(ProductInputs(checked_project, options), SITE, target)
+    inputs = ProductInputs(checked_project, options)
+    write_product(replace(inputs, draws_components=inputs.pictures_components), SITE, target)
 
 
 def write_diagrams(

@@ -68,13 +68,20 @@ class ProjectViews:
     drawings: Mapping[str, Drawing]
 
 
-def make_views(checked_project: CheckedProject, options: OutputOptions) -> ProjectViews:
-    """Make the views: look-ups with timing, drawings, history, and what the documents contain."""
+def make_views(
+    checked_project: CheckedProject, options: OutputOptions, *, draws_components: bool = True
+) -> ProjectViews:
+    """Make the views: look-ups with timing, drawings, history, and what the documents contain.
+
+    Without `draws_components` there is no drawing of a single component.
+    """
     lookup = replace(
         make_scoped_lookup(checked_project, options), timing=analyse_with_chains(checked_project.architecture)
     )
     project_history = read_history(checked_project, options)
-    all_drawings = drawing_set.make_drawings(lookup, options.selection, options.level or "implementation")
+    all_drawings = drawing_set.make_drawings(
+        lookup, options.selection, options.level or "implementation", draws_components=draws_components
+    )
     all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
     edition = DocumentEdition(
         revision=choose_revision(checked_project, options),

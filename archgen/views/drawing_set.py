@@ -13,10 +13,19 @@ from archgen.views.timing import chain_charts
 
 
 def make_drawings(
-    lookup: Lookup, selection: Selection | None, level: Literal["functional", "implementation"]
+    lookup: Lookup,
+    selection: Selection | None,
+    level: Literal["functional", "implementation"],
+    *,
+    draws_components: bool = True,
 ) -> dict[str, Drawing]:
-    """Make the drawings of one level, or of a selection; of charts only those that show something selected."""
-    element_graphs = graphs.make_all_graphs(lookup.architecture, selection, lookup.findings, lookup.timing)
+    """Make the drawings of one level, or of a selection; of charts only those that show something selected.
+
+    Without `draws_components` there is none of a single component.
+    """
+    element_graphs = graphs.make_all_graphs(
+        lookup.architecture, selection, lookup.findings, lookup.timing, draws_components=draws_components
+    )
     timing_charts = chain_charts.make_timing_charts(lookup)
     drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs} | {
         chart.id: chart for chart in timing_charts
@@ -31,6 +40,11 @@ def make_drawings(
             if not _is_implementation_drawing(drawing)
         }
     )
+
+
+def is_component_drawing(drawing: Drawing) -> bool:
+    """Whether a drawing shows a single component, with its neighbours or its nodes."""
+    return isinstance(drawing, Graph) and drawing.kind in {"component", "implementation"}
 
 
 def _is_implementation_drawing(drawing: Drawing) -> bool:

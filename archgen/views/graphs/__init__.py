@@ -52,16 +52,18 @@ def make_all_graphs(
     selection: Selection | None = None,
     findings: Iterable[Diagnostic] = (),
     timed: TimingLookup | None = None,
+    *,
+    draws_components: bool = True,
 ) -> tuple[Graph, ...]:
-    """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out."""
-    return tuple(
-        graph
-        for graph in _iterate_graphs(make_lookup(architecture, findings, timing_lookup=timed), selection)
-        if graph.boxes
-    )
+    """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out.
+
+    Without `draws_components` there is none of a single component.
+    """
+    lookup = make_lookup(architecture, findings, timing_lookup=timed)
+    return tuple(graph for graph in _iterate_graphs(lookup, selection, draws_components) if graph.boxes)
 
 
-def _iterate_graphs(lookup: Lookup, selection: Selection | None) -> Iterator[Graph]:
+def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_components: bool) -> Iterator[Graph]:  # noqa: FBT001 - private
     architecture = lookup.architecture
     shown_components = list(architecture.components.values())
     if selection is None:
@@ -74,7 +76,7 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None) -> Iterator[Gra
         yield selection_graphs.draw_functional_part(lookup, "overview", "The selected part", selection.components)
     for name in dict.fromkeys(each.group for each in shown_components):
         yield fold_graph(draw_group(lookup, name))
-    for each in shown_components:
+    for each in shown_components if draws_components else ():
         yield draw_component(lookup, each.id)
         yield draw_implementation(lookup, each.id)
     if selection is None:
