@@ -9,8 +9,9 @@ import yaml
 
 from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject, check_project
-from archgen.products import project_outputs
+from archgen.products import full_build, product_inputs, project_outputs
 from archgen.products.output_options import OutputOptions
+from archgen.products.product_table import PRODUCTS
 
 
 @pytest.fixture
@@ -32,6 +33,38 @@ def test_the_packed_and_the_resolved_file_are_yaml(project: CheckedProject, tmp_
 def test_the_site_has_a_page_for_each_component(project: CheckedProject, tmp_path: Path) -> None:
     project_outputs.write_site(project, OutputOptions(show_history=False), tmp_path / "site")
     assert {file.name for file in (tmp_path / "site" / "components").rglob("*.html")} == {"g.a.html", "g.b.html"}
+
+
+def list_component_pictures(site: Path) -> list[str]:
+    return sorted(file.relative_to(site).as_posix() for file in (site / "figures").rglob("g.*.svg"))
+
+
+@pytest.mark.parametrize(("wish", "most"), [(False, 300), (None, 1)])
+def test_a_large_site_has_no_picture_of_each_component(
+    project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
+) -> None:
+    monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
+    options = OutputOptions(show_history=False, component_pictures=wish)
+    project_outputs.write_site(project, options, tmp_path / "site")
+    assert list_component_pictures(tmp_path / "site") == []
+    assert "could not be drawn" not in (tmp_path / "site" / "components" / "g.a.html").read_text()
+    # A build that draws them for the report leaves the site as it is alone.
+    inputs = product_inputs.ProductInputs(project, options)
+    full_build.build_outputs(inputs, (PRODUCTS["site"], PRODUCTS["diagrams"]), tmp_path / "build")
+    assert list_component_pictures(tmp_path / "build" / "site") == []
+    assert (tmp_path / "build" / "diagrams" / "components" / "g.a.svg").exists()
+
+
+@pytest.mark.parametrize(("wish", "most"), [(True, 1), (None, 2)])
+def test_a_site_has_pictures_of_components_up_to_a_number_or_as_asked(
+    project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
+) -> None:
+    monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
+    project_outputs.write_site(project, OutputOptions(show_history=False, component_pictures=wish), tmp_path / "site")
+    assert list_component_pictures(tmp_path / "site")[:2] == [
+        "figures/components/g.a.svg",
+        "figures/components/g.b.svg",
+    ]
 
 
 def test_a_picture_that_nobody_knows_is_an_error_and_nothing_is_written(

@@ -42,6 +42,7 @@ class SiteNavigation:
     pages: Mapping[str, Page]
     cached_html: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
     cached_entries: dict[tuple[str, str], str] = field(default_factory=dict)
+    cached_counts: dict[str, str] = field(default_factory=dict)
 
     def write_tree(self, page: Page, root: str) -> str:
         """Write the tree for a page. Trees that differ only in the marked page are made once."""
@@ -108,7 +109,7 @@ class SiteNavigation:
 
     def _write_new_entry(self, page: Page, ancestry: tuple[str, ...], root: str) -> str:
         mark = status_marks.write_mark(page.mark) if page.mark else ""
-        child_counts = _count_by_kind(self.children.get(page.anchor, ()))
+        child_counts = self._count_children(page.anchor)
         count = f' <span class="count" aria-hidden="true">{child_counts}</span>' if child_counts else ""
         visible_children = self._visible_pages(page.anchor, ancestry) if page.anchor == ancestry[-1] else ()
         items = NEWLINE.join(
@@ -117,6 +118,12 @@ class SiteNavigation:
         )
         inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
         return f"<li>{self._write_link(page, root, f'{mark}{count}')}{inner}</li>"
+
+    def _count_children(self, anchor: str) -> str:
+        """Return how many pages are below a page, counted once: there may be thousands, and each shows its parent."""
+        if anchor not in self.cached_counts:
+            self.cached_counts[anchor] = _count_by_kind(self.children.get(anchor, ()))
+        return self.cached_counts[anchor]
 
     def _write_link(self, page: Page, root: str, suffix: str = "") -> str:
         path = self.links.pages[page.anchor]
