@@ -41,7 +41,7 @@ def list_component_pictures(site: Path) -> list[str]:
 
 @pytest.mark.parametrize(("wish", "most"), [(False, 300), (None, 1)])
 def test_a_large_site_has_no_picture_of_each_component(
-    project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
+    *, project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
 ) -> None:
     monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
     options = OutputOptions(show_history=False, component_pictures=wish)
@@ -57,7 +57,7 @@ def test_a_large_site_has_no_picture_of_each_component(
 
 @pytest.mark.parametrize(("wish", "most"), [(True, 1), (None, 2)])
 def test_a_site_has_pictures_of_components_up_to_a_number_or_as_asked(
-    project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
+    *, project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
 ) -> None:
     monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
     project_outputs.write_site(project, OutputOptions(show_history=False, component_pictures=wish), tmp_path / "site")
