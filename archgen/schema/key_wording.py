@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics.suggestions import did_you_shorten, find_closest
 from archgen.schema import key_places
 from archgen.schema.schema_wording import (
     ErrorPlace,
@@ -85,7 +85,7 @@ def _guess_key(entry: MappingEntry, known_keys: tuple[str, ...], path: tuple[str
     name = plural if plural in known_keys else find_closest(entry.key, known_keys)
     # `modes` is a word of its own: it means `nodes` only if nodes stand below it.
     is_likely = name is not None and (bool(path) or key_places.may_be_section(entry, name))
-    return f"did you mean `{name}`?" if is_likely else None
+    return f"did you mean `{name}`?" if is_likely else did_you_shorten(entry.key, known_keys) if path else None
 
 
 def _find_key_help(entry: MappingEntry, known_keys: tuple[str, ...]) -> str | None:

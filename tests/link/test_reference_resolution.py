@@ -232,7 +232,7 @@ def test_keys_of_nodes_are_ports_of_what_they_implement(linked: Linked, uses: st
             "calls: {nothing: }",
             (
                 "9:35 unknown-reference: no input named `nothing` in `g.a` or `g.b`"
-                " (5:7 declared here, 6:7 declared here) | None"
+                " (5:7 declared here, 6:7 declared here) | there are `i` and `j`"
             ),
         ),
         (

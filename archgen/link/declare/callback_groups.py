@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference, take_path_end
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
@@ -58,7 +58,7 @@ def _resolve_component(
         length = reference.text.count(".") + 1
         guess = resolver.guess_name(reference.text, [take_path_end(name, length) for name in implements])
         diagnostic = diagnose_unknown_reference(
-            reference, f"component of `{node_id}`", guess, Span("", 0, 0, 0, 0), node_id
+            reference, f"component of `{node_id}`", guess, NO_SPAN, node_id, known_names=implements
         )
         resolver.diagnostics.append(diagnostic)
     return None
