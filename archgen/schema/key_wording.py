@@ -74,10 +74,15 @@ def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path:
     help_line = (
         _find_key_help(entry, known_keys)
         or key_places.find_sibling_help(entry, path, schema_part["title"])
-        or (home or guess if path else guess or home)
+        or (home if home and path and not _is_one_slip(entry.key, known_keys) else guess or home)
         or f"{'its keys' if path else 'the sections'} are {join_quoted(known_keys)}"
     )
     return Diagnostic("unknown-key", message, entry.key_span, help=help_line, element=element)
+
+
+def _is_one_slip(key: str, known_keys: tuple[str, ...]) -> bool:
+    """Whether only an `s` at the end is missing from a known key, or too much: nobody means a key of another place then."""
+    return f"{key}s" in known_keys or (key.endswith("s") and key[:-1] in known_keys)
 
 
 def _guess_key(entry: MappingEntry, known_keys: tuple[str, ...], path: tuple[str | int, ...]) -> str | None:

@@ -29,6 +29,9 @@ def _component(text: str) -> str:
         (_component("inputs: {scan: {qos: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, subscribes: {scan: {qos: ...}}}}`"),
         (_component("outputs: {scan: {message: a/msg/B}}"), "write it as `types: {TYPE: {message: ...}}`"),
         (_component("outputs: {scan: {rate: 1 Hz}}"), "write it as `timing: {rate: ...}` of the component or of its node"),
+        # One letter too few or too many is a slip, wherever else the key belongs.
+        ("hosts: {pc: {core: 4}}", "did you mean `cores`?"),
+        ("nodes: {n: {hosts: pc}}", "did you mean `host`?"),
         (_component("hosts: {}"), "`hosts` is a section of its own: it begins in the first column"),
         ("nodes: {n: {depth: 3}}", "its keys are `implements`"),
         ("distro: jazzy", "write it below `ros`: `ros: {distro: ...}`"),

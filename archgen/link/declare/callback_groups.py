@@ -22,11 +22,13 @@ def declare_callback_groups(
     groups: dict[str, tuple[str, ...]] = {}
     first_spans: dict[str, Span] = {}
     groups_body = mapping_values.get_mapping(body, "callback_groups")
+    written_names = {scalar.text for scalar in mapping_values.get_scalars(body, "implements")}
+    is_complete = 0 < len(written_names) <= len(implements)
     for entry in groups_body:
         sanity_checks.report_empty_list(groups_body, entry.key, "component", node_id, resolver.diagnostics)
         members: list[str] = []
         for scalar in mapping_values.get_scalars(groups_body, entry.key):
-            component = _resolve_component(scalar, resolver, node_id, implements)
+            component = _resolve_component(scalar, resolver, node_id, implements, is_complete=is_complete)
             if component in first_spans:
                 resolver.diagnostics.append(_diagnose_second_group(scalar, first_spans[component], node_id))
             elif component is not None:
@@ -38,9 +40,17 @@ def declare_callback_groups(
 
 
 def _resolve_component(
-    reference: ScalarNode, resolver: ReferenceResolver, node_id: str, implements: tuple[str, ...]
+    reference: ScalarNode,
+    resolver: ReferenceResolver,
+    node_id: str,
+    implements: tuple[str, ...],
+    *,
+    is_complete: bool,
 ) -> str | None:
-    """Return the component of the node that a reference means: its id, or the end of it."""
+    """Return the component of the node that a reference means: its id, or the end of it.
+
+    Where not all that the node implements is known (`is_complete`), it may be what is not.
+    """
     matching = [name for name in implements if name == reference.text or name.endswith(f".{reference.text}")]
     if len(matching) == 1:
         return matching[0]
@@ -54,7 +64,7 @@ def _resolve_component(
                 element=node_id,
             )
         )
-    elif implements and not resolver.is_lost(reference.text):
+    elif is_complete and not resolver.is_lost(reference.text):
         length = reference.text.count(".") + 1
         guess = resolver.guess_name(reference.text, [take_path_end(name, length) for name in implements])
         diagnostic = diagnose_unknown_reference(
