@@ -54,7 +54,7 @@ _ELEMENT_SECTIONS = {
 }
 
 
-def find_home(key: str, path: KeyPath, kind: str) -> str | None:
+def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     """Return the place where a key is written that an element of a kind (its title in the schema) does not have."""
     is_port = len(path) > 2 and path[-2] in {"inputs", "outputs"} and path[0] == "groups"  # noqa: PLR2004
     parent = _find_parent(key, kind)

@@ -48,7 +48,7 @@ def _diagnose_foreign_keys(
     entry = place.node.entries[keys[0]] if isinstance(place.node, MappingNode) else place.entry
     quoted_keys = join_words([f"`{key}`" for key in keys], "or")
     message = f"{add_article(schema_part['title'])} has no keys {quoted_keys}"
-    help_line = key_places.find_home(keys[0], place.path, schema_part["title"])
+    help_line = key_places.find_key_home(keys[0], place.path, schema_part["title"])
     # A component beside its group instead of below it: its own column is wrong, not its keys.
     if schema_part["title"] == "Functional group" and foreign_kind == "component":
         help_line = f"if `{place.path[-1]}` is a component, indent it below `components:` of its group"
@@ -68,7 +68,7 @@ def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path:
     odd_character = diagnose_odd_character(entry.key, entry.key_span, "unknown-key", element)
     if odd_character is not None:
         return odd_character
-    home = key_places.find_home(entry.key, path, schema_part["title"])
+    home = key_places.find_key_home(entry.key, path, schema_part["title"])
     guess = _guess_key(entry, known_keys, path)
     # The surest first: what the key holds, then where else it is a key. Between sections one letter tells more.
     help_line = (

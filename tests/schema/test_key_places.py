@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.schema import key_wording
-from archgen.schema.key_places import find_common_kind, find_home
+from archgen.schema.key_places import find_common_kind, find_key_home
 from archgen.schema.language_schema import load_schema
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax import yaml_parser
@@ -76,7 +76,7 @@ def test_a_kind_is_common_only_to_several_keys() -> None:
 
 
 def test_what_every_element_has_has_no_home() -> None:
-    assert find_home("description", ("links", "lan"), "Link") is None
+    assert find_key_home("description", ("links", "lan"), "Link") is None
 
 
 def test_a_key_that_holds_an_odd_blank_is_no_guess() -> None:
