@@ -10,7 +10,8 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import input_wiring
 from archgen.link.project_linking import link_project
-from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
+from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
 from archgen.schema import normalise_document, validate_document

@@ -5,7 +5,8 @@ from __future__ import annotations
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference, take_path_end
+from archgen.link.reference_resolution import ReferenceResolver, take_path_end
+from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 EXECUTOR_KEYS = ("threads", "scheduling", "callback_groups", "reentrant")
