@@ -11,9 +11,9 @@ from archgen.model import flow_graph
 from archgen.model.graph_search import find_reachable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping
 
-    from archgen.model.architecture import Architecture, Waypoint
+    from archgen.model.architecture import Architecture, Chain, Waypoint
 
 
 def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -53,6 +53,9 @@ def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
     readers = _readers_by_output(architecture)
     open_components = {i.component for i in architecture.inputs.values() if i.from_written and not i.connections}
     for chain in architecture.chains.values():
+        if _runs_backwards(architecture, chain, successors):
+            yield _diagnose_backward_chain(chain)
+            continue
         for waypoint, next_waypoint in pairwise(chain.through):
             # A chain that goes through an output leaves its component by that output only.
             starts = (
@@ -77,6 +80,32 @@ def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
                 help="name the connection that is missing in an input, or correct the order in `through`",
                 element=chain.id,
             )
+
+
+def _runs_backwards(architecture: Architecture, chain: Chain, successors: Mapping[str, Collection[str]]) -> bool:
+    """Whether each of three elements or more leads to the one before it, and none to the one behind it.
+
+    Of two elements, that nothing leads from one to the other says it as well.
+    """
+    steps = [_components_of_waypoint(architecture, waypoint) for waypoint in chain.through]
+    if not all(steps):
+        return False
+    reached = [find_reachable(successors, step).keys() for step in steps]
+    return len(steps) > 2 and all(  # noqa: PLR2004
+        reached[number + 1] & steps[number] and not reached[number] & steps[number + 1]
+        for number in range(len(steps) - 1)
+    )
+
+
+def _diagnose_backward_chain(chain: Chain) -> Diagnostic:
+    right_order = ", ".join(waypoint.id for waypoint in reversed(chain.through))
+    return Diagnostic(
+        "broken-chain",
+        f"the chain `{chain.id}` runs against what flows: from `{chain.through[0].id}` nothing leads to `{chain.through[-1].id}`",
+        chain.through[0].at,
+        help=f"a chain begins where the data come from: `[{right_order}]`",
+        element=chain.id,
+    )
 
 
 def _readers_by_output(architecture: Architecture) -> Mapping[str, set[str]]:

@@ -1,4 +1,4 @@
-"""Do the messages, services and actions exist, and does every topic carry only one message?"""
+"""Do the messages, services and actions exist?"""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.known_interfaces import Interfaces, InterfaceStatus
 from archgen.model.message_types import flow_of
-from archgen.model.node import Endpoint
 
 _FLOW_NOUNS = {"topic": "message", "service": "service", "action": "action"}
 
@@ -46,17 +45,12 @@ def _find_written_messages(architecture: Architecture) -> Iterator[MessageMentio
     for type_ in architecture.types.values():
         if type_.message is not None and type_.origin != "shipped":
             # A type that is itself a message (`type: std_msgs/msg/String`) has no declaration: the port is its place.
-            span = _first_written_span(type_.message_at, type_.at, port_spans.get(type_.name, NO_SPAN))
+            span = first_written_span(type_.message_at, type_.at, port_spans.get(type_.name, NO_SPAN))
             yield MessageMention(type_.message, span, type_.name)
     for node in architecture.nodes.values():
         for use in node.uses:
             if use.message is not None:
                 yield MessageMention(use.message, use.message_at, node.id)
-
-
-def _first_written_span(*spans: Span) -> Span:
-    """Return the first span that is not `NO_SPAN`, or `NO_SPAN`."""
-    return next((span for span in spans if span != NO_SPAN), NO_SPAN)
 
 
 def _mentions_with_status(architecture: Architecture, status: InterfaceStatus) -> Iterator[MessageMention]:
@@ -270,83 +264,8 @@ def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
-def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Several messages are named for one topic, service or action.
-
-    Why: under one name all nodes have to use one message. Those that use another one are never connected (ROS 2), or are
-    refused with an error when they meet (ROS 1).
-
-    Bad:
-
-        ros: {distro: jazzy}
-        groups: {sensing: {components: {camera: Camera with preview}}}
-        nodes:
-          camera:
-            implements: sensing.camera
-            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
-          viewer:
-            implements: sensing.camera
-            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/CompressedImage}}}
-
-    Good:
-
-        ros: {distro: jazzy}
-        groups: {sensing: {components: {camera: Camera with preview}}}
-        nodes:
-          camera:
-            implements: sensing.camera
-            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
-          viewer:
-            implements: sensing.camera
-            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
-    """
-    for topic in architecture.topics.values():
-        users = _first_user_by_message((*topic.writers, *topic.readers))
-        if len(users) > 1:
-            # The finding is placed at the second user: the first one set the message, the second one deviates from it.
-            first, second = list(users.values())[:2]
-            labels = (
-                Label(_message_span(user, architecture), f"`{user.message}` here, by the node `{user.node}`")
-                for user in users.values()
-                if user is not second
-            )
-            names = " and ".join(f"`{message}`" for message in users)
-            yield Diagnostic(
-                "topic-type-conflict",
-                f"the {topic.flow} `{topic.name}` carries {names}",
-                _message_span(second, architecture),
-                labels=tuple(label for label in labels if label.span != NO_SPAN),
-                help=f"give both nodes the same message, or one of them another {topic.flow}: `{first.node}` has "
-                f"`{first.message}`, `{second.node}` `{second.message}`",
-                element=second.node,
-            )
-
-
-def _first_user_by_message(endpoints: tuple[Endpoint, ...]) -> dict[str, Endpoint]:
-    """Return the first endpoint that uses each message, by message, in the order of the endpoints."""
-    users = dict[str, Endpoint]()
-    for endpoint in endpoints:
-        if endpoint.message is not None:
-            users.setdefault(endpoint.message, endpoint)
-    return users
-
-
-def _message_span(endpoint: Endpoint, architecture: Architecture) -> Span:
-    """Return the span where an endpoint's message was written, else its endpoint's, its port's or its node's."""
-    port = architecture.outputs.get(endpoint.port or "") or architecture.inputs.get(endpoint.port or "")
-    node = architecture.nodes.get(endpoint.node)
-    return _first_written_span(
-        endpoint.message_at,
-        endpoint.at,
-        port.type_at if port else NO_SPAN,
-        port.at if port else NO_SPAN,
-        node.at if node else NO_SPAN,
-    )
-
-
 RULES = (
     (unknown_message, Severity.ERROR),
     (unchecked_message, Severity.NOTE),
     (action_as_message, Severity.WARNING),
-    (topic_type_conflict, Severity.ERROR),
 )

@@ -76,8 +76,8 @@ def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]
 def deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """Elements wait for all of several inputs, one of which never comes: they never run.
 
-    Why: An element with `trigger: all` runs when each of its inputs has something new. Where one of them only comes after it
-    has run itself, or comes from nowhere, it waits for ever, and all behind it with it.
+    Why: An element with `trigger: all`, or with `match`, runs when each of its inputs has something new. Where one of them only
+    comes after it has run itself, or comes from nowhere, it waits for ever, and all behind it with it.
 
     Bad:
         groups:
@@ -110,22 +110,23 @@ def deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnost
     arriving_keys = _find_arriving_keys(analysis)
     for ring in analysis.deadlocked:
         members = [analysis.system.activities[name] for name in ring]
-        # Only an activity that waits for all of its inputs can start a deadlock; the other members wait for its output.
-        first = next(activity for activity in members if activity.mode == "all")
+        # Only an activity that waits for several inputs can start a deadlock; the other members wait for its output.
+        first = next(activity for activity in members if activity.mode in {"all", "match"})
         missing_keys = [key for key in first.triggers if key not in arriving_keys[first.id]]
         reason = (
             f"nothing feeds {_join_quoted(missing_keys)}"
             if missing_keys
             else f"{_join_quoted(ring)} wait for one another"
         )
+        awaited = "all of its triggers" if first.mode == "all" else "messages that match"
         yield Diagnostic(
             "deadlocked-trigger",
-            f"`{first.id}` never runs: it waits for all of its triggers, and {reason}",
+            f"`{first.id}` never runs: it waits for {awaited}, and {reason}",
             first.places.get("trigger", first.at),
             labels=tuple(
                 Label(member.at, "waits, too") for member in members if member is not first and member.at != NO_SPAN
             ),
-            help="name in `trigger: {all: [...]}` only the inputs that it has to wait for",
+            help=f"name in `trigger: {{{first.mode}: [...]}}` only the inputs that it has to wait for",
             element=first.id,
         )
 

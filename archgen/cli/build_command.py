@@ -67,7 +67,7 @@ def command(  # noqa: PLR0913 - one for each option
         msg = "--only takes the names of outputs, separated by commas"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    trusted_revision = command_support.read_trusted_revision(project, trust)
+    trusted_revision = command_support.find_trusted_revision(project, trust)
     output_options = OutputOptions(
         command_support.select_or_exit(checked_project, select),
         select or "",
@@ -84,6 +84,6 @@ def command(  # noqa: PLR0913 - one for each option
         products = choose_products(checked_project, only_names, backend, trusted_revision)
         inputs = ProductInputs(checked_project, output_options, template)
         build_outputs(inputs, products, target, command_support.print_written)
-    counts = command_support.count_findings(checked_project.findings)
+    counts = command_support.summarise_counts(checked_project.findings)
     click.echo(f"archgen check tells more: {counts}" if counts else "no findings")
     command_support.exit_by_findings(checked_project)

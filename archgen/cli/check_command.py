@@ -148,7 +148,7 @@ def _print_known(reported_findings: ReportedFindings, baseline: Path | None) -> 
     if reported_findings.known_findings:
         click.echo(
             make_visible(
-                f"not shown: {command_support.count_findings(reported_findings.known_findings)} that {baseline} knows"
+                f"not shown: {command_support.summarise_counts(reported_findings.known_findings)} that {baseline} knows"
             ),
             err=True,
         )
@@ -165,7 +165,7 @@ def _print_earlier(reported_findings: ReportedFindings, revision: str | None) ->
     if reported_findings.earlier_findings:
         click.echo(
             make_visible(
-                f"not shown: {command_support.count_findings(reported_findings.earlier_findings)} that {revision} had already"
+                f"not shown: {command_support.summarise_counts(reported_findings.earlier_findings)} that {revision} had already"
             ),
             err=True,
         )

@@ -33,7 +33,7 @@ def check_or_exit(project: Path | None, version_cache: VersionCache | None = Non
         raise click.UsageError(str(error)) from None
 
 
-def read_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:
+def find_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:
     """Read what a revision says about the project's own backends; None if none is given: then all may run."""
     from archgen import git
     from archgen.products import trusted_backends
@@ -149,7 +149,7 @@ def read_input(path: Path, max_bytes: int) -> bytes:
         raise click.ClickException(msg) from None
 
 
-def count_findings(findings: Sequence[Diagnostic]) -> str:
+def summarise_counts(findings: Sequence[Diagnostic]) -> str:
     """Count findings in words; empty where there are none."""
     from archgen.emit.terminal.findings_text import format_summary
 

@@ -48,7 +48,7 @@ def command(  # noqa: PLR0913 - one for each option
         level,
         revision,
         warn=command_support.print_warning,
-        trusted_revision=command_support.read_trusted_revision(project, trust),
+        trusted_revision=command_support.find_trusted_revision(project, trust),
     )
     with command_support.explain_write_errors():
         target = project_outputs.write_workspace(checked_project, output_options, name, output)

@@ -137,7 +137,9 @@ def _set_up_merge_driver(target: Path) -> None:
             command_support.print_written(path, "merge driver; commit it for everybody")
         else:
             click.echo(f"kept {command_support.shorten_path(path)}: it names the merge driver already")
-    commands = [merge_driver_setup.format_setting(*setting) for setting in merge_driver_setup.list_settings().items()]
+    commands = [
+        merge_driver_setup.format_setting(*setting) for setting in merge_driver_setup.list_driver_settings().items()
+    ]
     try:
         merge_driver_setup.configure_git(target)
     except NoRepositoryError:

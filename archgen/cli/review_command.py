@@ -100,14 +100,14 @@ def command(  # noqa: PLR0913 - one for each option
     try:
         with _explain_in_comment(target, base):
             merge_target = _find_merge_target(project, base)
-            trusted_revision = command_support.read_trusted_revision(project, merge_target)
+            trusted_revision = command_support.find_trusted_revision(project, merge_target)
             change = (
                 _compare_change(checked_project, project, merge_target, target, version_cache) if merge_target else None
             )
     except click.UsageError:
         # The change cannot be judged: what was found is worth its files and annotations all the same.
         _write_findings(reported, checked_project, target, strict=strict)
-        review_log.print_findings(reported, checked_project, strict=strict)
+        review_log.print_review_findings(reported, checked_project, strict=strict)
         raise
     breaks = change.breaks if change else ()
     whole_report = replace(reported, findings=(*breaks, *reported.findings))

@@ -29,15 +29,15 @@ def print_review(
 ) -> None:
     """Print a report: of a change what it brings and what fails the check, without one all; count what is left out."""
     shown_report = _choose_shown(change, report, baseline, strict=strict) if change else report
-    print_findings(shown_report, checked_project, strict=strict)
+    print_review_findings(shown_report, checked_project, strict=strict)
     shown_findings = set(shown_report.findings)
     left_out = [finding for finding in report.findings if finding not in shown_findings]
     if left_out:
-        counted = command_support.count_findings(left_out)
+        counted = command_support.summarise_counts(left_out)
         click.echo(f"not shown, since they were there before: {counted}; `--all-findings` shows all", err=True)
 
 
-def print_findings(report: ReportedFindings, checked_project: CheckedProject, *, strict: bool) -> None:
+def print_review_findings(report: ReportedFindings, checked_project: CheckedProject, *, strict: bool) -> None:
     """Print findings, as annotations in a workflow of GitHub."""
     if os.environ.get("GITHUB_ACTIONS"):
         sys.stdout.write(finding_documents.render_findings("github", report, checked_project, strict=strict))

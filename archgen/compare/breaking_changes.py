@@ -14,7 +14,7 @@ from archgen.compare.losses.changed_definitions import find_redefined_messages, 
 from archgen.compare.losses.changed_distro import find_changed_distro
 from archgen.compare.losses.changed_meanings import find_changed_meanings
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources
-from archgen.compare.losses.missed_deadlines import find_late_chains
+from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.retyped_topics import find_retyped_topics
@@ -88,7 +88,7 @@ def _find_losses(
         yield from find_losses(context)
     if timing_pair:
         causes = TimingCauses(context, timing_pair)
-        yield from find_late_chains(context, chains, causes)
+        yield from find_chains_made_late(context, chains, causes)
         yield from find_weakened_deadlines(context, chains, causes)
         yield from find_overloaded_cores(context, causes)
         yield from find_saturated_links(context, causes)

@@ -30,7 +30,7 @@ def compare_chains(
         for old_result, new_result in (*kept_pairs, *removed_pairs)
     )
 
-    def find_owners(old_result: ChainResult | None, new_result: ChainResult | None) -> frozenset[str]:
+    def find_chain_owners(old_result: ChainResult | None, new_result: ChainResult | None) -> frozenset[str]:
         if _is_negligible(old_result, new_result):
             return frozenset()
         old_owners = find_activity_owners(old_result.through if old_result else (), before, timing_pair.before)
@@ -38,7 +38,9 @@ def compare_chains(
         return new_owners | {matched_ids.common_id("partner", owner) for owner in old_owners}
 
     return tuple(
-        ChainChange(chain_result.id, old_result, new_result, concerned_partners=find_owners(old_result, new_result))
+        ChainChange(
+            chain_result.id, old_result, new_result, concerned_partners=find_chain_owners(old_result, new_result)
+        )
         for old_result, new_result in result_pairs
         if (chain_result := new_result or old_result) and _results_differ(old_result, new_result)
     )

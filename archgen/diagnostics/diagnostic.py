@@ -55,6 +55,15 @@ class Label(NamedTuple):
     text: str
 
 
+class AskedName(NamedTuple):
+    """What a name that means nothing should have named: somebody may have written the title of such an element."""
+
+    kind: str
+    """`partner`, `host`, `container`; `part` for what a dotted path can name."""
+    is_list: bool = False
+    """Whether the text may be several names: then only a whole title is a better guess."""
+
+
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
     """A finding.
@@ -70,6 +79,7 @@ class Diagnostic:
     labels: tuple[Label, ...] = ()
     help: str | None = None
     element: str | None = None
+    asked_name: AskedName | None = None
 
     @property
     def effective_severity(self) -> Severity:

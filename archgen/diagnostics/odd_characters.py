@@ -47,6 +47,8 @@ _MISPLACED_CHARACTER = re.compile(
     "|^[ \t]*(?P<dash>[\u2011\u2013\u2014\u2212])[ \t]"
     "|(?:^|[:\\[{,-])[ \t]*(?P<quote>[\u2018\u2019\u201a\u201c\u201d\u201e])"
     "|(?P<colon>\uff1a)"
+    # Behind the colon of a key, which then is none.
+    "|^[ \t]*(?:- +)?[\\w.-]+:(?P<blank>[\u00a0\u2007\u2009\u202f\u3000])"
 )
 
 

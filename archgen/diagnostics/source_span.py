@@ -66,3 +66,8 @@ class SourceTexts:
             # Spans do not count them, and would point to the wrong line.
             lines = self._lines[file] = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         return lines[number - 1] if 0 < number <= len(lines) else None
+
+
+def first_written_span(*spans: Span) -> Span:
+    """Return the first span that is not `NO_SPAN`, or `NO_SPAN`."""
+    return next((span for span in spans if span != NO_SPAN), NO_SPAN)

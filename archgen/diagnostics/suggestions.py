@@ -56,6 +56,18 @@ def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     return f"did you mean `{name}`?" if name is not None and name != word else None
 
 
+_MIN_ABBREVIATION = 4
+"""The length of the shortest word, in letters, that is taken for the beginning of a longer one."""
+
+
+def did_you_shorten(word: str, candidates: Iterable[str]) -> str | None:
+    """Return a help line with the one candidate that a word begins: `prio` is more slips away from `priority` than a slip."""
+    if len(word) < _MIN_ABBREVIATION:
+        return None
+    longer_names = [name for name in candidates if _fold_word(name).startswith(_fold_word(word))]
+    return f"did you mean `{longer_names[0]}`?" if len(longer_names) == 1 else None
+
+
 @lru_cache(maxsize=50_000)  # each name is compared with many words
 def _fold_word(word: str) -> str:
     return word.casefold().replace("-", "").replace("_", "").replace(" ", "")

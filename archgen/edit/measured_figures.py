@@ -37,7 +37,7 @@ class LeftOutFigure:
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuredTimes:
+class AdoptedTimes:
     """What was measured of an activity, or of the callback that stores an input (`is_input`); in ns."""
 
     element: str
@@ -47,9 +47,9 @@ class MeasuredTimes:
     percentiles: Mapping[str, int] = field(default_factory=dict)
 
 
-def collect_times(observations: Iterable[Observation]) -> tuple[MeasuredTimes, ...]:
+def collect_times(observations: Iterable[Observation]) -> tuple[AdoptedTimes, ...]:
     """Return what was measured of each element: several observations of one count together."""
-    times_by_element: dict[str, MeasuredTimes] = {}
+    times_by_element: dict[str, AdoptedTimes] = {}
     for observation in observations:
         is_input = "storing" in observation.figures
         samples = observation.samples.get("storing" if is_input else "execution")
@@ -59,7 +59,7 @@ def collect_times(observations: Iterable[Observation]) -> tuple[MeasuredTimes, .
         shortest_ns = Fraction(samples.least) if is_input and samples else shortest.value if shortest else None
         if longest is None and shortest_ns is None:
             continue
-        known = times_by_element.get(observation.id) or MeasuredTimes(observation.id, is_input)
+        known = times_by_element.get(observation.id) or AdoptedTimes(observation.id, is_input)
         times_by_element[observation.id] = replace(
             known,
             longest=_choose(max, known.longest, longest.value if longest else None),
@@ -81,7 +81,7 @@ class FigureSorter:
         self._data = data
         self._owners = {name: key for key, name in name_activities(architecture).items()}
 
-    def add_times(self, times: MeasuredTimes) -> Iterator[tuple[str, str]]:
+    def add_times(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
         """Add what was measured of one element; yield the element and the key of what is in the slice now."""
         if times.is_input:
             yield from self._add_input_times(times)
@@ -98,7 +98,7 @@ class FigureSorter:
         yield from self._add_shortest(times, path, timing, written_span("bcet"))
 
     def _add_longest(
-        self, times: MeasuredTimes, path: ElementPath, timing: Timing, written_at: Span | None
+        self, times: AdoptedTimes, path: ElementPath, timing: Timing, written_at: Span | None
     ) -> Iterator[tuple[str, str]]:
         if times.longest is None:
             return
@@ -115,7 +115,7 @@ class FigureSorter:
             yield times.element, "wcet"
 
     def _add_shortest(
-        self, times: MeasuredTimes, path: ElementPath, timing: Timing, written_at: Span | None
+        self, times: AdoptedTimes, path: ElementPath, timing: Timing, written_at: Span | None
     ) -> Iterator[tuple[str, str]]:
         if times.shortest is None:
             return
@@ -131,7 +131,7 @@ class FigureSorter:
             body["bcet"] = _choose_text(min, body.get("bcet"), value)
             yield times.element, "bcet"
 
-    def _add_input_times(self, times: MeasuredTimes) -> Iterator[tuple[str, str]]:
+    def _add_input_times(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
         port = self._architecture.inputs.get(times.element)
         nodes = [node for node in self._architecture.nodes.values() if port and port.component in node.implements]
         path = self._find_timing_path(nodes[0], port.component) if port and len(nodes) == 1 else None
@@ -174,17 +174,17 @@ class FigureSorter:
             body = inner
         return body
 
-    def _leave_out(self, times: MeasuredTimes, key: str, why: str, value: object, at: Span) -> None:
+    def _leave_out(self, times: AdoptedTimes, key: str, why: str, value: object, at: Span) -> None:
         text = value if isinstance(value, str) else format_flow(value)
         self.left_out.append(LeftOutFigure(times.element, key, why, f"{key}: {text}", at))
 
-    def _leave_out_homeless(self, times: MeasuredTimes) -> Iterator[tuple[str, str]]:
+    def _leave_out_homeless(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
         why = "the language has no place for it: it is no input of a component, or several nodes share the component"
         self._leave_out(times, "wcet", why, _write_up(times.longest or Fraction(0)), NO_SPAN)
         return iter(())
 
 
-def _write_longest(times: MeasuredTimes) -> dict[str, object]:
+def _write_longest(times: AdoptedTimes) -> dict[str, object]:
     """Return the longest time as the language writes it, with its percentiles."""
     longest = times.longest or Fraction(0)
     percentiles = {name: _write_up(min(Fraction(value), longest)) for name, value in times.percentiles.items()}

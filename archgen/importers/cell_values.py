@@ -108,7 +108,7 @@ def read_type_name(project: ImportedProject, cell: TableCell) -> str | None:
     return None
 
 
-def join_lines(cell: TableCell) -> str:
+def join_cell_lines(cell: TableCell) -> str:
     """Return a text of several lines without blanks at the ends of its lines."""
     return "\n".join(line.rstrip() for line in cell.text.splitlines())
 
@@ -131,7 +131,7 @@ def read_package(project: ImportedProject, cell: TableCell) -> str | None:
     return None
 
 
-def split_list(cell: TableCell) -> list[str]:
+def split_cell_list(cell: TableCell) -> list[str]:
     """Split a list in one cell at line ends and semicolons, else at commas outside of brackets."""
     if re.search(r"[\n\r;]", cell.text):
         # Where a list is split at line ends or semicolons, a comma is a part of an item.
@@ -143,7 +143,7 @@ def split_list(cell: TableCell) -> list[str]:
 
 def read_requirements(project: ImportedProject, cell: TableCell) -> list[str]:
     """Read ids of requirements, or one sentence."""
-    items = split_list(cell)
+    items = split_cell_list(cell)
     words = [word for item in items for word in item.split("/") if word.strip()]
     if all(_REQUIREMENT_PATTERN.match(word.strip()) for word in words):
         for word in words:

@@ -55,8 +55,8 @@ def _import_group(project: ImportedProject, row: TableRecord) -> None:
     if owner:
         group.values["owner"] = _read_owners(project, owner, group)
     if description:
-        group.values["description"] = cell_values.join_lines(description)
-        project.ledger.take_cell(description, "description", group.path, cell_values.join_lines(description))
+        group.values["description"] = cell_values.join_cell_lines(description)
+        project.ledger.take_cell(description, "description", group.path, cell_values.join_cell_lines(description))
 
 
 def _import_requirement(project: ImportedProject, row: TableRecord) -> None:
@@ -83,7 +83,7 @@ def _import_component(project: ImportedProject, row: TableRecord) -> None:
     if row.kind == "component":
         for key in ("functionality", "description"):
             if text := row.cell_below(key):
-                _set_key(project, component, key, cell_values.join_lines(text), text)
+                _set_key(project, component, key, cell_values.join_cell_lines(text), text)
     owner = row.cell_below("owner")
     if owner:
         _set_key(project, component, "owner", _read_owners(project, owner, component), owner)

@@ -31,7 +31,7 @@ def import_outputs(project: ImportedProject, row: TableRecord) -> None:
         component.declared_empty.add("outputs")
         project.take_cell(cell, "outputs", component)
         return
-    items = cell_values.split_list(cell)
+    items = cell_values.split_cell_list(cell)
     types = split_beside(project, items, row.cell_below("type"), component)
     messages = split_beside(project, items, row.cell_below("message"), component)
     for number, item in enumerate(items):
@@ -75,7 +75,7 @@ def split_beside(
     nothing: list[TableCell | None] = [None] * len(items)
     if cell is None or len(items) < 2:  # noqa: PLR2004 - one output, or none
         return [cell] * len(items)
-    lines = cell_values.split_list(cell)
+    lines = cell_values.split_cell_list(cell)
     if len(lines) == len(items):
         return [cell.with_text(line) for line in lines]
     message = f"`{cell.quotation}` was not taken: which of the {len(items)} outputs of `{component.name}` is it for?"
@@ -125,7 +125,7 @@ def import_inputs(project: ImportedProject, row: TableRecord) -> None:
         component.declared_empty.add("inputs")
         project.take_cell(cell, "inputs", component)
         return
-    for item in cell_values.split_list(cell):
+    for item in cell_values.split_cell_list(cell):
         name, _, text = (word.strip() for word in item.partition(":"))
         _import_input(project, component, name or text, text or name, cell)
 

@@ -1,4 +1,7 @@
-"""Read the sheets of a workbook (.xlsx): values as they are shown, merged cells, and what is hidden."""
+"""Read the sheets of a workbook (.xlsx): values as they are shown, merged cells, and what is hidden.
+
+Why openpyxl does not: docs/decisions/0017-workbooks.md.
+"""
 
 from __future__ import annotations
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.link.reference_resolution import ReferenceResolver, take_path_end
+from archgen.link.unknown_references import list_known_names
 from archgen.model.path_resolver import ElementRef, PathMatch, PathResolver
 
 
@@ -88,7 +90,8 @@ class PortResolver:
         guessed_port = self.names.resolve_path(guess, (kind,)).unique_element if guess else None
         self.resolver.suspect_ids.update([guessed_port.id] if guessed_port else ())
         labels = (Label(self._span_of(guessed_port), "declared here"),) if guessed_port else self._label_components()
-        help_line = f"did you mean `{guess}`?" if guess else None
+        ports = dict.fromkeys(chain.from_iterable(self.port_names[kind].get(id_, ()) for id_ in self.component_ids))
+        help_line = f"did you mean `{guess}`?" if guess else list_known_names(tuple(ports))
         return Diagnostic("unknown-reference", message, span, labels=labels, help=help_line, element=self.owner_id)
 
     def _label_components(self) -> tuple[Label, ...]:

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.link import mapping_values
+from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
@@ -103,7 +104,15 @@ class ReferenceResolver:
             return None
         guess = self.guess_name(reference.text, known_spans)
         self.diagnostics.append(
-            diagnose_unknown_reference(reference, kind, guess, known_spans.get(guess or "", NO_SPAN), element_id)
+            diagnose_unknown_reference(
+                reference,
+                kind,
+                guess,
+                known_spans.get(guess or "", NO_SPAN),
+                element_id,
+                known_names=tuple(known_spans),
+                asked_name=AskedName(kind),
+            )
         )
         return None
 
@@ -183,7 +192,12 @@ class ReferenceResolver:
         self.suspect_ids.update(name.id for name in candidates.elements)
         guessed_element = candidates.unique_element
         return diagnose_unknown_reference(
-            reference, kind_phrase, guess, self._span_of(guessed_element) if guessed_element else NO_SPAN, element_id
+            reference,
+            kind_phrase,
+            guess,
+            self._span_of(guessed_element) if guessed_element else NO_SPAN,
+            element_id,
+            asked_name=AskedName("part"),
         )
 
     def _diagnose_other_kind(
@@ -267,20 +281,6 @@ class ReferenceResolver:
 
     def _span_of(self, element: ElementRef) -> Span:
         return self.spans[element.kind][element.id]
-
-
-def diagnose_unknown_reference(
-    reference: ScalarNode, kind_phrase: str, guess: str | None, declared_span: Span, element_id: str
-) -> Diagnostic:
-    """Report that there is no such element, with what may have been meant."""
-    return Diagnostic(
-        "unknown-reference",
-        f"no {kind_phrase} named `{reference.text}`",
-        reference.span,
-        labels=(Label(declared_span, "declared here"),) if guess and declared_span != NO_SPAN else (),
-        help=f"did you mean `{guess}`?" if guess else None,
-        element=element_id,
-    )
 
 
 def _list_possible_kinds(kinds: Sequence[str], length: int) -> str:

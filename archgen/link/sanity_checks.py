@@ -122,14 +122,41 @@ def report_mixed_trigger(trigger_body: MappingNode, element_id: str, diagnostics
             diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
 
 
-def check_match(
+def report_repetition(mapping: MappingNode, key: str, element_id: str, diagnostics: list[Diagnostic]) -> bool:
+    """Report the first entry of a list that is written a second time; whether there is one."""
+    first_spans: dict[str, Span] = {}
+    for scalar in mapping_values.get_scalars(mapping, key):
+        if scalar.text in first_spans:
+            help_line = "take one of them out, or name what was meant"
+            label = Label(first_spans[scalar.text], "first written here")
+            message = f"`{key}` names `{scalar.text}` twice"
+            diagnostics.append(_diagnose_senseless(message, scalar.span, help_line, element_id, label))
+            return True
+        first_spans[scalar.text] = scalar.span
+    return False
+
+
+def report_lonely_within(trigger_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> None:
+    """Report a `within` of a trigger that names no inputs."""
+    if trigger_body.get("within") is not None and trigger_body.entries.keys() == {"within"}:
+        help_line = "name the inputs that it fires for: `{match: [image, cloud], within: 30 ms}`"
+        span = mapping_values.get_span(trigger_body, "within")
+        diagnostics.append(_diagnose_senseless("`within` needs `match`", span, help_line, element_id))
+
+
+def check_match(  # noqa: PLR0913 - what a match consists of
     trigger_body: MappingNode,
     inputs: Collection[str],
     within: Quantity | None,
     element_id: str,
     diagnostics: list[Diagnostic],
+    *,
+    is_damaged: bool = False,
 ) -> bool:
-    """Whether a `match` is complete: two inputs or more of each component, and `within`; else it is reported."""
+    """Whether a `match` is complete: two inputs or more of each component, and `within`; else it is reported.
+
+    Of a damaged element `within` may be what could not be read: that is reported already.
+    """
     span = mapping_values.get_span(trigger_body, "match")
     # What could not be resolved is reported, and may be the second one.
     has_unresolved = len(mapping_values.get_texts(trigger_body, "match")) > len(inputs)
@@ -139,7 +166,7 @@ def check_match(
         help_line = "name two or more inputs of one component; one input alone is `trigger: [input]`"
         diagnostics.append(_diagnose_senseless(message, span, help_line, element_id))
         return False
-    if within is None:
+    if within is None and not is_damaged:
         message = "`match` needs `within`: how far apart the times of matched messages may be"
         help_line = "write `within: 30 ms` beside it; `within: 0 ms` matches the same time only"
         diagnostics.append(_diagnose_senseless(message, span, help_line, element_id))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_repetition
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.link.missing_keys import find_incomplete
 from archgen.schema import element_of_path
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode
 
@@ -35,7 +36,7 @@ def merge_documents(
     root = _merge_mappings([document.root for document in documents], (), diagnostics)
     # Before incomplete elements are looked for, so that an undeclared element is a single finding.
     root, undeclared_diagnostics = _drop_undeclared(root, documents, lost_keys, damaged_elements)
-    return root, (*diagnostics, *undeclared_diagnostics, *_find_incomplete(root))
+    return root, (*diagnostics, *undeclared_diagnostics, *find_incomplete(root))
 
 
 def _merge_mappings(mappings: Sequence[MappingNode], path: KeyPath, diagnostics: list[Diagnostic]) -> MappingNode:
@@ -195,46 +196,6 @@ def _remove_paths(groups: MappingNode, removed_paths: frozenset[KeyPath]) -> Map
         else:
             kept_groups[group.key] = group
     return MappingNode(kept_groups, groups.span)
-
-
-# By section, the paths without which an element means nothing. The schema cannot ask for them: in a single slice every
-# key may be missing, because another file may write it.
-_NEEDED_KEYS: dict[KeyPath, tuple[KeyPath, ...]] = {
-    ("views",): (("show",),),
-    ("policies",): (("forbid", "from"), ("forbid", "to")),
-    ("review", "accepted"): (("reason",),),
-}
-
-
-def _find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
-    """Report elements that lack a key without which they mean nothing, in all slices together."""
-    for section, needed_paths in _NEEDED_KEYS.items():
-        section_node = _node_at(root, section)
-        for entry in section_node if isinstance(section_node, MappingNode) else ():
-            nodes = entry.value.items if isinstance(entry.value, SequenceNode) else (entry.value,)
-            for path in needed_paths:
-                if not all(_has_path(node, path) for node in nodes):
-                    message = f"`{entry.key}` lacks `{'.'.join(path)}`"
-                    yield Diagnostic(
-                        "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
-                    )
-
-
-_MISSING_KEY_HELP = {
-    "views": 'say what the view shows: `show: "tag:safety"`',
-    "policies": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
-    "accepted": "say why the change is right: `camera.image: {key: type, reason: the tracker moved to depth images}`",
-}
-
-
-def _has_path(node: YamlNode, path: KeyPath) -> bool:
-    return _node_at(node, path) is not None
-
-
-def _node_at(node: YamlNode | None, path: KeyPath) -> YamlNode | None:
-    for key in path:
-        node = node.get(key) if isinstance(node, MappingNode) else None
-    return node
 
 
 RULES: tuple[Rule, ...] = (

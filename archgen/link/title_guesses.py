@@ -12,11 +12,8 @@ from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model.architecture import Architecture
 
-_REFERENCE_HELPS = ("a reference is", "write `[")
-"""How help begins where a reference was asked; the second takes several words for several references."""
-_ID_HELP = "an id is"
-_KINDS_BY_KEY = {"`owner`": "partner", "`host`": "host", "`connects`": "host", "`container`": "container"}
-"""What an id at a key names, by how a message begins (after `an entry of`)."""
+_MAX_COMPARISONS = 300_000
+"""How many titles may be compared in one run, as for misspelt ids. What comes later is reported without a guess."""
 
 
 class _TitledElement(NamedTuple):
@@ -31,36 +28,25 @@ def add_title_guesses(
 ) -> Iterator[Diagnostic]:
     """Yield the diagnostics; one about a word that is the title of an element says which id was meant."""
     indexes: dict[str, dict[str, _TitledElement]] = {}
+    comparisons_left = _MAX_COMPARISONS
     for diagnostic in diagnostics:
-        kind = _find_kind(diagnostic)
-        if kind is None:
+        asked_name = diagnostic.asked_name
+        if asked_name is None:
             yield diagnostic
             continue
-        if kind not in indexes:  # built once, and only where something is wrong
-            indexes[kind] = _index_titles(architecture, kind)
+        if asked_name.kind not in indexes:  # built once, and only where something is wrong
+            indexes[asked_name.kind] = _index_titles(architecture, asked_name.kind)
+        index = indexes[asked_name.kind]
         written_text = _quoted_text(diagnostic, sources)
-        text = written_text.casefold()
-        # Several words may be several references: then only a whole title is a better guess.
-        is_list = (diagnostic.help or "").startswith("write")
-        element = indexes[kind].get(text if is_list else find_closest(text, indexes[kind]) or "")
+        element = index.get(written_text.casefold())
+        if element is None and not asked_name.is_list and len(index) <= comparisons_left:
+            comparisons_left -= len(index)
+            element = index.get(find_closest(written_text.casefold(), index) or "")
         if element is None or element.id == written_text:  # the element itself is of the wrong kind there
             yield diagnostic
         else:
             label = Label(element.at, "declared here")
             yield replace(diagnostic, help=f"did you mean `{element.id}`?", labels=(label,))
-
-
-def _find_kind(diagnostic: Diagnostic) -> str | None:
-    """Return the kind of what a diagnostic finds to be no id; None if it is about something else, or has a guess."""
-    help_line = diagnostic.help or ""
-    if diagnostic.rule == "unknown-reference" and not help_line:
-        return "part"
-    if diagnostic.rule != "wrong-value":
-        return None
-    if help_line.startswith(_REFERENCE_HELPS):
-        return "part"
-    subject = diagnostic.message.removeprefix("an entry of ").split(" cannot be ", 1)[0]
-    return _KINDS_BY_KEY.get(subject) if help_line.startswith(_ID_HELP) else None
 
 
 def _index_titles(architecture: Architecture, kind: str) -> dict[str, _TitledElement]:
@@ -71,6 +57,8 @@ def _index_titles(architecture: Architecture, kind: str) -> dict[str, _TitledEle
         "partner": (architecture.partners.values(),),
         "host": (architecture.hosts.values(),),
         "container": (architecture.containers.values(),),
+        "resource": (architecture.resources.values(),),
+        "use case": (architecture.use_cases.values(),),
     }
     index: dict[str, _TitledElement] = {}
     for element in chain.from_iterable(tables[kind]):

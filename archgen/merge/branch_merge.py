@@ -10,7 +10,7 @@ from archgen import pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
 from archgen.git import GitError
-from archgen.git.tree_merge import MergeFolder, PathConflict, open_merge_folder
+from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
 from archgen.merge.file_merge import merge_contents
 from archgen.merge.slice_reading import read_normal_tree
 from archgen.merge.tree_merge import MergeConflictError, merge_values, read_value

@@ -32,6 +32,8 @@ _HOMES = {
     "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
+_READER_KEYS = frozenset({"freshness", "optional"})
+"""Keys that only an input has, and that say by themselves what they are about: `from` and `type` do not."""
 _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
@@ -52,7 +54,7 @@ _ELEMENT_SECTIONS = {
 }
 
 
-def find_home(key: str, path: KeyPath, kind: str) -> str | None:
+def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     """Return the place where a key is written that an element of a kind (its title in the schema) does not have."""
     is_port = len(path) > 2 and path[-2] in {"inputs", "outputs"} and path[0] == "groups"  # noqa: PLR2004
     parent = _find_parent(key, kind)
@@ -60,6 +62,8 @@ def find_home(key: str, path: KeyPath, kind: str) -> str | None:
         return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`"
     if key in _TELLING_NOTHING:
         return None
+    if key in _READER_KEYS and kind != "Input":
+        return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
     home = _find_kind(key, _PORT_HOMES if is_port else tuple(_HOMES))
     if home is None:
         return _find_section_help(key, path)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics.suggestions import did_you_shorten, find_closest
 from archgen.schema import key_places
 from archgen.schema.schema_wording import (
     ErrorPlace,
@@ -48,7 +48,7 @@ def _diagnose_foreign_keys(
     entry = place.node.entries[keys[0]] if isinstance(place.node, MappingNode) else place.entry
     quoted_keys = join_words([f"`{key}`" for key in keys], "or")
     message = f"{add_article(schema_part['title'])} has no keys {quoted_keys}"
-    help_line = key_places.find_home(keys[0], place.path, schema_part["title"])
+    help_line = key_places.find_key_home(keys[0], place.path, schema_part["title"])
     # A component beside its group instead of below it: its own column is wrong, not its keys.
     if schema_part["title"] == "Functional group" and foreign_kind == "component":
         help_line = f"if `{place.path[-1]}` is a component, indent it below `components:` of its group"
@@ -68,16 +68,21 @@ def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path:
     odd_character = diagnose_odd_character(entry.key, entry.key_span, "unknown-key", element)
     if odd_character is not None:
         return odd_character
-    home = key_places.find_home(entry.key, path, schema_part["title"])
+    home = key_places.find_key_home(entry.key, path, schema_part["title"])
     guess = _guess_key(entry, known_keys, path)
     # The surest first: what the key holds, then where else it is a key. Between sections one letter tells more.
     help_line = (
         _find_key_help(entry, known_keys)
         or key_places.find_sibling_help(entry, path, schema_part["title"])
-        or (home or guess if path else guess or home)
+        or (home if home and path and not _is_one_slip(entry.key, known_keys) else guess or home)
         or f"{'its keys' if path else 'the sections'} are {join_quoted(known_keys)}"
     )
     return Diagnostic("unknown-key", message, entry.key_span, help=help_line, element=element)
+
+
+def _is_one_slip(key: str, known_keys: tuple[str, ...]) -> bool:
+    """Whether only an `s` at the end is missing from a known key, or too much: nobody means a key of another place then."""
+    return f"{key}s" in known_keys or (key.endswith("s") and key[:-1] in known_keys)
 
 
 def _guess_key(entry: MappingEntry, known_keys: tuple[str, ...], path: tuple[str | int, ...]) -> str | None:
@@ -85,7 +90,7 @@ def _guess_key(entry: MappingEntry, known_keys: tuple[str, ...], path: tuple[str
     name = plural if plural in known_keys else find_closest(entry.key, known_keys)
     # `modes` is a word of its own: it means `nodes` only if nodes stand below it.
     is_likely = name is not None and (bool(path) or key_places.may_be_section(entry, name))
-    return f"did you mean `{name}`?" if is_likely else None
+    return f"did you mean `{name}`?" if is_likely else did_you_shorten(entry.key, known_keys) if path else None
 
 
 def _find_key_help(entry: MappingEntry, known_keys: tuple[str, ...]) -> str | None:

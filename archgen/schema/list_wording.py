@@ -9,9 +9,12 @@ from archgen.schema.language_schema import resolve_part
 
 _ID = re.compile(r"[A-Za-z/~][A-Za-z0-9._/~-]*\Z", re.ASCII)
 """An id or the name of a topic."""
-_LOWER_PATH = re.compile(r"[a-z0-9_.]+\Z")
+_LOWER_PATH = re.compile(r"[a-z][a-z0-9_.]*\Z")
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
+_RANGE = re.compile(r"(\d{1,4})\s*(?:-|\.\.\.?)\s*(\d{1,4})\Z", re.ASCII)
+_MAX_RANGE = 16
+"""A longer list of numbers is not written out."""
 _MAX_LENGTH = 1000
 """Longer text is no list of ids that somebody wrote by hand."""
 
@@ -38,8 +41,17 @@ def split_ids(text: str, schema_part: dict[str, Any]) -> list[str]:
 
 def suggest_list(text: str, schema_part: dict[str, Any]) -> str:
     """Return a text as the list in brackets that was most likely meant."""
-    entries = split_ids(text, schema_part) or [text]
+    entries = _list_range(text, schema_part) or split_ids(text, schema_part) or [text]
     return f"[{', '.join(map(_quote_entry, entries))}]"
+
+
+def _list_range(text: str, schema_part: dict[str, Any]) -> list[str]:
+    """Return the numbers from the first to the last that a text such as `0-3` names; empty where it names none."""
+    ends = _RANGE.match(text.strip())
+    if ends is None or "integer" not in resolve_part(schema_part.get("items", {})).get("type", ()):
+        return []
+    first, last = int(ends[1]), int(ends[2])
+    return [str(number) for number in range(first, last + 1)] if last - first < _MAX_RANGE else []
 
 
 def _quote_entry(text: str) -> str:

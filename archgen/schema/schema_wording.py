@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 
 from archgen.diagnostics import odd_characters
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.diagnostic import AskedName, Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics.suggestions import did_you_mean, did_you_shorten
 from archgen.schema import list_wording
-from archgen.schema.language_schema import resolve_part
+from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
@@ -77,11 +77,31 @@ def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, An
         rule, message, help_line = _describe_wrong_type(name, node, schema_part)
     else:
         rule, (message, help_line) = "wrong-value", _describe_wrong_value(kind, name, node, schema_part)
+    if schema_part.get("title") == "Input" and place.path[-1] in schema_part["properties"]:
+        help_line = f"a key of an input stands below that input: `INPUT: {{from: ..., {place.path[-1]}: ...}}`"
     # A container's own span can cover a whole section: its key is shown instead. An entry of a list has no key.
     span = node.span
     if isinstance(node, MappingNode | SequenceNode) and place.entry is not None and node is place.entry.value:
         span = place.entry.key_span
-    return Diagnostic(rule, message, span, help=help_line, element=element_of_path(place.path))
+    asked_name = _find_asked_name(place, schema_part) if rule == "wrong-value" else None
+    return Diagnostic(rule, message, span, help=help_line, element=element_of_path(place.path), asked_name=asked_name)
+
+
+_KINDS_BY_KEY = {"owner": "partner", "host": "host", "connects": "host", "container": "container", "uses": "resource"}
+"""What an id at a key names."""
+
+
+def _find_asked_name(place: ErrorPlace, schema_part: dict[str, Any]) -> AskedName | None:
+    """Return what a text that is no id, or no dotted path, should name; None where it names nothing."""
+    if not isinstance(place.node, ScalarNode):
+        return None
+    definitions = load_schema()["$defs"]
+    is_list = "items" in schema_part and bool(list_wording.split_ids(place.node.text, schema_part))
+    if schema_part.get("pattern") == definitions["reference_item"]["pattern"]:
+        return AskedName("part", is_list)
+    key = next((step for step in reversed(place.path) if isinstance(step, str)), "")
+    is_id = schema_part.get("pattern") == definitions["id"]["pattern"]
+    return AskedName(_KINDS_BY_KEY[key], is_list) if is_id and key in _KINDS_BY_KEY else None
 
 
 def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str, str | None]:
@@ -98,7 +118,9 @@ def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any])
         quotes_note = " in quotes, which is a text," if is_quoted else ""
         return "wrong-type", f"{name} is `{clip_text(node.text)}`{quotes_note or ','} but must be {expected}", help_line
     actual = "a list" if isinstance(node, SequenceNode) else "a mapping"
-    return "wrong-type", f"{name} is {actual}, but must be {expected}", _find_container_help(name, node, schema_part)
+    is_quantity = dimension and "object" not in schema_part["type"]
+    help_line = schema_part["patternErrorMessage"] if is_quantity else _find_container_help(name, node, schema_part)
+    return "wrong-type", f"{name} is {actual}, but must be {expected}", help_line
 
 
 def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
@@ -166,17 +188,26 @@ _WORD_PATTERN = re.compile(r"\^\(\?:([a-z0-9_|]+)\)\$\Z")
 
 def _find_pattern_help(text: str, schema_part: dict[str, Any], *, is_entry: bool) -> str | None:
     """Return what was most likely meant by a text that does not match its pattern; None where nobody knows."""
-    if "items" in schema_part and re.search(resolve_part(schema_part["items"]).get("pattern", r"\Z."), text):
-        return f"write `[{clip_text(text)}]`"  # the name of an input as trigger: a list of one
-    if "items" in schema_part and list_wording.split_ids(text, schema_part):
-        return f"write `{list_wording.suggest_list(text, schema_part)}`"
+    list_help = _find_list_help(text, schema_part) if "items" in schema_part else None
+    if list_help:
+        return list_help
     if is_entry and list_wording.split_ids(text, {"items": schema_part}):
         return "write each as an entry of its own, with a comma between them"
     words = _WORD_PATTERN.match(schema_part["pattern"])
     if words:
-        return did_you_mean(text, words[1].split("|"))
+        return did_you_mean(text, words[1].split("|")) or did_you_shorten(text, words[1].split("|"))
     if schema_part.get("title") in {"Message", "Type"}:
         return _suggest_message(text, schema_part["pattern"])
+    return None
+
+
+def _find_list_help(text: str, schema_part: dict[str, Any]) -> str | None:
+    if text in schema_part.get("properties", ()):
+        return None  # a key where what it holds is asked: `trigger: match`
+    if re.search(resolve_part(schema_part["items"]).get("pattern", r"\Z."), text):
+        return f"write `[{clip_text(text)}]`"  # the name of an input as trigger: a list of one
+    if list_wording.split_ids(text, schema_part):
+        return f"write `{list_wording.suggest_list(text, schema_part)}`"
     return None
 
 

@@ -158,7 +158,7 @@ def _uses_default_calls(system: TimingSystem, activity: Activity) -> bool:
     return any(arc.output not in activity.calls for arc in requests)
 
 
-def find_contradictions(result: SimulationResult, analysis: Analysis) -> tuple[str, ...]:
+def find_simulated_contradictions(result: SimulationResult, analysis: Analysis) -> tuple[str, ...]:
     """Return sentences on what is written but cannot hold: there an observed figure may exceed its bound."""
     return (*_rate_contradictions(analysis), *_gap_contradictions(result, analysis))
 

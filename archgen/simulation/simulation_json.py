@@ -70,7 +70,7 @@ def _assumptions_to_json(result: SimulationResult, analysis: Analysis) -> Simula
             {"figure": default.figure, "taken": default.assumed_value, "of": list(default.element_ids)}
             for default in simulation_assumptions.list_default_figures(analysis.system)
         ],
-        "contradictions": list(simulation_assumptions.find_contradictions(result, analysis)),
+        "contradictions": list(simulation_assumptions.find_simulated_contradictions(result, analysis)),
         "not_simulated": list(simulation_assumptions.NOT_SIMULATED),
     }
 

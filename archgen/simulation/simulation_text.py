@@ -217,7 +217,7 @@ def _drop_lines(result: SimulationResult, analysis: Analysis) -> Iterator[str]:
 
 def _assumption_lines(result: SimulationResult, analysis: Analysis) -> Iterator[str]:
     yield ""
-    phrases = simulation_assumptions.find_contradictions(result, analysis)
+    phrases = simulation_assumptions.find_simulated_contradictions(result, analysis)
     if phrases:
         yield "What contradicts itself; there a figure may exceed its bound (!):"
         yield from (f"  {phrase}" for phrase in phrases)

@@ -16,7 +16,7 @@ _PATTERN, _ATTRIBUTE = b"*.yaml", b"merge=archgen"
 _DRIVER_ARGUMENTS = "merge-driver --marker-size=%L %O %A %B %P"
 
 
-def list_settings() -> dict[str, str]:
+def list_driver_settings() -> dict[str, str]:
     """Return the settings of git that name the driver.
 
     Where the shell that git calls would not find `archgen`, they name this Python: git takes a program that is missing for
@@ -63,7 +63,7 @@ def _sets_merge(words: list[bytes]) -> bool:
 def configure_git(folder: Path) -> None:
     """Make the settings in the repository around a folder. Raise `git.NoRepositoryError` or `git.GitError`."""
     repository = git.find_repository(folder)
-    for name, value in list_settings().items():
+    for name, value in list_driver_settings().items():
         result = run_git(repository.top, "config", "--local", name, value)
         if result.status:
             msg = f"git does not take the setting {name}: {result.error_text}"

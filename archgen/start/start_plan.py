@@ -99,7 +99,7 @@ def _forge_files(answers: StartAnswers, project_path: str, repository_folder: Pa
         # The workflow of another project, which never checks this one.
         is_taken = bool(project_path) and os.path.lexists(repository_folder / folder / name)
         if is_taken:
-            name = f"architecture-{start_templates.make_slug(project_path) or 'project'}.yml"
+            name = f"architecture-{start_templates.make_project_slug(project_path) or 'project'}.yml"
         return {f"{folder}/{name}": start_templates.fill_workflow(project_path, publishes=not is_taken)}
     return {".gitlab-ci.yml": start_templates.fill_pipeline(project_path)} if answers.forge == "gitlab" else {}
 

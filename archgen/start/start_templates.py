@@ -98,12 +98,12 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
         # Two projects of a repository must not cancel each other's runs.
         workflow_name=f"Architecture of {inert_folder}" if folder else "Architecture",
         group="-".join(filter(None, ("architecture", inert_folder, "${{ github.ref }}"))),
-        key=f"diff/{make_slug(folder)}",
+        key=f"diff/{make_project_slug(folder)}",
         publishes=publishes,
     )
 
 
-def make_slug(folder: str) -> str:
+def make_project_slug(folder: str) -> str:
     """Return a folder's path as one word of letters, digits, `_`, `.` and `-`."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "-", folder).strip("-.")
 

@@ -119,6 +119,15 @@ def _find_odd_character(file: str, lines: list[str], last_line: int, problem: Pa
 _PLAIN_WORDS = {" ": "a plain blank", "": "nothing", '"': 'a plain quote, `"`,', "'": "a plain quote, `'`,"}
 
 
+def describe_missing_colon(key: str) -> tuple[str, str]:
+    """Return what is wrong with a key in braces that has no value, and what to write."""
+    position = odd_characters.find_odd_character(key)
+    if position is not None and ":" in key[:position]:
+        character = odd_characters.name_character(key[position])
+        return f"{character} stands in `{key}`", f"write `{odd_characters.replace_odd_characters(key)}`"
+    return f"the key `{key}` has no `:`", "write `key: value`; a list stands in brackets: [a, b]"
+
+
 def diagnose_duplicate_key(key: str, span: Span, first_span: Span) -> Diagnostic:
     """Report a key that one mapping has twice."""
     message = f"the key `{key}` is written twice"

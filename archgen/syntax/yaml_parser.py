@@ -191,9 +191,7 @@ def _build_tree(walk: _TreeWalk, parser: Any, restore: dict[int, int]) -> None: 
                 value = ScalarNode(None, text, span)
                 # In braces YAML reads `{a, b}` as two keys without values. `key_end` is the mark of the last key.
                 if key_end is not None and items is None and ":" not in source[key_end.index : start.index]:
-                    report_error(
-                        f"the key `{key}` has no `:`", "write `key: value`; a list stands in brackets: [a, b]", key_span
-                    )
+                    report_error(*yaml_errors.describe_missing_colon(key), key_span)
             value_count += 1
             if has_rare and event.anchor is not None:
                 anchors[event.anchor] = (value, 1)

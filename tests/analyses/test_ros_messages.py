@@ -7,7 +7,9 @@ from typing import Literal
 
 import pytest
 
-from archgen.analyses.ros_messages import RULES, topic_type_conflict, unchecked_message, unknown_message
+from archgen.analyses import topic_messages
+from archgen.analyses.ros_messages import RULES, unchecked_message, unknown_message
+from archgen.analyses.topic_messages import topic_type_conflict
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.link.interface_sources import load_interfaces
@@ -273,7 +275,7 @@ def test_a_topic_with_one_message_is_no_conflict() -> None:
 
 
 def test_rules_have_pages() -> None:
-    rules = [Rule.from_function(*rule) for rule in RULES]
+    rules = [Rule.from_function(*rule) for rule in (*RULES, *topic_messages.RULES)]
     assert {rule.name: rule.severity for rule in rules} == {
         "unknown-message": Severity.ERROR,
         "unchecked-message": Severity.NOTE,

@@ -31,6 +31,8 @@ nodes: {camera: camera, screen: screen}
         ("title: Camera", "title: “Camera: left”", "6:16", "a typographic quote (U+201C)", 'write a plain quote, `"`, in its place'),
         ("[Works at night]", "\n        \u2013 R-1", "8:9", "an en dash (U+2013)", "write `-` in its place"),
         ("title: Sensing", "title\uff1a Sensing", "3:10", "a wide colon (U+FF1A)", "write `:` in its place"),
+        ("        title: Camera", "        title:\u00a0Camera", "6:15", "a no-break blank (U+00A0)", "write a plain blank in its place"),
+        ("{rate: 30 Hz", "{rate:\u00a030 Hz", "9:18", "a no-break blank (U+00A0)", "write `rate: 30 Hz`"),
         ("30 Hz", "30\u00a0Hz", "9:26", "a no-break blank (U+00A0)", "write `30 Hz`"),
         ("title: Sensing", "tit\u200ble: Sensing", "3:8", "a zero-width blank (U+200B)", "write `title`"),
     ],

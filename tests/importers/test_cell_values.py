@@ -90,7 +90,7 @@ def test_packages(project: ImportedProject, text: str, package: str | None) -> N
     ],
 )
 def test_a_list_is_split_at_the_strongest_mark(text: str, items: list[str]) -> None:
-    assert cell_values.split_list(_cell(text)) == items
+    assert cell_values.split_cell_list(_cell(text)) == items
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,8 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import input_wiring
 from archgen.link.project_linking import link_project
-from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
+from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
 from archgen.schema import normalise_document, validate_document
@@ -232,7 +233,7 @@ def test_keys_of_nodes_are_ports_of_what_they_implement(linked: Linked, uses: st
             "calls: {nothing: }",
             (
                 "9:35 unknown-reference: no input named `nothing` in `g.a` or `g.b`"
-                " (5:7 declared here, 6:7 declared here) | None"
+                " (5:7 declared here, 6:7 declared here) | there are `i` and `j`"
             ),
         ),
         (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.schema import key_wording
-from archgen.schema.key_places import find_common_kind, find_home
+from archgen.schema.key_places import find_common_kind, find_key_home
 from archgen.schema.language_schema import load_schema
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax import yaml_parser
@@ -29,6 +29,9 @@ def _component(text: str) -> str:
         (_component("inputs: {scan: {qos: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, subscribes: {scan: {qos: ...}}}}`"),
         (_component("outputs: {scan: {message: a/msg/B}}"), "write it as `types: {TYPE: {message: ...}}`"),
         (_component("outputs: {scan: {rate: 1 Hz}}"), "write it as `timing: {rate: ...}` of the component or of its node"),
+        # One letter too few or too many is a slip, wherever else the key belongs.
+        ("hosts: {pc: {core: 4}}", "did you mean `cores`?"),
+        ("nodes: {n: {hosts: pc}}", "did you mean `host`?"),
         (_component("hosts: {}"), "`hosts` is a section of its own: it begins in the first column"),
         ("nodes: {n: {depth: 3}}", "its keys are `implements`"),
         ("distro: jazzy", "write it below `ros`: `ros: {distro: ...}`"),
@@ -73,7 +76,7 @@ def test_a_kind_is_common_only_to_several_keys() -> None:
 
 
 def test_what_every_element_has_has_no_home() -> None:
-    assert find_home("description", ("links", "lan"), "Link") is None
+    assert find_key_home("description", ("links", "lan"), "Link") is None
 
 
 def test_a_key_that_holds_an_odd_blank_is_no_guess() -> None:

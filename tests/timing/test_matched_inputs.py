@@ -14,9 +14,10 @@ from archgen.simulation.time_matching import make_matcher
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.load.match_windows import MatchedInput, find_match_windows
-from archgen.timing.run_analysis import analyse_system
+from archgen.timing.run_analysis import analyse_architecture, analyse_system
 from archgen.timing.system.timing_system import Activity, TimingSystem
 from tests.simulation.systems import arc, event, system, timed
+from tests.timing.random_systems import architecture
 
 
 def test_a_slow_and_a_fast_sensor() -> None:
@@ -40,6 +41,36 @@ def test_responses_and_links_are_on_the_way() -> None:
     figures = analyse_system(of).matches["fuse"]
     assert _ms(figures.ages["slow"]) == 40 + 109
     assert _ms(figures.waits["slow"]) == 30 + 100 + 109 - 3
+
+
+def test_a_filter_on_the_way_makes_gaps_longer_by_what_its_source_varies() -> None:
+    """Between two messages of the filter: 100 ms and 9 - 2. So `fast` waits 40 + 107 + 3 ms, and the filter's own 1 to 3 ms
+    come to that: 150 - 1. What arrives varies by 9 - 2 + 3 - 1.
+    """
+    of = system(
+        (
+            timed("slow", 100, 9, bcet=2, outputs=("out",)),
+            timed("fast", 30, 0, outputs=("out",)),
+            event("filter", 3, "slow", bcet=1, outputs=("out",)),
+            event("fuse", 1, "filter", "fast", mode="match", within=40),
+        ),
+        [arc("slow", "filter"), arc("filter", "fuse"), arc("fast", "fuse")],
+    )
+    analysis = analyse_system(of)
+    assert {key: _ms(age) for key, age in analysis.matches["fuse"].ages.items()} == {"filter": 150, "fast": 150}
+    assert _ms(analysis.paces["fuse"].jitter) == 150 - 1 + 9
+
+
+def test_an_input_from_outside_has_no_gap_that_anybody_knows() -> None:
+    """Also where a component sends to it as well: it is the input that is unknown, not its reader."""
+    model = architecture("""groups: {g: {components: {
+  a: {outputs: {out: std_msgs/msg/String}},
+  c: {outputs: {out: std_msgs/msg/String}},
+  b: {inputs: {a: {from: a.out, external: The world}, c: c.out}, timing: {trigger: {match: [a, c], within: 10 ms}, wcet: 1 ms}}}}}
+nodes: {a: {implements: g.a, timing: {period: 10 ms}}, c: {implements: g.c, timing: {period: 10 ms}}, b: {implements: g.b}}
+""")
+    gap = analyse_architecture(model).paces["b"].gap
+    assert (gap.value, gap.missing) == (None, ("g.b.a", "c"))
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import TimingSystem
 
 
-def find_late_chains(
+def find_chains_made_late(
     context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses
 ) -> Iterator[PartnerLoss]:
     """Find chains that met their deadline and need not do so any more, or that were late and are later now.

@@ -42,10 +42,10 @@ def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
 
 def list_remedy_rows(results: Mapping[str, ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
     """Yield for each chain that is not met the change that would prove it, or what was tried."""
-    yield from ((key, *describe_remedy(remedy)) for key, remedy in evidence.remedies.items() if key in results)
+    yield from ((key, *describe_chain_remedy(remedy)) for key, remedy in evidence.remedies.items() if key in results)
 
 
-def describe_remedy(remedy: ChainRemedy) -> tuple[str, ...]:
+def describe_chain_remedy(remedy: ChainRemedy) -> tuple[str, ...]:
     """Return the change that proves a chain as `--set` writes it, and the bound then; or what was tried."""
     if remedy.changes:
         options = " ".join(f"--set {quote_option(str(change))}" for change in remedy.changes)
@@ -60,7 +60,7 @@ def replace_advice(advice: ChainAdvice, remedy: ChainRemedy | None) -> ChainAdvi
     """Return the sentences on a chain, with the change that proves it as what to do, where one was found."""
     if remedy is None or not remedy.changes:
         return advice
-    change, bound = describe_remedy(remedy)
+    change, bound = describe_chain_remedy(remedy)
     return advice._replace(first_step=f"This would prove it, found by trying: {change} ({bound}).")
 
 

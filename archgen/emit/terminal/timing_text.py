@@ -312,7 +312,7 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
         yield ""
         yield from (f"  {sentence}" for sentence in chain_remedies.replace_advice(advice, remedy) if sentence)
     if remedy is not None and (advice is None or not remedy.changes):
-        yield f"  what would prove it: {', '.join(chain_remedies.describe_remedy(remedy))}"
+        yield f"  what would prove it: {', '.join(chain_remedies.describe_chain_remedy(remedy))}"
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 

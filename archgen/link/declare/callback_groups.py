@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference, take_path_end
+from archgen.link.reference_resolution import ReferenceResolver, take_path_end
+from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 EXECUTOR_KEYS = ("threads", "scheduling", "callback_groups", "reentrant")
@@ -22,11 +23,13 @@ def declare_callback_groups(
     groups: dict[str, tuple[str, ...]] = {}
     first_spans: dict[str, Span] = {}
     groups_body = mapping_values.get_mapping(body, "callback_groups")
+    written_names = {scalar.text for scalar in mapping_values.get_scalars(body, "implements")}
+    is_complete = 0 < len(written_names) <= len(implements)
     for entry in groups_body:
         sanity_checks.report_empty_list(groups_body, entry.key, "component", node_id, resolver.diagnostics)
         members: list[str] = []
         for scalar in mapping_values.get_scalars(groups_body, entry.key):
-            component = _resolve_component(scalar, resolver, node_id, implements)
+            component = _resolve_component(scalar, resolver, node_id, implements, is_complete=is_complete)
             if component in first_spans:
                 resolver.diagnostics.append(_diagnose_second_group(scalar, first_spans[component], node_id))
             elif component is not None:
@@ -38,9 +41,17 @@ def declare_callback_groups(
 
 
 def _resolve_component(
-    reference: ScalarNode, resolver: ReferenceResolver, node_id: str, implements: tuple[str, ...]
+    reference: ScalarNode,
+    resolver: ReferenceResolver,
+    node_id: str,
+    implements: tuple[str, ...],
+    *,
+    is_complete: bool,
 ) -> str | None:
-    """Return the component of the node that a reference means: its id, or the end of it."""
+    """Return the component of the node that a reference means: its id, or the end of it.
+
+    Where not all that the node implements is known (`is_complete`), it may be what is not.
+    """
     matching = [name for name in implements if name == reference.text or name.endswith(f".{reference.text}")]
     if len(matching) == 1:
         return matching[0]
@@ -54,11 +65,11 @@ def _resolve_component(
                 element=node_id,
             )
         )
-    elif implements and not resolver.is_lost(reference.text):
+    elif is_complete and not resolver.is_lost(reference.text):
         length = reference.text.count(".") + 1
         guess = resolver.guess_name(reference.text, [take_path_end(name, length) for name in implements])
         diagnostic = diagnose_unknown_reference(
-            reference, f"component of `{node_id}`", guess, Span("", 0, 0, 0, 0), node_id
+            reference, f"component of `{node_id}`", guess, NO_SPAN, node_id, known_names=implements
         )
         resolver.diagnostics.append(diagnostic)
     return None

@@ -72,12 +72,15 @@ def _read_trigger(body: MappingNode, ports: PortResolver, diagnostics: list[Diag
     if type(node) is not MappingNode:
         return None
     mode: Literal["all", "match"] = "all" if node.get("all") is not None else "match"
+    is_damaged = ports.owner_id in ports.resolver.damaged_elements
     sanity_checks.report_mixed_trigger(node, ports.owner_id, diagnostics)
+    if not is_damaged:  # a misspelt `match` is reported
+        sanity_checks.report_lonely_within(node, ports.owner_id, diagnostics)
     inputs = _resolve_inputs(node, mode, ports, diagnostics)
     if inputs is None or mode == "all":
         return None if inputs is None else Trigger(mode, inputs, at=node.span)
     within = mapping_values.get_quantity(node, "within", "duration")
-    is_sound = sanity_checks.check_match(node, inputs, within, ports.owner_id, diagnostics)
+    is_sound = sanity_checks.check_match(node, inputs, within, ports.owner_id, diagnostics, is_damaged=is_damaged)
     return Trigger(mode, inputs, within, node.span) if is_sound else None
 
 
@@ -86,6 +89,7 @@ def _resolve_inputs(
 ) -> tuple[str, ...] | None:
     """Resolve a list of inputs; None if it is empty or nothing in it can be resolved."""
     sanity_checks.report_empty_list(mapping, key, "input", ports.owner_id, diagnostics)
+    sanity_checks.report_repetition(mapping, key, ports.owner_id, diagnostics)
     input_ids = [
         ports.resolve_port(scalar.text, scalar.span, "input") for scalar in mapping_values.get_scalars(mapping, key)
     ]

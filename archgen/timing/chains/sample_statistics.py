@@ -29,7 +29,7 @@ class SampleStatistics:
     largest: int
     total: int
     percentiles: Mapping[str, int]
-    is_stepped: bool = False
+    is_stepped: bool
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ class EdgeContext:
     """Loss by reader, where messages fire it."""
 
 
-def find_edge_fits(context: EdgeContext, *, judging: bool = False) -> tuple[EdgeFit, ...]:
+def find_edge_fits(context: EdgeContext, *, judging: bool) -> tuple[EdgeFit, ...]:
     """Compare what is sent with what is read, along every arc that carries data, or those that a rule may judge."""
     system = context.state.system
     arcs = (arc for arc in system.arcs if arc.role == "data" and (not judging or _is_judged(system, arc)))

@@ -52,7 +52,7 @@ def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
 def test_what_would_prove_a_chain(changes: tuple[TriedChange, ...], text: tuple[str, ...]) -> None:
     tried = (("priority", ("a", "b", "c", "d", "e")), ("callback_groups", ("n",)), ("reentrant", ("n",)))
     remedy = ChainRemedy("c", changes, TimingValue(40 * MS), tried, is_cut=True)
-    assert chain_remedies.describe_remedy(remedy) == text
+    assert chain_remedies.describe_chain_remedy(remedy) == text
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from archgen.timing.analysis import LinkLoad
+from archgen.timing.load.event_streams import EventStream
 from archgen.timing.rates import link_traffic
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import show, show_ms
@@ -285,3 +288,11 @@ nodes: {{a: {{implements: a, timing: {{{timing}}}}}}}
 types: {{Data: {{message: std_msgs/msg/String{size}}}}}
 """
     assert show(analyse_architecture(architecture(text)).topics["/g/a/out"].published) == published
+
+
+def test_the_first_of_two_equally_large_backlogs_is_told() -> None:
+    """15 B at the start; 5 of them are sent by 5, when the late message brings 5 more."""
+    sized_models = [(10, (EventStream(100),)), (5, (EventStream(100, 95),))]
+    backlog = link_traffic.find_largest_backlog(sized_models, Fraction(1))
+    assert (backlog.size.value, backlog[1]) == (15, 0)
+    assert link_traffic.find_largest_backlog([*sized_models, (1, (EventStream(100, 95),))], Fraction(1))[1] == 5

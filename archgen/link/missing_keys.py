@@ -1,0 +1,53 @@
+"""Find elements that lack what they mean nothing without, in all slices together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.syntax.yaml_tree import MappingNode, SequenceNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.syntax.yaml_tree import YamlNode
+
+_KeyPath = tuple[str, ...]
+# By section, the paths without which an element means nothing. The schema cannot ask for them: in a single slice every
+# key may be missing, because another file may write it.
+_NEEDED_KEYS: dict[_KeyPath, tuple[_KeyPath, ...]] = {
+    ("views",): (("show",),),
+    ("policies",): (("forbid", "from"), ("forbid", "to")),
+    ("review", "accepted"): (("reason",),),
+}
+
+
+def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
+    """Report elements that lack a key without which they mean nothing, in all slices together."""
+    for section, needed_paths in _NEEDED_KEYS.items():
+        section_node = _node_at(root, section)
+        for entry in section_node if isinstance(section_node, MappingNode) else ():
+            nodes = entry.value.items if isinstance(entry.value, SequenceNode) else (entry.value,)
+            for path in needed_paths:
+                if not all(_has_path(node, path) for node in nodes):
+                    message = f"`{entry.key}` lacks `{'.'.join(path)}`"
+                    yield Diagnostic(
+                        "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
+                    )
+
+
+_MISSING_KEY_HELP = {
+    "views": 'say what the view shows: `show: "tag:safety"`',
+    "policies": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
+    "accepted": "say why the change is right: `camera.image: {key: type, reason: the tracker moved to depth images}`",
+}
+
+
+def _has_path(node: YamlNode, path: _KeyPath) -> bool:
+    return _node_at(node, path) is not None
+
+
+def _node_at(node: YamlNode | None, path: _KeyPath) -> YamlNode | None:
+    for key in path:
+        node = node.get(key) if isinstance(node, MappingNode) else None
+    return node

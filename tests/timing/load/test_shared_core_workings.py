@@ -1,0 +1,30 @@
+"""What `--why` says of work that several cores share."""
+
+from __future__ import annotations
+
+from archgen.timing.chains.figure_explanations import explain_word
+from tests.timing.sketches import analyse_sketch
+
+_REST = "hosts: {pc: {cores: 2}, far: {cores: 1}}\nlinks: {lan: {connects: [pc, far], latency: 1 ms}}"
+
+
+def test_what_holds_up_storing_ends_with_an_activation_that_comes_too_soon() -> None:
+    """`b` may come 2 ms after the job before it, which takes 8: four jobs follow one another without a gap."""
+    nodes = {
+        "a @far": "period: 30 ms, wcet: 1 ms",
+        "b @pc": "period: 10 ms, wcet: 8 ms, jitter: 8 ms, priority: 5",
+        "c @pc": "period: 20 ms, wcet: 6 ms",
+        "d @pc": "period: 20 ms, wcet: 4 ms",
+    }
+    lines = [line.text for line in explain_word(analyse_sketch(nodes, "a>b", _REST), {}, "b")]
+    assert lines[-6:] == [
+        "b: what it only reads may wait 32 ms to be stored, and is missed by an activation until then",
+        (
+            "the longest t with A + B >= t, until an activation that comes too soon, is 32 ms: A is the work of its own "
+            "threads, B the time in which all 2 cores may be busy with others"
+        ),
+        "4 x 8 ms b = 32 ms, since floor((32 ms + 8 ms) / 10 ms) = 4, its own jobs before the one that comes too soon",
+        "A = 32 ms",
+        "B = 0 ms: no other thread has work, which cannot keep 2 cores busy all at once",
+        "32 ms + 0 ms = 32 ms, A + B until then",
+    ]
