@@ -24,7 +24,7 @@ changes any more. The first bound to fail would need another one that failed bef
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from heapq import nlargest
 from itertools import islice
@@ -48,25 +48,34 @@ _WHOLE_SHARE = 1 << _SHARE_BITS
 """A whole core, in the parts that shares are counted in."""
 
 
-class IdleBacklog(NamedTuple):
-    """The most work (ticks) that can be pending just after a core was idle, and how long each way takes at most."""
+class PendingShare(NamedTuple):
+    """What a thread (or container), called like its first activity, may have pending of an origin: so much work at most.
 
-    pending_work: int
-    delays: Mapping[WayKey, int]
+    They may be `age` old, so that there are `events` of them, with `rest` still to be done for each; in ticks.
+    """
+
+    name: str
+    origin: Origin
+    age: int
+    events: int
+    rest: int
+    work: int
 
 
 def find_idle_backlog(
     cores: SharedCores, way_works: Mapping[WayKey, WayWork], demand: CascadeDemand, budget: SearchBudget
 ) -> IdleBacklog | None:
     """Return what can be pending on some cores, None where no bound is found."""
+    backlog = IdleBacklog(cores, way_works, demand, budget.start_search())
     try:
-        return BacklogSearch(cores, way_works, demand, budget.start_search()).find()
+        backlog.find()
     except DivergedError:
         return None
+    return backlog
 
 
-class BacklogSearch:
-    """Finds what may be pending, and with it the delays of all ways (`delays`)."""
+class IdleBacklog:
+    """The most that can be pending just after a core was idle (`pending_shares`), and how long each way takes (`delays`)."""
 
     def __init__(
         self,
@@ -92,33 +101,44 @@ class BacklogSearch:
         # With as many threads as cores, none waits for a thread while a core is idle.
         self.small_crowds = {crowd for crowd in cores.crowd_of.values() if crowd[1] < cores.core_count}
         self.delays: dict[WayKey, int] = dict.fromkeys(way_works, 0)
+        self.pending_shares: tuple[PendingShare, ...] = ()
 
-    def find(self) -> IdleBacklog:
+    @property
+    def pending_work(self) -> int:
+        """Return K."""
+        return sum(share.work for share in self.pending_shares)
+
+    def find(self) -> None:
         """Find all of it, by repetition where some thread serves several ways."""
         if any(self._find_growth(way_work) >= _WHOLE_SHARE for way_work in self.way_works.values()):
             raise DivergedError
         is_shared = any(way_work.others or way_work.crowds for way_work in self.way_works.values())
         for _ in range(_MAX_ROUNDS):
-            pending_work = self._find_pending()
-            delays = {
-                key: max(self.delays[key], self.find_delay(way_work, pending_work))
-                for key, way_work in self.way_works.items()
-            }
-            if not is_shared or delays == self.delays:
-                return IdleBacklog(pending_work, delays)
+            self.pending_shares = self._find_pending()
+            delays = {key: max(self.delays[key], self.find_delay(way_work)) for key, way_work in self.way_works.items()}
+            is_settled = not is_shared or delays == self.delays
             self.delays = delays
+            if is_settled:
+                return
         raise DivergedError
 
-    def find_delay(self, way_work: WayWork, pending_work: int) -> int:
+    def find_delay(self, way_work: WayWork) -> int:
         """Return how long an event of a way takes at most, over all that may come in a busy window."""
-        whole_window = self._find_busy_window(way_work, pending_work)
+        return max((window - arrival for _, arrival, window in self.list_windows(way_work)), default=0)
+
+    def list_windows(self, way_work: WayWork) -> Iterator[tuple[int, int, int]]:
+        """Yield events of a way: how many are before each, its earliest time, and the window in which it is through.
+
+        Those that cannot take longer than others are left out.
+        """
+        whole_window = self.find_busy_window(way_work)
         delay = window = 0
         for count, arrival in enumerate(self._list_arrivals(way_work, whole_window)):
             if whole_window - arrival <= delay:
                 break
-            window = self.find_window(way_work, count, max(window, arrival), pending_work)
+            window = self.find_window(way_work, count, max(window, arrival))
             delay = max(delay, window - arrival)
-        return delay
+            yield count, arrival, window
 
     def _list_arrivals(self, way_work: WayWork, window: int) -> list[int]:
         """Return the earliest times of the events of a way in a window."""
@@ -130,9 +150,9 @@ class BacklogSearch:
             raise DivergedError
         return list(islice(earliest_arrivals(model), count))
 
-    def _find_busy_window(self, way_work: WayWork, pending_work: int) -> int:
+    def find_busy_window(self, way_work: WayWork) -> int:
         """Return the longest window in which a way, or all cores, may be busy."""
-        window, model = 1, self.streams.get(way_work.origin, ())
+        window, model, pending_work = 1, self.streams.get(way_work.origin, ()), self.pending_work
         while True:
             events = max(max_arrivals(model, window), 1)
             needed = self._find_need(way_work, events - 1, window, self.work_within(window) + pending_work)
@@ -140,25 +160,23 @@ class BacklogSearch:
                 return window
             window = needed
 
-    def find_window(self, way_work: WayWork, count: int, window: int, pending_work: int) -> int:
+    def find_window(self, way_work: WayWork, count: int, window: int) -> int:
         """Return the least window, from `window` on, in which an event behind `count` others is through its way."""
-        model = self.streams.get(way_work.origin, ())
+        model, pending_work = self.streams.get(way_work.origin, ()), self.pending_work
         while True:
-            work = self.count_work(way_work, count, window, max_arrivals(model, window))
+            work = self.work_within(window) - self.count_unfinished(way_work, count, max_arrivals(model, window))
             needed = self._find_need(way_work, count, window, work + pending_work)
             if needed <= window:
                 return window
             window = needed
 
-    def count_work(self, way_work: WayWork, count: int, window: int, events: int) -> int:
-        """Return the work that may be done in a window before an event behind `count` others is through.
+    def count_unfinished(self, way_work: WayWork, count: int, events: int) -> int:
+        """Return the work of so many events that is not done before one behind `count` others is through its way.
 
-        What comes behind its last step is not among it, nor anything from that step on of the events after it.
+        That is what comes behind its last step, and of the events after it all from that step on.
         """
         later_events = events - count - 1
-        if later_events < 0:
-            return self.work_within(window)
-        return self.work_within(window) - way_work.behind - later_events * way_work.from_last
+        return way_work.behind + later_events * way_work.from_last if later_events >= 0 else 0
 
     def _find_need(self, way_work: WayWork, count: int, window: int, work: int) -> int:
         """Return A (1 - 1/m) + G (1 - k/m) + work / m, rounded up."""
@@ -188,30 +206,27 @@ class BacklogSearch:
             growth -= -crowd_rate * (core_count - threads) // threads
         return -(-growth // core_count)
 
-    def _find_pending(self) -> int:
+    def _find_pending(self) -> tuple[PendingShare, ...]:
         """Return K: what the m - 1 threads that can have most pending may have, and all that waits for containers."""
+        share_of: dict[tuple[object, Origin], PendingShare] = {}
         most_of_origin: dict[Origin, int] = {}
-        counts: dict[tuple[object, Origin], int] = {}
-        rests: dict[tuple[object, Origin], int] = {}
         for way_work in self.way_works.values():
             origin = way_work.origin
             if origin not in self.streams:
                 continue
             age = self._find_age(way_work)
-            count = max_arrivals(self.streams[origin], age) if age > 0 else 0
             lane = self._find_lane(way_work.key[0])
-            counts[lane, origin] = max(count, counts.get((lane, origin), 0))
-            rests[lane, origin] = max(way_work.left, rests.get((lane, origin), 0))
+            share = share_of.get((lane, origin), PendingShare(way_work.key[0], origin, 0, 0, 0, 0))
+            age, rest = max(age, share.age), max(way_work.left, share.rest)
+            count = max_arrivals(self.streams[origin], age) if age > 0 else 0
+            share_of[lane, origin] = PendingShare(share.name, origin, age, count, rest, count * rest)
             most_of_origin[origin] = max(most_of_origin.get(origin, 0), count * self.cores.cascades.volumes[origin])
-        lanes: dict[object, dict[Origin, int]] = {}
-        crowd_work = 0
-        for (lane, origin), count in counts.items():
-            if lane in self.small_crowds:
-                crowd_work += count * rests[lane, origin]
-            else:
-                lanes.setdefault(lane, {})[origin] = count * rests[lane, origin]
-        thread_work = sum_largest_lanes(lanes.values(), most_of_origin, self.core_count - 1)
-        return min(crowd_work + thread_work, sum(most_of_origin.values()))
+        crowd_shares = [share for (lane, _), share in share_of.items() if lane in self.small_crowds]
+        lanes: dict[object, list[PendingShare]] = {}
+        for (lane, _), share in share_of.items():
+            if lane not in self.small_crowds:
+                lanes.setdefault(lane, []).append(share)
+        return (*crowd_shares, *choose_largest_lanes(list(lanes.values()), most_of_origin, self.core_count - 1))
 
     def _find_lane(self, name: str) -> object:
         """Return what an activity waits for while a core is idle: its thread, or those of its container."""
@@ -273,21 +288,22 @@ def _round_up(share: Fraction) -> int:
     return -((-share.numerator << _SHARE_BITS) // share.denominator)
 
 
-def sum_largest_lanes(lanes: Iterable[Mapping[Origin, int]], most_of_origin: Mapping[Origin, int], number: int) -> int:
-    """Return the most work of so many lanes, where of each origin no more counts than there is of it."""
-    lane_list = list(lanes)
-    total = sum(nlargest(number, (sum(lane.values()) for lane in lane_list)))
-    if any(len(lane) > 1 for lane in lane_list):
-        return total
-    works_by_origin: dict[Origin, list[int]] = {}
-    for lane in lane_list:
-        for origin, work in lane.items():
-            works_by_origin.setdefault(origin, []).append(work)
+def choose_largest_lanes(
+    lanes: Sequence[Sequence[PendingShare]], most_of_origin: Mapping[Origin, int], number: int
+) -> Iterator[PendingShare]:
+    """Yield what so many lanes may have at most, where of each origin no more counts than there is of it."""
+    if any(len(lane) > 1 for lane in lanes):
+        for lane in nlargest(number, lanes, key=lambda lane: sum(share.work for share in lane)):
+            yield from lane
+        return
+    shares_of: dict[Origin, list[PendingShare]] = {}
+    for (share,) in lanes:
+        shares_of.setdefault(share.origin, []).append(share)
     # What another lane of an origin adds is less each time, so that the largest additions are the most.
-    additions: list[int] = []
-    for origin, works in works_by_origin.items():
+    additions: list[PendingShare] = []
+    for origin, shares in shares_of.items():
         rest = most_of_origin[origin]
-        for work in sorted(works, reverse=True):
-            additions.append(min(work, rest))
-            rest -= additions[-1]
-    return sum(nlargest(number, additions))
+        for share in sorted(shares, key=lambda each: -each.work):
+            additions.append(share._replace(work=min(share.work, rest)))
+            rest -= additions[-1].work
+    yield from nlargest(number, additions, key=lambda share: share.work)

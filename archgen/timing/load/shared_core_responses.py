@@ -42,6 +42,7 @@ from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.storing_waits import hold_beside_others
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
+from archgen.timing.load.way_works import build_thread_work
 from archgen.timing.load.whole_hosts import HostLimit
 from archgen.timing.system.timing_system import samples_inputs
 
@@ -382,10 +383,19 @@ class SharedCoreSolver:
         try:
             wait: int | None = max(self._hold_in_thread(each) for each in thread_ids)
         except DivergedError:
-            wait = None
+            wait = self._hold_by_backlog(thread_ids)
         if host_wait is not None and (wait is None or host_wait <= wait):
             return WorstResponse(host_wait, "whole host")
         return WorstResponse(wait, "cores", DIVERGED_CAUSE if wait is None else UnknownCause())
+
+    def _hold_by_backlog(self, names: Iterable[str]) -> int | None:
+        """Return how long the threads of some activities may have work all the time."""
+        if self.backlog is None:
+            return None
+        try:
+            return max(self.backlog.find_busy_window(build_thread_work(self.cores, name)) for name in names)
+        except DivergedError:
+            return None
 
     def _hold_in_thread(self, name: str) -> int:
         """Return how long the thread of an activity may have work until an activation comes that is not part of it."""

@@ -6,13 +6,12 @@ several events in a row, one after the other waits at one step only (the slowest
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
-from archgen.timing.system.core_placement import ThreadUnit
 
 _WayName = tuple[Origin, tuple[str, ...]]
 
@@ -28,7 +27,7 @@ class SharedWork(NamedTuple):
 class WayWork(NamedTuple):
     """A way with its work, in ticks.
 
-    The steps with a thread that has no other step of the way take `cost` together, and the longest of them `slowest`: a
+    The steps with a thread that has no other step of the way (`step_works`) take `cost` together, the longest `slowest`: a
     number of events in a row takes `cost`, and `slowest` for each but one. `others` is all other work in the threads of the
     way. `crowds` are the members of each container whose threads it waits for, with the number of threads, if they are
     fewer than the cores.
@@ -39,6 +38,7 @@ class WayWork(NamedTuple):
 
     key: WayKey
     origin: Origin
+    step_works: tuple[tuple[str, int], ...]
     cost: int
     slowest: int
     others: tuple[SharedWork, ...]
@@ -51,6 +51,11 @@ class WayWork(NamedTuple):
 def build_way_works(cores: SharedCores) -> dict[WayKey, WayWork]:
     """Return the work of each way of what works again and again, the shorter ways first."""
     return _WayWorkBuilder(cores).build()
+
+
+def build_thread_work(cores: SharedCores, name: str) -> WayWork:
+    """Return all work of the thread of an activity as that of a way without steps."""
+    return _WayWorkBuilder(cores).build_thread(name)
 
 
 class _WayWorkBuilder:
@@ -85,6 +90,17 @@ class _WayWorkBuilder:
             )
         return way_works
 
+    def build_thread(self, name: str) -> WayWork:
+        """Build the work of a thread."""
+        self.keys = {(way.entry, way.steps): key for key, way in self._list_ways()}
+        others = [
+            SharedWork(job.origin, job.work, self._find_way_before(job))
+            for job in self.unit_jobs[self.cores.unit_of[name]]
+        ]
+        return WayWork(
+            (name, 0), Origin("activity", name), (), 0, 0, tuple(others), tuple(self._find_crowds([name])), 0, 0, 0
+        )
+
     def _list_ways(self) -> Iterator[tuple[WayKey, EntryWay]]:
         for name, ways in self.cores.ways_to.items():
             if name not in self.cores.inner_triggers.silent_ids:
@@ -114,13 +130,13 @@ class _WayWorkBuilder:
     def _build_work(self, key: WayKey, way: EntryWay, left: int, behind: int, from_last: int) -> WayWork:
         units = [self.cores.unit_of[step] for step in way.steps]
         own_keys: set[WayKey] = set()
-        step_works: list[int] = []
+        step_works: list[tuple[str, int]] = []
         for number, unit in enumerate(units):
             if units.count(unit) == 1:
                 step_key = self.keys[way.entry, way.steps[: number + 1]]
                 own_keys.add(step_key)
                 job = self.jobs.get(step_key)
-                step_works.append(job.work if job else 0)
+                step_works.append((way.steps[number], job.work if job else 0))
         others = [
             SharedWork(job.origin, job.work, self._find_way_before(job) if unit == units[0] else job.key)
             for unit in dict.fromkeys(units)
@@ -130,10 +146,11 @@ class _WayWorkBuilder:
         return WayWork(
             key,
             way.entry,
-            sum(step_works),
-            max(step_works, default=0),
+            tuple(step_works),
+            sum(work for _, work in step_works),
+            max((work for _, work in step_works), default=0),
             tuple(others),
-            tuple(self._find_crowds(way, units)),
+            tuple(self._find_crowds(way.steps)),
             left,
             behind,
             from_last,
@@ -145,12 +162,12 @@ class _WayWorkBuilder:
             return None
         return self.keys[job.origin, job.steps[:-1]]
 
-    def _find_crowds(self, way: EntryWay, units: list[ThreadUnit]) -> Iterator[tuple[tuple[SharedWork, ...], int]]:
+    def _find_crowds(self, steps: Sequence[str]) -> Iterator[tuple[tuple[SharedWork, ...], int]]:
         """Yield the other members of the containers whose threads the steps wait for."""
         crowd_of = self.cores.crowd_of
-        for crowd in dict.fromkeys(crowd_of[step] for step in way.steps if step in crowd_of):
+        for crowd in dict.fromkeys(crowd_of[step] for step in steps if step in crowd_of):
             # Of several threads of the way there one may wait while another works, for a later event.
-            own_units = {unit for unit in units if crowd_of.get(unit[0]) == crowd}
+            own_units = {self.cores.unit_of[step] for step in steps if crowd_of.get(step) == crowd}
             if crowd[1] < self.cores.core_count:
                 yield (
                     tuple(
