@@ -115,8 +115,8 @@ class WorkingLines:
         yield ReasonLine(
             depth,
             f"B = ({' + '.join(parts)}{left_text}) / {working.core_count} = {self._write(working.blocked_time)}: what comes, and "
-            f"{self._write(working.pending)} that may have been pending in {working.core_count - 1} threads when a core was idle "
-            f"last, without A{' and what is done after this' if working.unfinished else ''}",
+            f"{self._write(working.pending)} that may have been pending when a core was idle last, without A"
+            f"{' and what is done after this' if working.unfinished else ''}",
         )
 
     def _describe_cuts(self, shares: Iterable[ThreadShare]) -> str:

@@ -10,7 +10,7 @@ from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.idle_backlogs import IdleBacklog
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.way_works import SharedWork, WayWork
+from archgen.timing.load.way_works import SharedWork, WayWork, build_thread_work
 from archgen.timing.load.work_terms import ONCE, CountFormulas, EventCount, FigureWorking, WorkTerm, group_terms
 
 
@@ -30,16 +30,26 @@ class BacklogWorkings(NamedTuple):
         try:
             for count, arrival, window in backlog.list_windows(way_work):
                 if window - arrival == backlog.delays[key]:
-                    yield self._explain_window(way_work, way, (count, arrival, window))
+                    yield self._explain_window(way_work, way.steps, (count, arrival, window))
                     return
         except DivergedError:
             return
+
+    def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
+        """Yield how long the thread of an activity may have work all the time, if that is so long."""
+        thread_work = build_thread_work(self.backlog.cores, name)
+        try:
+            window = self.backlog.find_busy_window(thread_work)
+        except DivergedError:
+            return
+        if window == hold:
+            yield self._explain_window(thread_work, (), (0, 0, window))
 
     def _is_way(self, key: tuple[str, int], way: EntryWay) -> bool:
         ways = self.backlog.cores.ways_to[key[0]]
         return ways[key[1]].steps == way.steps and ways[key[1]].entry == way.entry
 
-    def _explain_window(self, way_work: WayWork, way: EntryWay, event: tuple[int, int, int]) -> FigureWorking:
+    def _explain_window(self, way_work: WayWork, steps: tuple[str, ...], event: tuple[int, int, int]) -> FigureWorking:
         count, arrival, window = event
         backlog = self.backlog
         terms = group_terms(self._list_own_terms(way_work, count, window))
@@ -51,7 +61,7 @@ class BacklogWorkings(NamedTuple):
             terms,
             count + 1,
             arrival,
-            steps=way.steps if len(way.steps) > 1 else (),
+            steps=steps if len(steps) > 1 else (),
             core_count=backlog.core_count,
             blocked_time=max(window - own_work, 0),
             beside_terms=group_terms(self._list_arriving(window)),
