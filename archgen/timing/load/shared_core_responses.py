@@ -125,20 +125,30 @@ class SharedCoreSolver:
             self.cause_of = dict.fromkeys(self.cores.inner_triggers.order, cause)
             return self._build_responses()
         self.work = PathWork(self.cores, self.demand)
-        if not (self.cores.foreign_ids or self.cores.reentrant_units):
-            self.backlog = find_idle_backlog(self.cores, self.paths.way_works, self.demand, self.budget)
-            self.budget = self._open_refining_budget()
+        # Where there are priorities it is seldom the smaller bound: then it is looked for when nothing else ends.
+        is_ranked = self._has_priorities()
+        if not is_ranked:
+            self._find_backlog()
         if self.backlog is None:
             self._mark_full_threads()
         self.longest_wait = self._find_longest_wait()
         for name in sorted(self.cores.foreign_ids):
             self.work.note_delay((name, 0), self.known_responses[name].value or 0)
         while stuck_names := self._repeat_sweeps():
+            if is_ranked:
+                is_ranked = False
+                self._find_backlog()
             # What still grows has the bound of its limit, or none that is found; what it comes in the way of then has
             # none either.
             self.raised_names.update(name for name in stuck_names if self._has_limit(name))
             self._mark_boundless([name for name in stuck_names if not self._has_limit(name)], DIVERGED_CAUSE)
         return self._build_responses()
+
+    def _find_backlog(self) -> None:
+        """Look for what may be pending, if it can be said, and cut down what may be spent on bounds that are smaller."""
+        if not (self.cores.foreign_ids or self.cores.reentrant_units):
+            self.backlog = find_idle_backlog(self.cores, self.paths.way_works, self.demand, self.budget)
+            self.budget = self._open_refining_budget()
 
     def _find_longest_wait(self) -> int:
         """Return a delay above which a bound has run away."""
