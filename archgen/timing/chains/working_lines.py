@@ -88,6 +88,9 @@ class WorkingLines:
     def _explain_blocking(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
         """Yield what all cores may be busy with: what comes, thread by thread, and what is pending from before."""
         yield from self.list_terms(working.beside_terms, depth)
+        if working.is_backlog:
+            yield from self._explain_backlog(working, depth)
+            return
         parts = [f"{self._write(share.counted)} {'/'.join(share.unit)}" for share in working.shares]
         parts += [f"{self._write(working.pending)} pending"] if working.pending else []
         yield ReasonLine(
@@ -101,6 +104,20 @@ class WorkingLines:
                 f"{self._write(working.pending)} pending: what may be left over from before (carry-in), as at most "
                 f"{working.core_count - 1} threads had work when the last core became busy",
             )
+
+    def _explain_backlog(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
+        """Yield what was pending when a core was idle last, and what of all that may be done before the figure ends."""
+        yield from self.list_terms(working.pending_terms, depth)
+        parts = [self._write(term.total) for term in (*working.beside_terms, *working.pending_terms)]
+        own_work = sum(term.total for term in working.terms)
+        left_parts = [self._write(ticks) for ticks in (own_work, working.unfinished) if ticks]
+        left_text = "".join(f" - {part}" for part in left_parts)
+        yield ReasonLine(
+            depth,
+            f"B = ({' + '.join(parts)}{left_text}) / {working.core_count} = {self._write(working.blocked_time)}: what comes, and "
+            f"{self._write(working.pending)} that may have been pending when a core was idle last, without A"
+            f"{' and what is done after this' if working.unfinished else ''}",
+        )
 
     def _describe_cuts(self, shares: Iterable[ThreadShare]) -> str:
         cuts = [share for share in shares if share.counted < share.work]

@@ -36,8 +36,11 @@ class DivergedError(Exception):
 class SearchBudget:
     """How many terms some searches may still look at: terms and not seconds, so that results can be repeated."""
 
-    def __init__(self, term_count: int = _MAX_TERMS, terms_per_search: int | None = None) -> None:
-        """Start with the whole budget."""
+    def __init__(
+        self, term_count: int = _MAX_TERMS, terms_per_search: int | None = None, whole: SearchBudget | None = None
+    ) -> None:
+        """Start with the whole budget; what is spent of a part is spent of the `whole` as well."""
+        self._whole = whole
         self._term_count = self._terms_left = term_count
         self._terms_per_search = _MAX_TERMS_PER_SEARCH if terms_per_search is None else terms_per_search
 
@@ -46,12 +49,19 @@ class SearchBudget:
         """Return how many terms were looked at."""
         return self._term_count - self._terms_left
 
+    def open_part(self, term_count: int) -> SearchBudget:
+        """Return a budget of so many terms of this one, if there are so many left, for searches of any length."""
+        part_count = min(term_count, max(self._terms_left, 0))
+        return SearchBudget(part_count, part_count, self)
+
     def start_search(self) -> Callable[[int], None]:
         """Begin a search: the returned function spends terms, and raises DivergedError after too many."""
         min_terms_left = max(self._terms_left - self._terms_per_search, 0)
 
         def spend(steps: int) -> None:
             self._terms_left -= steps
+            if self._whole is not None:
+                self._whole._terms_left -= steps  # noqa: SLF001 - it is one of these as well
             if self._terms_left < min_terms_left:
                 raise DivergedError
 

@@ -10,6 +10,7 @@ from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import Priority
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
+from archgen.timing.load.way_works import WayWork, build_way_works
 from archgen.timing.system.core_placement import ThreadUnit
 
 
@@ -62,6 +63,14 @@ class CorePaths:
 
     cores: SharedCores
     _paths: dict[tuple[str, ...], CorePath] = field(default_factory=dict)
+    _way_works: dict[WayKey, WayWork] = field(default_factory=dict)
+
+    @property
+    def way_works(self) -> Mapping[WayKey, WayWork]:
+        """Return the work of each way."""
+        if not self._way_works:
+            self._way_works.update(build_way_works(self.cores))
+        return self._way_works
 
     def look_up(self, steps: tuple[str, ...]) -> CorePath:
         """Return what counts for some steps."""

@@ -28,6 +28,7 @@ class PathWork:
             origin: demand.streams_of(origin) for origin, volume in cores.cascades.volumes.items() if volume
         }
         self.calm_arrivals = {origin: max_arrivals(model, 1) for origin, model in self.streams.items()}
+        self.calm_works = [job.work * self.calm_arrivals[job.origin] for job in cores.jobs]
         self.calm_windows = {
             origin: min((_find_calm_time(stream) for stream in model), default=_ENDLESS)
             for origin, model in self.streams.items()
@@ -57,10 +58,17 @@ class PathWork:
         # In such a window nothing comes twice, and nothing is pending: its length does not matter.
         time = self.calm_times.get(id(path))
         if time is None:
-            arrivals = self.calm_arrivals
-            time = self._path_work(path, window, arrivals) + self.find_time_blocked(path, window, arrivals)
+            time = self._path_work(path, window, self.calm_arrivals) + self._find_calm_block(path)
             self.calm_times[id(path)] = time
         return time
+
+    def _find_calm_block(self, path: CorePath) -> int:
+        """Return how long all cores may be busy with other threads where nothing comes twice and nothing is pending."""
+        works = self.calm_works
+        lane_works = [sum([works[number] for number in lane]) for lane in path.other_lanes]
+        if path.crowds:
+            return -(-sum(lane_works) // self.cores.core_count)
+        return divide_among_cores(split_lanes(path, lane_works), 0, self.cores.core_count)
 
     def count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
         """Return how many events more there are in a window and up to `delay` before it than in a window."""

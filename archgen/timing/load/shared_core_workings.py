@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
+from archgen.timing.load.backlog_workings import BacklogWorkings
 from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.core_paths import CorePath
@@ -45,6 +46,9 @@ class SharedCoreWorkings:
         """Yield how the response of an activity may have been found."""
         value = self.state.responses[name].value or 0
         yield from self._follow_path((name,), value)
+        for way in self.solver.cores.ways_to[name]:
+            workings = self._list_backlog(way)
+            yield from (shorten_working(each, way.best_before) for each in workings)
         for way in self.state.ways_to.get(name, ()):
             if way.delay is not None and way.delay - way.best_before == value:
                 yield from (shorten_working(working, way.best_before) for working in self.list_delays(name, way))
@@ -52,6 +56,7 @@ class SharedCoreWorkings:
     def list_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield how the longest time of a way may have been found, from the event on to the end of an activity."""
         yield from self._follow_path(way.steps, way.delay or 0)
+        yield from self._list_backlog(way)
         if len(way.steps) > 1:
             yield from self._add_last_step(name, way)
         # A step has ended before the ones that it leads to: what bounds them bounds it.
@@ -64,6 +69,12 @@ class SharedCoreWorkings:
                     and later_way.steps[: len(way.steps)] == way.steps
                 ):
                     yield from self._follow_path(later_way.steps, way.delay or 0)
+                    yield from self._list_backlog(later_way)
+
+    def _list_backlog(self, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield how what may be pending bounds a way."""
+        if self.solver.backlog is not None:
+            yield from BacklogWorkings(self.solver.backlog, self.formulas).list_delays(way)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         before, response = way.steps[-2], self.solver.step_responses.get(name)
@@ -121,6 +132,8 @@ class SharedCoreWorkings:
                 own_term = WorkTerm(((thread_id, path.last_step.cost),), count, OWN_JOBS)
                 own_terms = group_terms([own_term, *self._list_own_terms(path, hold)])
                 yield replace(working, terms=own_terms, activation=0, is_hold=True)
+            if self.solver.backlog is not None:
+                yield from BacklogWorkings(self.solver.backlog, self.formulas).list_holds(thread_id, hold)
 
     def _explain_window(
         self, path: CorePath, steps: tuple[str, ...], count: int, arrival: int, window: int

@@ -164,6 +164,10 @@ class FigureWorking:
     beside_terms: tuple[WorkTerm, ...] = ()
     shares: tuple[ThreadShare, ...] = ()
     pending: int = 0
+    pending_terms: tuple[WorkTerm, ...] = ()
+    unfinished: int = 0
+    is_backlog: bool = False
+    """Whether all cores may be busy with `beside_terms` and what was pending, less `unfinished` and the own terms."""
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
     is_queue: bool = False
