@@ -32,6 +32,7 @@ _PAGE_SCRIPTS = (
     "legend",
     "list",
     "save",
+    "keys",
     "main",
 )
 """The page's own scripts, in the order in which they build on one another."""

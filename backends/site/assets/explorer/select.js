@@ -190,10 +190,10 @@ archgenExplorer.makeSelector = function (model) {
 
   return function select(text) {
     const { words, problems } = parse(text);
-    const hits = words.map((word) => [word.negative, evaluateWord(word, problems)]);
+    const evaluate = (negative) => words.filter((word) => word.negative === negative).map((word) => evaluateWord(word, problems));
+    const [wanted, refused] = [evaluate(false), evaluate(true)];
     if (problems.some(({ severity }) => severity === "error")) return { components: new Set(), nodes: new Set(), elements: [], problems };
-    const wanted = hits.filter(([negative]) => !negative).map(([, hit]) => hit);
     if (!wanted.length) wanted.push(hitOf(numbers(model.components), numbers(model.nodes)));
-    return { ...subtract(wanted, hits.filter(([negative]) => negative).map(([, hit]) => hit)), problems };
+    return { ...subtract(wanted, refused), problems };
   };
 };
