@@ -18,23 +18,28 @@ FlowWeights = Mapping[tuple[str, str], int]
 Place = tuple[int, float]
 """A column from 0, and the height of the middle in steps of one box, 0 in the middle of the column."""
 
-_SAME_COLUMN_COST = 2.5
+_SAME_COLUMN_COST = 3.5
 _BACKWARD_COST = 1.5
-_CROWDED_COST = 0.6
-"""What a flow costs that stays in its column, or runs back, in columns of length; and a box too many in a column."""
+_CROWDED_COST = 0.5
+"""What a flow costs that stays in its column, or runs back, in columns of length; and a box too many in a column, in the
+flows of a box.
+"""
 _MAX_IMPROVED = 300
 """More items are only sorted: trying each of them in each column would take as long as the rest of the site."""
 _SWEEPS = 12
 
 
-def place_in_columns(items: Sequence[str], weights: FlowWeights) -> dict[str, Place]:
-    """Place items. Those without a flow fill the shortest columns from below."""
+def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bool = False) -> dict[str, Place]:
+    """Place items. Those without a flow fill the shortest columns from below.
+
+    `is_inner`: the items lie in a frame among others, which is to be less wide than a whole map.
+    """
     linked_ids = {end for ends in weights for end in ends if ends[0] != ends[1]}
     linked_items = [item for item in items if item in linked_ids]
     flows = {ends: weight for ends, weight in weights.items() if ends[0] != ends[1]}
-    column_count = _choose_column_count(len(items))
+    column_count = _choose_column_count(len(items), is_inner=is_inner)
     columns = _cut_evenly(_sort_forward(linked_items, flows), column_count)
-    columns = _shorten_flows(columns, flows) if len(linked_items) <= _MAX_IMPROVED else columns
+    columns = _shorten_flows(columns, flows) if 1 < len(linked_items) <= _MAX_IMPROVED else columns
     columns = _order_columns(columns, flows)
     heights = _align_heights(columns, flows)
     for item in (item for item in items if item not in linked_ids):
@@ -45,9 +50,12 @@ def place_in_columns(items: Sequence[str], weights: FlowWeights) -> dict[str, Pl
     return {item: (number, round(heights[item], 2)) for number, column in enumerate(filled_columns) for item in column}
 
 
-def _choose_column_count(item_count: int) -> int:
-    """Return the number of columns that makes a map about half as high again as a screen is: boxes are flat."""
-    return max(1, min(item_count, round(math.sqrt(0.55 * item_count) + 1.2)))
+def _choose_column_count(item_count: int, *, is_inner: bool) -> int:
+    """Return the number of columns that makes a map as wide as a screen, and what is inside of a frame half as wide again
+    as high. A box with the way to the next one is three to four times as wide as high.
+    """
+    count = math.sqrt(0.42 * item_count) + 0.6 if is_inner else math.sqrt(0.55 * item_count) + 1.2
+    return max(1, min(item_count, round(count)))
 
 
 def _sort_forward(items: Sequence[str], flows: FlowWeights) -> list[str]:
@@ -114,10 +122,11 @@ def _shorten_flows(columns: Sequence[Sequence[str]], flows: FlowWeights) -> list
         weight_root = math.sqrt(weight)
         links[tail].append((head, weight_root, True))
         links[head].append((tail, weight_root, False))
+    crowd_cost = _CROWDED_COST * math.fsum(weight for ends in links.values() for _, weight, _ in ends) / len(links)
 
     def cost(item: str, column: int) -> float:
         crowd = max(0.0, sizes[column] + (column_of[item] != column) - target_size)
-        total = _CROWDED_COST * crowd * crowd
+        total = crowd_cost * crowd * crowd
         for other, weight, is_forward in links[item]:
             span = (column_of[other] - column) * (1 if is_forward else -1)
             total += weight * (_SAME_COLUMN_COST if span == 0 else span if span > 0 else _BACKWARD_COST - span)

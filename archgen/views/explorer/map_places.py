@@ -67,5 +67,5 @@ def _place_homes(
         members[home].append(element)
     member_places: dict[str, Place] = {}
     for home, ids in members.items():
-        member_places |= place_in_columns(ids, inner_weights[home])
+        member_places |= place_in_columns(ids, inner_weights[home], is_inner=True)
     return place_in_columns(list(members), outer_weights), member_places

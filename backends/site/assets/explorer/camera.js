@@ -11,7 +11,8 @@ archgenExplorer.makeCamera = function (stage, map, onMove, onRest) {
     frame = 0;
     map.style.transform = `translate(${view.x}px, ${view.y}px) scale(${view.zoom})`;
     stage.classList.toggle("far", view.zoom < 0.6);
-    stage.classList.toggle("farther", view.zoom < 0.36);
+    stage.classList.toggle("farther", view.zoom < 0.4);
+    stage.classList.toggle("farthest", view.zoom < 0.26);
     onMove(view);
   }
 

@@ -60,12 +60,14 @@ const archgenExplorer = (function () {
     const steps = newSteps(model.components.length);
     model.readers = model.outputs.map(() => new Set());
     model.writers = model.inputs.map(() => new Set());
+    model.sources = model.inputs.map(() => []);
     model.flows = (tables.flows ?? []).map(([style, inputAt, outputs], number) => {
       const input = model.inputs[inputAt];
       const writer = model.outputs[outputs[0]].component;
       const isCall = style > 1;
       for (const at of outputs) model.readers[at].add(input.component);
       model.writers[inputAt].add(writer);
+      model.sources[inputAt].push(...outputs);
       addStep(steps, writer, input.component);
       if (isCall) addStep(steps, input.component, writer);
       const names = outputs.map((at) => model.outputs[at].name).join(", ");

@@ -3,7 +3,9 @@
 "use strict";
 archgenExplorer.layOut = (function () {
   const BOX = { width: 178, height: 48, line: 16 };
-  const OUTER = { pitch: 104, gap: 34, channel: 120 };
+  const OUTER = { gap: 34, channel: 120 };
+  const PITCHES = [92, 160]; // px from one row of the closed map to the next: as far apart as a screen's height allows
+  const HEIGHT_SHARE = 0.5;
   const INNER = { pitch: 76, gap: 26, channel: 92 };
   const FRAME = { top: 62, side: 20, bottom: 20 };
   const FONT = '600 13px Inter, system-ui, sans-serif';
@@ -83,8 +85,15 @@ archgenExplorer.layOut = (function () {
     return { width: Math.max(0, x - channel), top, bottom, columns: order.map((number) => columns.get(number)) };
   }
 
+  // The same whatever is open, so that positions stay.
+  function choosePitch(known, last) {
+    const heights = known.map(([, height]) => height);
+    const rows = Math.max(...heights, 0) - Math.min(...heights, 0) + 1;
+    return Math.min(PITCHES[1], Math.max(PITCHES[0], (((last + 1) * (BOX.width + OUTER.channel)) * HEIGHT_SHARE) / rows));
+  }
+
   function sizeBox(box) {
-    box.lines = wrap(box.title, BOX.width - 24, 2);
+    box.lines = wrap(box.title, BOX.width - (box.severity ? 40 : 24), 2);
     box.width = BOX.width;
     box.height = BOX.height + (box.lines.length - 1) * BOX.line;
   }
@@ -105,8 +114,9 @@ archgenExplorer.layOut = (function () {
       home.width = Math.max(BOX.width + 40, size.width + 2 * FRAME.side);
       home.height = (members.length ? size.bottom - size.top : 0) + FRAME.top + FRAME.bottom;
     }
-    const last = Math.max(0, ...outer.filter((box) => box.element).map((box) => level.homePlaceOf(box.element)?.[0] ?? 0));
-    const size = place(outer, (box) => (box.element && level.homePlaceOf(box.element)) || [last, 1e3], OUTER);
+    const known = outer.map((box) => box.element && level.homePlaceOf(box.element)).filter(Boolean);
+    const last = Math.max(0, ...known.map(([column]) => column));
+    const size = place(outer, (box) => (box.element && level.homePlaceOf(box.element)) || [last, 1e3], { ...OUTER, pitch: choosePitch(known, last) });
     for (const [home, members] of inside) {
       const indent = (home.width - (home.inner?.width ?? 0)) / 2;
       for (const box of members) {

@@ -136,16 +136,15 @@
     }
   }
 
-  // Whether lit flows lead towards what is focused or come from it.
+  // Whether a flow leads towards what is focused, comes from it within the steps asked for, or neither.
   function makeSides() {
     const base = focus ? numbersOf(select(focus.atom)) : null;
     if (!base) return () => "plain";
     const steps = level.members === model.nodes ? model.nodeSteps : model.componentSteps;
     const [before, after] = [measure(steps.before, base), measure(steps.after, base)];
-    return (flows) => {
-      const feeds = flows.filter(({ tail, head }) => before.get(head) + 1 === before.get(tail)).length;
-      const fed = flows.filter(({ tail, head }) => after.get(tail) + 1 === after.get(head)).length;
-      return feeds >= fed && feeds ? "before" : fed ? "after" : "plain";
+    return ({ tail, head }) => {
+      const feeds = before.get(head) < focus.before ? before.get(head) : Infinity, fed = after.get(tail) < focus.after ? after.get(tail) : Infinity;
+      return Math.min(feeds, fed) === Infinity ? "" : feeds <= fed ? "before" : "after";
     };
   }
 

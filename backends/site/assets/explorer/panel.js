@@ -62,10 +62,11 @@ archgenExplorer.makePanel = function (model, root, actions) {
   }
 
   function showPorts(component) {
+    const typeOf = (port) => model.types[port.type]?.name ?? model.types[model.outputs[model.sources[port.number]?.[0]]?.type]?.name ?? "";
     const row = (port, direction, others, flowNote) => element("li", {}, element("span", { className: "muted", textContent: direction }),
-      element("div", {}, element("strong", { textContent: port.name }), " ", model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "",
+      element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "",
         port.note ? element("div", { className: "muted", textContent: port.note }) : "",
-        others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other)])) : ""));
+        others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other), others.length === 1 && other.line ? element("span", { className: "muted", textContent: " · " + other.line }) : ""])) : ""));
     const unique = (list) => [...new Set(list)].map((at) => model.components[at]);
     const inputs = component.inputs.map((port) => row(port, "in",
       unique([...model.writers[port.number]]), "from "));

@@ -51,9 +51,9 @@ archgenExplorer.routeArrows = (function () {
     const [start, end] = [right(left), to.x];
     if (left.parent && left.parent === to.parent) for (const column of left.parent.inner.columns) add(column, start, end);
     else {
-      if (left.parent) for (const column of left.parent.inner.columns) add(column, start, right(left.parent));
+      if (left.parent) for (const column of left.parent.inner.columns) add(column, start, Math.min(end, right(left.parent)));
       for (const column of bounds.columns) add(column, left.parent ? right(left.parent) : start, to.parent ? to.parent.x : end);
-      if (to.parent) for (const column of to.parent.inner.columns) add(column, to.parent.x, end);
+      if (to.parent) for (const column of to.parent.inner.columns) add(column, Math.max(start, to.parent.x), end);
     }
     return strips;
   }

@@ -106,6 +106,7 @@ archgenExplorer.makeTools = function (model, actions) {
 
   // --- link, saving, list ---------------------------------------------------------------------------------------
   const copy = button("Copy link", async () => {
+    savePanel.hidePopover();
     try {
       await navigator.clipboard.writeText(location.href);
       actions.say("The link is in the clipboard.");
@@ -114,13 +115,14 @@ archgenExplorer.makeTools = function (model, actions) {
     }
   });
   const savePanel = element("div", { id: "saving", className: "pop menu", popover: "auto" });
-  for (const [format, title] of [["svg", "As SVG"], ["png", "As PNG"]]) {
+  savePanel.append(copy);
+  for (const [format, title] of [["svg", "Save as SVG"], ["png", "Save as PNG"]]) {
     savePanel.append(button(title, () => {
       savePanel.hidePopover();
       actions.save(format);
     }));
   }
-  const save = button("Save", () => {});
+  const save = button("Share", () => {});
   save.setAttribute("popovertarget", "saving");
   const list = button("List", () => actions.change({ list: !actions.state.list }));
   const openAll = button("Open all", () => actions.toggleAll());
@@ -133,7 +135,7 @@ archgenExplorer.makeTools = function (model, actions) {
   }
 
   const bar = element("div", { className: "explorer-tools", role: "toolbar", ariaLabel: "Map" }, levels, form, steppers.map(({ box }) => box),
-    element("span", { className: "gap" }), openAll, colourBox, filterButton, wayButton, list, copy, save, filterPanel, wayPanel, savePanel);
+    element("span", { className: "gap" }), openAll, colourBox, filterButton, wayButton, list, save, filterPanel, wayPanel, savePanel);
 
   // `focus`: { before, after } where the selector is one element with steps, else null.
   function update({ state, selection, lit, shownCount, focus, homes }) {

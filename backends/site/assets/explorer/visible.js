@@ -130,10 +130,11 @@ archgenExplorer.makeScene = (function () {
     }
     const list = [...arrows.values()];
     for (const arrow of list) {
-      const litFlows = ask.lit ? arrow.flows.filter((flow) => ask.lit.has(flow.tail) && ask.lit.has(flow.head)) : [];
+      const litFlows = ask.lit ? arrow.flows.filter((flow) => ask.lit.has(flow.tail) && ask.lit.has(flow.head) && ask.sideOf(flow)) : [];
       arrow.lit = ask.lit ? litFlows.length > 0 : null;
       arrow.shownFlows = litFlows.length ? litFlows : arrow.flows;
-      arrow.side = arrow.lit ? ask.sideOf(litFlows) : "";
+      const sides = litFlows.map(ask.sideOf);
+      arrow.side = ["before", "after"].find((side) => sides.filter((each) => each === side).length * 2 >= sides.length) ?? "plain";
       arrow.optional = arrow.flows.every((flow) => flow.optional);
       arrow.style = arrow.flows.every((flow) => flow.style === arrow.flows[0].style) ? arrow.flows[0].style : "data";
       arrow.picked = ask.pickedArrow === arrow.id;
