@@ -26,7 +26,7 @@ flows of a box.
 """
 _MAX_IMPROVED = 300
 """More items are only sorted: trying each of them in each column would take as long as the rest of the site."""
-_SWEEPS = 12
+_SWEEPS = 8
 
 
 def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bool = False) -> dict[str, Place]:
@@ -167,7 +167,7 @@ def _order_columns(columns: Sequence[Sequence[str]], flows: FlowWeights) -> list
             best, best_length = [list(column) for column in current], length
         for column in current if sweep % 2 == 0 else reversed(current):
             middles = {item: _mean_height(neighbours[item], heights, heights[item]) for item in column}
-            column.sort(key=lambda item: middles[item])  # noqa: B023 - used at once
+            column.sort(key=middles.__getitem__)
             heights |= {item: index - (len(column) - 1) / 2 for index, item in enumerate(column)}
     return best
 

@@ -190,7 +190,7 @@ class _MapMaker:
             _shortest_step(paces),
             worst_severity(self.lookup, node.id) or "",
             self.places.nodes_by_group[node.id],
-            self.places.nodes_by_host[node.id],
+            self.places.nodes_by_host.get(node.id, ()),
         )
 
     def _list_paces(self, component_id: str | None, nodes: Iterable[Node]) -> list[EventPace | None]:

@@ -41,7 +41,8 @@ def find_places(
     grouped_nodes = {node: node_groups.get(node, NO_HOME) for node in node_ids}
     hosted_nodes = {node: node_hosts.get(node, NO_HOME) for node in node_ids}
     groups_of_nodes, nodes_by_group = _place_homes(node_flows, grouped_nodes)
-    hosts, nodes_by_host = _place_homes(node_flows, hosted_nodes)
+    # Without a host there is no map of hosts: all nodes would lie in one frame.
+    hosts, nodes_by_host = _place_homes(node_flows, hosted_nodes) if node_hosts else ({}, {})
     return MapPlaces(groups, components, groups_of_nodes, nodes_by_group, hosts, nodes_by_host)
 
 

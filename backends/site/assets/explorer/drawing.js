@@ -80,8 +80,8 @@ archgenExplorer.makeDrawing = function (map, layers) {
     const parts = [];
     if ((isHome && box.opens) || box.kind === "fold") parts.push(shape("rect", { class: "under", x: 3, y: -4, width: width - 6, height: 20, rx: 8 }));
     parts.push(shape("rect", { class: "shell", width, height, rx: 8 }), ...drawBars(box, colouring));
-    const far = isHome ? layOut.wrap(box.title, width - 18, 2, "600 20px Inter, system-ui, sans-serif") : [];
-    parts.push(...drawTexts(box.lines, isHome ? "title near" : "title", 14, 20, 16), ...drawTexts(far, "title far", 12, far.length > 1 ? 20 : 31, 21));
+    const far = layOut.wrap(box.title, width - 18, 2, "600 20px Inter, system-ui, sans-serif");
+    parts.push(...drawTexts(box.lines, "title near", 14, 20, 16), ...drawTexts(far, "title far", 12, far.length > 1 ? 20 : 31, 21));
     parts.push(...drawTexts([layOut.cut(box.line, width - (isHome && box.opens ? 44 : 26), "400 12px Inter, system-ui, sans-serif")], "line", 14, height - 11, 0));
     if (box.severity) parts.push(drawBadge(box));
     if ((isHome && box.opens) || box.kind === "fold") parts.push(shape("path", { class: "sign", d: `M${width - 22} ${height - 15}h10m-5 -5v10` }));

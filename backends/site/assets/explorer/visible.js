@@ -142,10 +142,11 @@ archgenExplorer.makeScene = (function () {
     return list;
   }
 
-  // Too many arrows: those of single flows go first, never those at what is chosen.
+  // Too many arrows: those of single flows go first, then those inside of a home, last what is lit or at what is chosen.
   function dropArrows(arrows) {
     if (arrows.length <= MAX_ARROWS) return [];
-    const rank = (arrow) => (arrow.picked || arrow.tail.picked || arrow.head.picked ? 1e9 : 0) + (arrow.lit ? 1e6 : 0) + arrow.flows.length;
+    const rank = (arrow) => (arrow.picked || arrow.tail.picked || arrow.head.picked ? 1e9 : 0) + (arrow.lit ? 1e6 : 0) +
+      (arrow.tail.parent && arrow.tail.parent === arrow.head.parent ? 1e3 : 0) + arrow.flows.length;
     return [...arrows].sort((a, b) => rank(b) - rank(a)).slice(MAX_ARROWS);
   }
 })();
