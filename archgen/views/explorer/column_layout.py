@@ -82,7 +82,9 @@ def _sort_loop(members: Sequence[str], flows: FlowWeights) -> list[str]:
     remaining, first_items, last_items = dict.fromkeys(members), list[str](), list[str]()
     while remaining:
         sink = next((item for item in remaining if not outgoing[item]), None)
-        chosen = sink or max(remaining, key=lambda item: math.fsum(outgoing[item].values()) - math.fsum(incoming[item].values()))
+        chosen = sink or max(
+            remaining, key=lambda item: math.fsum(outgoing[item].values()) - math.fsum(incoming[item].values())
+        )
         (last_items if sink else first_items).append(chosen)
         del remaining[chosen]
         for head in outgoing.pop(chosen):

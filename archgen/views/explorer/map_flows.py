@@ -55,8 +55,11 @@ def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Number
             if output in outputs and architecture.outputs[output].component == producer
         )
         if numbers and connection.input in inputs:
-            yield (_STYLES.index(flow_style(architecture, _first_output(architecture, connection.outputs, producer))),
-                   inputs[connection.input], numbers)
+            yield (
+                _STYLES.index(flow_style(architecture, _first_output(architecture, connection.outputs, producer))),
+                inputs[connection.input],
+                numbers,
+            )
 
 
 def _first_output(architecture: Architecture, output_ids: tuple[str, ...], producer: str) -> str:

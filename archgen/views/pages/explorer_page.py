@@ -9,9 +9,7 @@ from archgen.views.graphs.component_flows import list_flows
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Figure, Paragraph, Table, Text
 
-EXPLORER_LEAD = (
-    "With scripts this page is a map of all groups, components, nodes and hosts. Without them it is a picture and a list."
-)
+EXPLORER_LEAD = "With scripts this page is a map of all groups, components, nodes and hosts. Without them it is a picture and a list."
 _MAX_NAMED_TYPES = 6
 
 

@@ -196,7 +196,7 @@ class _PageMaker:
     def spanning_pages(self) -> Iterator[Page]:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
         components = [c for name in self.lookup.shown_groups() for c in self.lookup.shown_components(name)]
-        if components:
+        if components or self.lookup.shown_nodes():
             explorer_blocks = explorer_page.make_explorer_blocks(self.lookup, self.make_figures("overview"))
             yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
         component_table = make_component_table(self.lookup, "table:components", "All components", components)
