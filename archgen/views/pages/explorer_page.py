@@ -38,7 +38,7 @@ def _make_flow_table(lookup: Lookup) -> Table | None:
         )
         for (tail, head), types in flow_types.items()
     )
-    columns = (Column("From"), Column("To"), Column("Flows", 0.5, "right"), Column("What", 2.5))
+    columns = (Column("From"), Column("To"), Column("Flows", align="right"), Column("What"))
     return Table("table:explorer", "What flows between the groups", columns, rows) if rows else None
 
 

@@ -36,7 +36,7 @@ archgenExplorer.makeDrawing = function (map, layers) {
 
   function drawTexts(lines, name, x, y, step) {
     return lines.map((line, at) => {
-      const text = shape("text", { class: name, x, y: y + at * step });
+      const text = shape("text", { class: name, x, y: y + at * step, "aria-hidden": "true" });
       text.textContent = line;
       return text;
     });
@@ -45,8 +45,8 @@ archgenExplorer.makeDrawing = function (map, layers) {
   function makeNode(box, colouring, ...children) {
     const hue = box.element && box.kind !== "fold" ? hueOf(box, colouring) : "hue-none";
     const node = shape("g", { class: `box ${box.kind} ${hue}`, transform: `translate(${box.x} ${box.y})`, role: "button", tabindex: -1,
-      "aria-label": box.name, "data-box": box.id }, ...children);
-    const title = shape("title");
+      "data-box": box.id }, ...children);
+    const title = shape("title"); // the tooltip, and the name that is read aloud
     title.textContent = box.tip;
     node.prepend(title);
     nodes.set(box.id, node);

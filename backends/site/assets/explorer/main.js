@@ -169,7 +169,7 @@
   }
 
   function openHome(home) {
-    store.change({ open: [...state.open.filter((id) => id !== home.id && id !== "*"), home.id], pick: home.id });
+    store.change({ open: [...choice.open.filter((id) => id !== home.id), home.id], pick: home.id });
   }
 
   function toggleAll() {

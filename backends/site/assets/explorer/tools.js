@@ -64,15 +64,16 @@ archgenExplorer.makeTools = function (model, actions) {
 
   function fillFilters() {
     const rows = filterKeys.map(([key, title]) => {
-      const select = element("select", {}, element("option", { value: "", textContent: "all" }),
-        actions.colours.listValues(actions.level(), key).map(({ value, title: name, count }) => element("option", { value, textContent: `${name} (${count})` })));
+      const name = title[0].toUpperCase() + title.slice(1);
+      const select = element("select", { ariaLabel: name }, element("option", { value: "", textContent: "all" }),
+        actions.colours.listValues(actions.level(), key).map(({ value, title: words, count }) => element("option", { value, textContent: `${words} (${count})` })));
       select.value = actions.state.only.find(([each]) => each === key)?.[1] ?? "";
       select.disabled = select.options.length === 1;
       select.addEventListener("change", () => {
         const rest = actions.state.only.filter(([each]) => each !== key);
         actions.change({ only: select.value ? [...rest, [key, select.value]] : rest });
       });
-      return element("label", {}, title[0].toUpperCase() + title.slice(1), select);
+      return element("label", {}, name, select);
     });
     filterPanel.replaceChildren(...rows, button("Show everything", () => {
       actions.change({ only: [] });
@@ -90,7 +91,7 @@ archgenExplorer.makeTools = function (model, actions) {
   const wayPanel = element("div", { id: "ways", className: "pop", popover: "auto" }, wayForm);
   wayPanel.setAttribute("aria-label", "Ways from A to B");
   wayPanel.setAttribute("role", "dialog");
-  const wayButton = button("A → B", () => {}, { ariaLabel: "Ways from A to B" });
+  const wayButton = button("A → B", () => {}, { ariaLabel: "A → B: all ways" });
   wayButton.setAttribute("popovertarget", "ways");
   wayPanel.addEventListener("beforetoggle", (event) => {
     if (event.newState !== "open") return;

@@ -1,4 +1,4 @@
-// What boxes and arrows say: the second line, the tooltip, and the name that screen readers hear.
+// What boxes and arrows say: the second line, and the tooltip, which is also the name that screen readers hear.
 "use strict";
 archgenExplorer.describeScene = (function () {
   const SEVERITIES = ["error", "warning", "note"];
@@ -24,8 +24,8 @@ archgenExplorer.describeScene = (function () {
     const severities = box.shown.map((member) => member.severity);
     box.severity = box.open ? "" : SEVERITIES.find((severity) => severities.includes(severity)) ?? "";
     const state = box.opens && !box.parent ? (box.open ? "open" : "closed") : "";
-    box.name = [box.title, box.kind, box.line, box.severity && `has a finding: ${box.severity}`, state].filter(Boolean).join(", ");
-    box.tip = [box.title, box.element?.id, box.line].filter(Boolean).join("\n");
+    const kind = [box.kind, state, box.severity && `has a finding: ${box.severity}`].filter(Boolean).join(", ");
+    box.tip = [box.title, box.element?.id, box.line, kind].filter(Boolean).join("\n");
   }
 
   function describeArrow(arrow) {
