@@ -19,7 +19,7 @@ Place = tuple[int, float]
 """A column from 0, and the height of the middle in steps of one box, 0 in the middle of the column."""
 
 _SAME_COLUMN_COST = 3.5
-_BACKWARD_COST = 1.5
+_BACKWARD_COST = 3.0
 _CROWDED_COST = 0.5
 """What a flow costs that stays in its column, or runs back, in columns of length; and a box too many in a column, in the
 flows of a box.
@@ -43,7 +43,7 @@ def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bo
     columns = _order_columns(columns, flows)
     heights = _align_heights(columns, flows)
     for item in (item for item in items if item not in linked_ids):
-        shortest = min(columns, key=len)
+        shortest = min([column for column in columns if column or not linked_items], key=len)
         heights[item] = max((heights[other] for other in shortest), default=-1.0) + 1
         shortest.append(item)
     filled_columns = [column for column in columns if column]
@@ -54,7 +54,7 @@ def _choose_column_count(item_count: int, *, is_inner: bool) -> int:
     """Return the number of columns that makes a map as wide as a screen, and what is inside of a frame half as wide again
     as high. A box with the way to the next one is three to four times as wide as high.
     """
-    count = math.sqrt(0.42 * item_count) + 0.6 if is_inner else math.sqrt(0.55 * item_count) + 1.2
+    count = math.sqrt(0.42 * item_count) + 0.6 if is_inner else math.sqrt(0.55 * item_count) + 1.4
     return max(1, min(item_count, round(count)))
 
 

@@ -112,7 +112,7 @@ class _MapMaker:
             self.lookup,
             {component.id: component.group for component in self.components},
             self.node_groups,
-            {node.id: node.host for node in self.nodes if node.host in self.host_numbers},
+            {node.id: node.host for node in self.nodes if node.host and node.host in self.host_numbers},
             self.node_numbers,
         )
 

@@ -44,7 +44,7 @@ archgenExplorer.makeDrawing = function (map, layers) {
 
   function makeNode(box, colouring, ...children) {
     const hue = box.element && box.kind !== "fold" ? hueOf(box, colouring) : "hue-none";
-    const node = shape("g", { class: `box ${box.kind} ${hue}`, transform: `translate(${box.x} ${box.y})`, role: "button", tabindex: -1,
+    const node = shape("g", { class: `box ${box.kind} ${hue}${box.picked ? " picked" : ""}`, transform: `translate(${box.x} ${box.y})`, role: "button", tabindex: -1,
       "data-box": box.id }, ...children);
     const title = shape("title"); // the tooltip, and the name that is read aloud
     title.textContent = box.tip;

@@ -21,9 +21,8 @@ archgenExplorer.makeLegend = function (actions) {
     if (hasLit && has(({ side }) => side === "after")) rows.push(entry(sample("arrow lit after"), "fed by it"));
     if (!hasLit && has(({ flows }) => flows.length > 3)) rows.push(entry(sample("arrow many"), "4 flows or more"));
     if (has(({ optional }) => optional)) rows.push(entry(sample("arrow one optional"), "optional input"));
-    for (const [style, words] of [["physical", "physical"], ["service", "service call"], ["action", "action"]]) {
-      if (has((arrow) => arrow.style === style)) rows.push(entry(sample("arrow one " + style), words));
-    }
+    if (has(({ style }) => style === "physical")) rows.push(entry(sample("arrow one physical"), "physical"));
+    if (has(({ style }) => style === "service" || style === "action")) rows.push(entry(sample("arrow one service"), "service or action"));
     if (scene.boxes.some(({ parent, opens, open }) => !parent && opens && !open)) {
       const mark = shape("svg", { width: 34, height: 16, "aria-hidden": "true" }, shape("rect", { class: "key", x: 5, y: 1, width: 24, height: 8, rx: 3 }),
         shape("rect", { class: "key", x: 2, y: 4, width: 30, height: 11, rx: 3 }));
