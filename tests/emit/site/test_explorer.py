@@ -21,8 +21,11 @@ from archgen.views.search import make_search_entries
 ROOT = Path(__file__).resolve().parents[3]
 AXE = ROOT / "tests" / "judges" / "node_modules" / "axe-core" / "axe.min.js"
 HOSTILE = '</script><img src=x onerror=document.title="taken"><script>document.title="taken"</script>'
-POLICY = "default-src 'none'; script-src 'self' file:; style-src 'self' file:; img-src 'self' data: file:; font-src 'self' file:"
-"""What a page will be allowed; `file:` stands for the disk, which has no origin of its own."""
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; img-src 'self' data:; base-uri 'none'; "
+    "form-action 'none'"
+)
+"""The least that a page is allowed."""
 Open = Callable[..., Page]
 
 

@@ -17,6 +17,7 @@ from archgen.emit.file_tree import write_tree
 from archgen.emit.site import build_site
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
+from archgen.model.selector_parser import SELECTOR_KEYS
 from archgen.views.explorer import make_explorer_map
 from archgen.views.lookup import make_lookup
 from archgen.views.shapes import Page, Section
@@ -100,6 +101,10 @@ def tab(architecture: Architecture, tmp_path_factory: pytest.TempPathFactory) ->
 def select(tab: Tab) -> Callable[[str], Any]:
     """Evaluate a selector in the page."""
     return lambda text: tab.evaluate(SELECT, text)
+
+
+def test_the_page_knows_all_keys_of_the_language(tab: Tab) -> None:
+    assert tab.evaluate("archgenExplorer.grammar.KEYS") == list(SELECTOR_KEYS)
 
 
 @pytest.mark.parametrize(("text", "selected"), SELECTED)
