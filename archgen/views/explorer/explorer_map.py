@@ -257,7 +257,7 @@ def measure_steps(lookup: Lookup, components: Iterable[Component]) -> dict[str, 
             component.timing is not None or (bool(nodes) and all(component.id in node.timing for node in nodes)),
             any(use.is_id and use.text in declared for use in component.requirements),
         )
-        steps[component.id] = sum(is_done << number for number, is_done in enumerate(done))
+        steps[component.id] = int("".join("01"[is_done] for is_done in reversed(done)), base=2)
     return steps
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import defaultdict
+from itertools import pairwise
 
 import pytest
 
@@ -12,8 +13,7 @@ from archgen.views.explorer.column_layout import FlowWeights, place_in_columns, 
 
 def weights(text: str) -> FlowWeights:
     """Read flows: `a>b b>c`."""
-    pairs = (tuple(flow.split(">")) for flow in text.split())
-    return {(tail, head): 1 for tail, head in pairs}
+    return {(tail, head): 1 for tail, _, head in (flow.partition(">") for flow in text.split())}
 
 
 @pytest.mark.parametrize(
@@ -38,7 +38,7 @@ def test_most_flows_run_to_the_right(items: str, flows: str, columns: str) -> No
 
 
 def test_boxes_of_one_column_do_not_overlap_and_few_flows_run_back() -> None:
-    dice = random.Random(7)
+    dice = random.Random(7)  # noqa: S311 - a test's dice
     items = [f"n{number}" for number in range(40)]
     flows = {(dice.choice(items[:index] or items), item): 1 + index % 3 for index, item in enumerate(items) if index}
     places = place_in_columns(items, flows)
@@ -46,9 +46,8 @@ def test_boxes_of_one_column_do_not_overlap_and_few_flows_run_back() -> None:
     heights: dict[int, list[float]] = defaultdict(list)
     for column, height in places.values():
         heights[column].append(height)
-    for column in heights.values():
-        ordered = sorted(column)
-        assert all(below - above >= 0.99 for above, below in zip(ordered, ordered[1:], strict=False))
+    for column_heights in heights.values():
+        assert all(below - above >= 0.99 for above, below in pairwise(sorted(column_heights)))
     # A map about as wide as a screen: boxes are three to four times as wide as high.
     assert 4 <= len(heights) <= 7
     backward = [ends for ends in flows if places[ends[0]][0] > places[ends[1]][0]]
@@ -64,7 +63,7 @@ def test_the_order_of_items_and_flows_changes_nothing_but_ties() -> None:
 
 def test_what_lies_in_a_frame_takes_fewer_columns() -> None:
     items = [f"n{number}" for number in range(20)]
-    flows = {(tail, head): 1 for tail, head in zip(items, items[1:], strict=False)}
+    flows = dict.fromkeys(pairwise(items), 1)
     outer = max(column for column, _ in place_in_columns(items, flows).values())
     inner = max(column for column, _ in place_in_columns(items, flows, is_inner=True).values())
     assert inner < outer

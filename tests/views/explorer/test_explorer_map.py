@@ -69,7 +69,7 @@ def test_elements_stand_with_their_page_and_what_a_reader_asks_first(tables: dic
     assert camera[7:10] == ("to_100_ms", 0b01111, "warning")
     assert finder[8] == 0b10010
     assert asker[:4] == ("component:finding.asker", "finding.asker", "Asker", 1)
-    assert ("host:pc", "pc", "Base Computer", "4 cores", "") == tables["hosts"][0][:5]
+    assert tables["hosts"][0][:5] == ("host:pc", "pc", "Base Computer", "4 cores", "")
     eye = next(row for row in tables["nodes"] if row[1] == "eye")
     assert eye[3:7] == ((0,), 0, 0, "10 Hz")
     lonely = next(row for row in tables["nodes"] if row[1] == "lonely")
@@ -111,7 +111,7 @@ def test_keys_are_those_that_selectors_find(tables: dict[str, list[Any]]) -> Non
 
 
 def test_findings_chains_and_requirements_name_what_they_are_about(tables: dict[str, list[Any]]) -> None:
-    assert [row for row in tables["findings"] if not row[0]][0][:3] == (0, 0, "warning")
+    assert next(row for row in tables["findings"] if not row[0])[:3] == (0, 0, "warning")
     ((anchor, _, title, status, words, components, nodes),) = tables["chains"]
     assert (anchor, title, components, nodes) == ("chain:c", "Seen", (0, 1), ())
     assert words.startswith(status)
