@@ -59,7 +59,7 @@ def _line(diagnostic: Diagnostic) -> str:
     return f"{where} {diagnostic.rule}: {diagnostic.message}{labels} | {diagnostic.help}"
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def derived() -> Callable[[str], Architecture]:
     """Read, link without a finding, and derive the low level."""
 

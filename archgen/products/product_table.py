@@ -10,6 +10,7 @@ from archgen.emit.written_formats import PACKED_HEADER
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.syntax.folder_files import read_named_file
+from archgen.views.explorer import make_explorer_map
 from archgen.views.pages import report_outline
 from archgen.views.search import make_search_entries
 
@@ -65,6 +66,7 @@ def _start_report(inputs: ProductInputs) -> FinishProduct:
 def _start_site(inputs: ProductInputs) -> FinishProduct:
     page_list = inputs.pages
     search_entries = make_search_entries(inputs.views.lookup, page_list)
+    explorer_map = make_explorer_map(inputs.views.lookup)
 
     def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
         from archgen.emit import site
@@ -78,6 +80,7 @@ def _start_site(inputs: ProductInputs) -> FinishProduct:
             notices=report_outline.make_notices(inputs.views.lookup, inputs.views.edition),
             chapter_files=reader.read,
             search_entries=search_entries,
+            explorer_map=explorer_map,
         )
         return MadeProduct(files, asked_files=reader.asked_files)
 

@@ -14,11 +14,19 @@ from archgen.emit.file_tree import FileTree, make_file_tree
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures as drawing
 from archgen.emit.site.chapter_html import ChapterFiles, ChapterWriter
+from archgen.emit.site.explorer_files import (
+    EXPLORER_ANCHOR,
+    EXPLORER_STYLE,
+    build_explorer_files,
+    find_explorer_address,
+    list_explorer_scripts,
+)
 from archgen.emit.site.html_blocks import PageWriter
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
 from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
+from archgen.views.explorer.map_shapes import ExplorerMap
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, Paragraph
 
@@ -38,8 +46,11 @@ def build_site(  # noqa: PLR0913 - what a site is made of
     notices: Sequence[Paragraph],
     chapter_files: ChapterFiles,
     search_entries: Sequence[SearchEntry] = (),
+    explorer_map: ExplorerMap | None = None,
 ) -> FileTree:
     """Build the site. The first page is the start page; `chapter_files` returns the pictures that chapters show.
+
+    Without an `explorer_map` the explorer's page stays what it is without scripts.
 
     Links in the pictures must be `#` and the anchor that they lead to.
     """
@@ -48,15 +59,19 @@ def build_site(  # noqa: PLR0913 - what a site is made of
     navigation = build_navigation(pages, links, _navigation_kinds(backend))
     chapter_writer = ChapterWriter(chapter_files)
     template = _page_template(backend.folder)
+    map_files = build_explorer_files(explorer_map, links) if explorer_map else {}
     files = [
         *_read_assets(backend.folder),
         *_picture_files(pictures, links),
         *build_search_files(search_entries, links),
+        *map_files.items(),
     ]
     for page in pages:
         path = links.files[page.path]
         writer = PageWriter(open_page(path, links), pictures, chapter_writer)
         variables = _page_variables(page, writer, navigation, notices)
+        if map_files:
+            variables |= _explorer_variables(page, writer, map_files)
         # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
         files.append(
             (
@@ -88,6 +103,24 @@ def _page_variables(
         ],
         "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
         "content": writer.write_content(page.section),
+        "explorer_style": "",
+        "explorer_begin": "",
+        "explorer_scripts": (),
+        "explorer_link": "",
+    }
+
+
+def _explorer_variables(page: Page, writer: PageWriter, map_files: dict[str, bytes]) -> dict[str, object]:
+    """Return what the explorer adds to a page: its scripts to its own, a link to those of elements on the map."""
+    root = writer.current_page.root
+    if page.anchor != EXPLORER_ANCHOR:
+        address = find_explorer_address(page, writer.current_page.links)
+        return {"explorer_link": root + address if address else ""}
+    begin_script, scripts = list_explorer_scripts(map_files)
+    return {
+        "explorer_style": root + EXPLORER_STYLE,
+        "explorer_begin": root + begin_script,
+        "explorer_scripts": [root + script for script in scripts],
     }
 
 

@@ -197,7 +197,9 @@ class PageWriter:
         if self.standalone:
             return ""
         file = self.current_page.root + page_pictures.picture_path(graph)
-        return f' <a class="whole" href="{file}">Open picture<span class="spoken">: {caption}</span></a>'
+        explorer = self.current_page.href("page:explorer") if graph == "overview" else None
+        explorer_link = f' <a class="explore" href="{explorer}">Open in the explorer</a>' if explorer else ""
+        return f' <a class="whole" href="{file}">Open picture<span class="spoken">: {caption}</span></a>{explorer_link}'
 
     def _id_attribute(self, anchor: str) -> str:
         """Return the id attribute of an anchor the first time that it is used on the page, else nothing: ids are

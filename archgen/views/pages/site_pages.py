@@ -13,7 +13,7 @@ from archgen.views import inline_text
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, dashboard, page_marks, timing_chapter
+from archgen.views.pages import context_pages, dashboard, explorer_page, page_marks, timing_chapter
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
@@ -196,6 +196,9 @@ class _PageMaker:
     def spanning_pages(self) -> Iterator[Page]:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
         components = [c for name in self.lookup.shown_groups() for c in self.lookup.shown_components(name)]
+        if components or self.lookup.shown_nodes():
+            explorer_blocks = explorer_page.make_explorer_blocks(self.lookup, self.make_figures("overview"))
+            yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
         component_table = make_component_table(self.lookup, "table:components", "All components", components)
         yield self._spanning_page(
             "components", "Components", *self.make_figures("components"), component_table if components else None

@@ -125,7 +125,7 @@
   const close = element("button", { type: "button", className: "close" }, element("kbd", { textContent: "Esc" }), " close");
   const clear = element("button", { type: "button", className: "clear", textContent: "Clear", hidden: true, ariaLabel: "Clear last opened" });
   const keys = element("div", { className: "keys" });
-  for (const [key, does] of [["↑ ↓", "choose"], ["Enter", "open"], ["Tab", "kind"]]) {
+  for (const [key, does] of [["↑ ↓", "choose"], ["Enter", "open"], ["Shift Enter", "show in explorer"], ["Tab", "kind"]]) {
     keys.append(element("span", {}, element("kbd", { textContent: key }), " " + does));
   }
   keys.append(close);
@@ -306,6 +306,12 @@
     setKind(names[(names.indexOf(kind) + step + names.length) % names.length]);
   }
 
+  // The page of an element that has a box in the explorer; empty for anything else.
+  function onMap(control) {
+    const place = control?.href?.startsWith(base) ? control.href.slice(base.length).split("#")[0] : "";
+    return /^(components|groups|nodes|hosts)\//.test(place) ? place : "";
+  }
+
   dialog.addEventListener("keydown", (event) => {
     const inField = event.target === field;
     if (event.isComposing) return;
@@ -313,6 +319,9 @@
       const step = event.key === "ArrowDown" ? 1 : -1;
       moved = true;
       if (options.length) choose((active + step + options.length) % options.length);
+    } else if (event.key === "Enter" && event.shiftKey && inField && onMap(options[active])) {
+      dialog.close();
+      location.href = base + "explorer.html#page=" + encodeURIComponent(onMap(options[active]));
     } else if (event.key === "Enter" && inField) options[active]?.click();
     else if (event.key === "Tab" && inField && answer?.kinds.length) nextKind(event.shiftKey ? -1 : 1);
     else if (event.key === "Escape") dialog.close(); // At once: a browser's own closing comes after the next key.

@@ -1,0 +1,208 @@
+"""Place boxes in columns so that most flows run to the right, are short, and cross little.
+
+The same for groups and for what a group holds. Only columns and heights are settled here, in steps of one box: the page
+knows how large a box is, and makes room where a group is opened (docs/decisions/0017-explorer.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+
+from archgen.model.graph_search import find_strong_components
+
+FlowWeights = Mapping[tuple[str, str], int]
+"""How much flows from one item to another."""
+Place = tuple[int, float]
+"""A column from 0, and the height of the middle in steps of one box, 0 in the middle of the column."""
+
+_SAME_COLUMN_COST = 3.5
+_BACKWARD_COST = 3.0
+_CROWDED_COST = 0.5
+"""What a flow costs that stays in its column, or runs back, in columns of length; and a box too many in a column, in the
+flows of a box.
+"""
+_MAX_IMPROVED = 300
+"""More items are only sorted: trying each of them in each column would take as long as the rest of the site."""
+_SWEEPS = 8
+
+
+def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bool = False) -> dict[str, Place]:
+    """Place items. Those without a flow fill the shortest columns from below.
+
+    `is_inner`: the items lie in a frame among others, which is to be less wide than a whole map.
+    """
+    linked_ids = {end for ends in weights for end in ends if ends[0] != ends[1]}
+    linked_items = [item for item in items if item in linked_ids]
+    flows = {ends: weight for ends, weight in weights.items() if ends[0] != ends[1]}
+    column_count = _choose_column_count(len(items), is_inner=is_inner)
+    columns = _cut_evenly(_sort_forward(linked_items, flows), column_count)
+    columns = _shorten_flows(columns, flows) if 1 < len(linked_items) <= _MAX_IMPROVED else columns
+    columns = _order_columns(columns, flows)
+    heights = _align_heights(columns, flows)
+    for item in (item for item in items if item not in linked_ids):
+        shortest = min([column for column in columns if column or not linked_items], key=len)
+        heights[item] = max((heights[other] for other in shortest), default=-1.0) + 1
+        shortest.append(item)
+    filled_columns = [column for column in columns if column]
+    return {item: (number, round(heights[item], 2)) for number, column in enumerate(filled_columns) for item in column}
+
+
+def _choose_column_count(item_count: int, *, is_inner: bool) -> int:
+    """Return the number of columns that makes a map as wide as a screen, and what is inside of a frame half as wide again
+    as high. A box with the way to the next one is three to four times as wide as high.
+    """
+    count = math.sqrt(0.42 * item_count) + 0.6 if is_inner else math.sqrt(0.55 * item_count) + 1.4
+    return max(1, min(item_count, round(count)))
+
+
+def _sort_forward(items: Sequence[str], flows: FlowWeights) -> list[str]:
+    """Sort items so that little flows backwards: by strong components, and inside of those greedily."""
+    successors: dict[str, list[str]] = defaultdict(list)
+    for tail, head in flows:
+        successors[tail].append(head)
+    ordered: list[str] = []
+    for component in find_strong_components(items, lambda item: successors[item]):
+        ordered += component if len(component) == 1 else _sort_loop(component, flows)
+    return _sort_by_layer(ordered, flows)
+
+
+def _sort_loop(members: Sequence[str], flows: FlowWeights) -> list[str]:
+    """Sort items that feed one another: sinks last, sources first, else what gives most more than it takes
+    (Eades, Lin and Smyth, 1993).
+    """
+    member_set = set(members)
+    outgoing: dict[str, dict[str, int]] = {item: {} for item in members}
+    incoming: dict[str, dict[str, int]] = {item: {} for item in members}
+    for (tail, head), weight in flows.items():
+        if tail in member_set and head in member_set:
+            outgoing[tail][head] = incoming[head][tail] = weight
+    remaining, first_items, last_items = dict.fromkeys(members), list[str](), list[str]()
+    while remaining:
+        sink = next((item for item in remaining if not outgoing[item]), None)
+        chosen = sink or max(
+            remaining, key=lambda item: math.fsum(outgoing[item].values()) - math.fsum(incoming[item].values())
+        )
+        (last_items if sink else first_items).append(chosen)
+        del remaining[chosen]
+        for head in outgoing.pop(chosen):
+            del incoming[head][chosen]
+        for tail in incoming.pop(chosen):
+            del outgoing[tail][chosen]
+    return first_items + last_items[::-1]
+
+
+def _sort_by_layer(ordered: Sequence[str], flows: FlowWeights) -> list[str]:
+    """Sort by the longest way from a start, so that neighbours in the order seldom feed one another."""
+    position = {item: index for index, item in enumerate(ordered)}
+    layer = dict.fromkeys(ordered, 0)
+    sources: dict[str, list[str]] = defaultdict(list)
+    for tail, head in flows:
+        if position[tail] < position[head]:
+            sources[head].append(tail)
+    for item in ordered:
+        layer[item] = max((layer[source] + 1 for source in sources[item]), default=0)
+    return sorted(ordered, key=lambda item: (layer[item], position[item]))
+
+
+def _cut_evenly(ordered: Sequence[str], column_count: int) -> list[list[str]]:
+    """Cut an order into columns whose sizes differ by one at most."""
+    bounds = [round(len(ordered) * number / column_count) for number in range(column_count + 1)]
+    return [list(ordered[start:end]) for start, end in pairwise(bounds)]
+
+
+def _shorten_flows(columns: Sequence[Sequence[str]], flows: FlowWeights) -> list[list[str]]:
+    """Move single items to other columns while that makes flows shorter, or turns them to the right."""
+    column_of = {item: number for number, column in enumerate(columns) for item in column}
+    sizes = [len(column) for column in columns]
+    target_size = len(column_of) / max(1, len(columns))
+    links: dict[str, list[tuple[str, float, bool]]] = {item: [] for item in column_of}
+    for (tail, head), weight in flows.items():
+        # As widths of arrows: ten flows are not ten times as long a line.
+        weight_root = math.sqrt(weight)
+        links[tail].append((head, weight_root, True))
+        links[head].append((tail, weight_root, False))
+    crowd_cost = _CROWDED_COST * math.fsum(weight for ends in links.values() for _, weight, _ in ends) / len(links)
+
+    def cost(item: str, column: int) -> float:
+        crowd = max(0.0, sizes[column] + (column_of[item] != column) - target_size)
+        total = crowd_cost * crowd * crowd
+        for other, weight, is_forward in links[item]:
+            span = (column_of[other] - column) * (1 if is_forward else -1)
+            total += weight * (_SAME_COLUMN_COST if span == 0 else span if span > 0 else _BACKWARD_COST - span)
+        return total
+
+    for _ in range(_SWEEPS):
+        moved = False
+        for item in links:
+            best_column = min(range(len(columns)), key=lambda column, item=item: cost(item, column))  # type: ignore[misc]
+            if cost(item, best_column) < cost(item, column_of[item]) - 1e-9:
+                sizes[column_of[item]] -= 1
+                sizes[best_column] += 1
+                column_of[item] = best_column
+                moved = True
+        if not moved:
+            break
+    return [[item for item in column_of if column_of[item] == number] for number in range(len(columns))]
+
+
+def _list_neighbours(flows: FlowWeights) -> dict[str, list[tuple[str, int]]]:
+    """Return what each item has a flow with, in either direction, and how much."""
+    neighbours: dict[str, list[tuple[str, int]]] = defaultdict(list)
+    for (tail, head), weight in flows.items():
+        neighbours[tail].append((head, weight))
+        neighbours[head].append((tail, weight))
+    return neighbours
+
+
+def _order_columns(columns: Sequence[Sequence[str]], flows: FlowWeights) -> list[list[str]]:
+    """Order each column by the middle of what its items have flows with, forth and back, and keep the best order."""
+    neighbours = _list_neighbours(flows)
+    current = [list(column) for column in columns]
+    best, best_length = current, math.inf
+    for sweep in range(_SWEEPS):
+        heights = {item: index - (len(column) - 1) / 2 for column in current for index, item in enumerate(column)}
+        length = math.fsum(abs(heights[tail] - heights[head]) * weight for (tail, head), weight in flows.items())
+        if length < best_length:
+            best, best_length = [list(column) for column in current], length
+        for column in current if sweep % 2 == 0 else reversed(current):
+            middles = {item: _mean_height(neighbours[item], heights, heights[item]) for item in column}
+            column.sort(key=middles.__getitem__)
+            heights |= {item: index - (len(column) - 1) / 2 for index, item in enumerate(column)}
+    return best
+
+
+def _align_heights(columns: Sequence[Sequence[str]], flows: FlowWeights) -> dict[str, float]:
+    """Move items up and down towards what they have flows with, one step of a box apart, so that lines get level."""
+    neighbours = _list_neighbours(flows)
+    heights = {item: index - (len(column) - 1) / 2 for column in columns for index, item in enumerate(column)}
+    for _ in range(4):
+        for column in columns:
+            wishes = [_mean_height(neighbours[item], heights, heights[item]) * 0.5 for item in column]
+            heights |= dict(zip(column, spread_apart(wishes), strict=True))
+    return heights
+
+
+def _mean_height(neighbours: Iterable[tuple[str, int]], heights: Mapping[str, float], default: float) -> float:
+    pairs = list(neighbours)
+    total = math.fsum(weight for _, weight in pairs)
+    return math.fsum(heights[item] * weight for item, weight in pairs) / total if total else default
+
+
+def spread_apart(wishes: Sequence[float]) -> list[float]:
+    """Return heights at least one apart, in this order, that are as near to the wished ones as can be.
+
+    Neighbours that would overlap are moved together as a block (pool adjacent violators).
+    """
+    blocks: list[tuple[float, int]] = []
+    for index, wish in enumerate(wishes):
+        # Without the distance that it needs from the first item, so that blocks are plain means.
+        blocks.append((wish - index, 1))
+        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
+            (upper, upper_size), (lower, lower_size) = blocks[-2:]
+            size = upper_size + lower_size
+            blocks[-2:] = [((upper * upper_size + lower * lower_size) / size, size)]
+    offsets = [offset for offset, size in blocks for _ in range(size)]
+    return [offset + index for index, offset in enumerate(offsets)]

@@ -1,0 +1,108 @@
+"""The keys of each component and node as selectors see them: `owner:certh`, `tag:safety`, `type:Image`.
+
+`model.selector_keys` finds elements by a key's value; here are the same facts the other way round, for the page, which
+evaluates selectors itself. Tests compare both on the same cases.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Input, Output
+from archgen.model.declared_timing import Timing
+from archgen.model.node import Node
+from archgen.views.lookup import Lookup
+
+Key = tuple[str, str]
+"""The name of a key and a value."""
+
+
+def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
+    """Return the keys of each component by its id, each once, in the order of the language's keys."""
+    architecture = lookup.architecture
+    types = _list_types(architecture)
+    rules = _list_rules(lookup)
+    return {
+        component.id: tuple(
+            dict.fromkeys(
+                (
+                    *(("tag", tag) for tag in _list_tags(architecture, component)),
+                    *(("owner", owner) for owner in component.owners),
+                    *(("type", name) for name in types[component.id]),
+                    *(("medium", "physical" if port.physical else "digital") for port in _list_ports(component)),
+                    *((("role", component.role),) if component.role else ()),
+                    *(("requirement", use.text) for use in component.requirements if use.is_id),
+                    *_list_behaviours((component.timing,)),
+                    *(("finding", rule) for rule in rules[component.id]),
+                )
+            )
+        )
+        for component in architecture.components.values()
+    }
+
+
+def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
+    """Return the keys of a node, each once."""
+    host = lookup.architecture.hosts.get(node.host or "")
+    rules = [finding.rule for finding in lookup.findings_of.get(node.id, ()) if finding.element == node.id]
+    single_values = (("status", node.status), ("host", node.host), ("package", node.package))
+    return tuple(
+        dict.fromkeys(
+            (
+                *(("tag", tag) for tag in (*node.tags, *(host.tags if host else ()))),
+                *(("owner", owner) for owner in node.owners),
+                *((key, value) for key, value in single_values if value is not None),
+                *_list_behaviours(node.timing.values()),
+                *(("finding", rule) for rule in rules),
+            )
+        )
+    )
+
+
+def _list_behaviours(timings: Iterable[Timing | None]) -> Iterator[Key]:
+    return (("behaviour", timing.behaviour) for timing in timings if timing and timing.behaviour)
+
+
+def _list_ports(component: Component) -> Iterator[Input | Output]:
+    yield from component.inputs.values()
+    yield from component.outputs.values()
+
+
+def _list_tags(architecture: Architecture, component: Component) -> Iterator[str]:
+    """Yield the tags of a component, of its group and of the requirements that it serves."""
+    yield from component.tags
+    yield from architecture.groups[component.group].tags
+    for use in component.requirements:
+        if use.is_id and (requirement := architecture.requirements.get(use.text)):
+            yield from requirement.tags
+
+
+def _list_types(architecture: Architecture) -> Mapping[str, Iterable[str]]:
+    """Return the names and messages of the types that each component sends, expects or reads."""
+    names: dict[str, dict[str, None]] = defaultdict(dict)
+
+    def add_type(component_id: str, type_name: str | None) -> None:
+        known_type = architecture.types.get(type_name or "")
+        if known_type:
+            names[component_id].update(dict.fromkeys(filter(None, (known_type.name, known_type.message))))
+
+    for output in architecture.outputs.values():
+        add_type(output.component, output.type)
+    for port in architecture.inputs.values():
+        add_type(port.component, port.type)
+    for edge in architecture.edges:
+        add_type(architecture.inputs[edge.input].component, architecture.outputs[edge.output].type)
+    return names
+
+
+def _list_rules(lookup: Lookup) -> Mapping[str, list[str]]:
+    """Return the rules that found something about each component, or about the whole of its group."""
+    rules: dict[str, list[str]] = defaultdict(list)
+    for element_id, findings in lookup.findings_of.items():
+        group = lookup.architecture.groups.get(element_id)
+        component_ids = [component.id for component in group.components.values()] if group else [element_id]
+        for component_id in component_ids:
+            rules[component_id] += [finding.rule for finding in findings]
+    return rules

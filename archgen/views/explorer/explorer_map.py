@@ -1,0 +1,288 @@
+"""Make the tables of the explorer: every element that the documents show, with what a reader asks of it first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from archgen.model.component import Component, Group
+from archgen.model.deployment import Host
+from archgen.model.node import Node
+from archgen.timing.analysis import EventPace
+from archgen.views.explorer import element_keys, map_flows
+from archgen.views.explorer.map_places import MapPlaces, find_places
+from archgen.views.explorer.map_shapes import ExplorerMap, Row
+from archgen.views.graphs.element_boxes import join_owner_titles, worst_severity
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+from archgen.views.search.search_entry import join_words, to_plain_text
+from archgen.views.tables.statistics_tables import PROGRESS_STEPS
+from archgen.views.timing import chain_status, rate_phrases
+
+_MAX_SUMMARY = 280
+"""Letters of a description that the panel shows; the element's page has all of it."""
+
+
+def make_explorer_map(lookup: Lookup) -> ExplorerMap:
+    """Make the tables of what is shown."""
+    maker = _MapMaker(lookup)
+    return ExplorerMap(
+        {
+            "keys": tuple(maker.key_numbers),
+            "names": tuple(maker.list_names()),
+            "types": tuple((name, known.message or "") for name, known in lookup.architecture.types.items()),
+            "groups": tuple(maker.group_row(group) for group in maker.groups),
+            "hosts": tuple(maker.host_row(host) for host in maker.hosts),
+            "components": tuple(maker.component_row(component) for component in maker.components),
+            "nodes": tuple(maker.node_row(node) for node in maker.nodes),
+            **map_flows.make_flow_tables(lookup, maker.component_numbers, maker.node_numbers),
+            "chains": tuple(maker.chain_rows()),
+            "requirements": tuple(maker.requirement_rows()),
+            "findings": tuple(maker.finding_rows()),
+        }
+    )
+
+
+@dataclass(frozen=True)
+class _MapMaker:
+    """Makes the rows of elements. Its look-ups are the positions of elements in their tables."""
+
+    lookup: Lookup
+
+    @cached_property
+    def groups(self) -> list[Group]:
+        return [self.lookup.architecture.groups[name] for name in self.lookup.shown_groups()]
+
+    @cached_property
+    def components(self) -> list[Component]:
+        return [component for group in self.groups for component in self.lookup.shown_components(group.id)]
+
+    @cached_property
+    def nodes(self) -> list[Node]:
+        return self.lookup.shown_nodes()
+
+    @cached_property
+    def hosts(self) -> list[Host]:
+        used_ids = {node.host for node in self.nodes}
+        is_whole = self.lookup.scope.nodes is None
+        return [host for host in self.lookup.architecture.hosts.values() if is_whole or host.id in used_ids]
+
+    @cached_property
+    def component_numbers(self) -> Mapping[str, int]:
+        return {component.id: number for number, component in enumerate(self.components)}
+
+    @cached_property
+    def node_numbers(self) -> Mapping[str, int]:
+        return {node.id: number for number, node in enumerate(self.nodes)}
+
+    @cached_property
+    def group_numbers(self) -> Mapping[str, int]:
+        return {group.id: number for number, group in enumerate(self.groups)}
+
+    @cached_property
+    def host_numbers(self) -> Mapping[str, int]:
+        return {host.id: number for number, host in enumerate(self.hosts)}
+
+    @cached_property
+    def component_keys(self) -> Mapping[str, tuple[element_keys.Key, ...]]:
+        return element_keys.list_component_keys(self.lookup)
+
+    @cached_property
+    def node_keys(self) -> Mapping[str, tuple[element_keys.Key, ...]]:
+        return {node.id: element_keys.list_node_keys(self.lookup, node) for node in self.nodes}
+
+    @cached_property
+    def key_numbers(self) -> Mapping[element_keys.Key, int]:
+        """The position of each key and value, in order of appearance."""
+        used_keys = [key for component in self.components for key in self.component_keys[component.id]]
+        used_keys += [key for node in self.nodes for key in self.node_keys[node.id]]
+        return {key: number for number, key in enumerate(dict.fromkeys(used_keys))}
+
+    @cached_property
+    def node_groups(self) -> Mapping[str, str]:
+        """The group of each node: that of the first shown component that it implements."""
+        groups = {component.id: component.group for component in self.components}
+        homes = ((node.id, next((groups[c] for c in node.implements if c in groups), "")) for node in self.nodes)
+        return {node_id: group for node_id, group in homes if group}
+
+    @cached_property
+    def places(self) -> MapPlaces:
+        return find_places(
+            self.lookup,
+            {component.id: component.group for component in self.components},
+            self.node_groups,
+            {node.id: node.host for node in self.nodes if node.host and node.host in self.host_numbers},
+            self.node_numbers,
+        )
+
+    @cached_property
+    def progress(self) -> Mapping[str, int]:
+        """How far each component is, a bit for each of the steps of progress, the first one lowest."""
+        return measure_steps(self.lookup, self.components)
+
+    def list_names(self) -> Iterator[Row]:
+        """Yield the titles of values that people know by another name."""
+        architecture = self.lookup.architecture
+        yield from (("owner", partner.id, partner.title) for partner in architecture.partners.values())
+        yield from (("host", host.id, host.title) for host in self.hosts)
+        used_requirements = (value for key, value in self.key_numbers if key == "requirement")
+        for name in used_requirements:
+            if name in architecture.requirements:
+                yield ("requirement", name, f"{name} {architecture.requirements[name].title}")
+        yield from (("period", step, words) for step, words in rate_phrases.PERIOD_STEP_WORDS.items())
+        yield from (("progress", str(number), step) for number, step in enumerate(PROGRESS_STEPS))
+
+    def group_row(self, group: Group) -> Row:
+        """Return the row of a group."""
+        return (
+            f"group:{group.id}",
+            group.id,
+            group.title,
+            join_owner_titles(self.lookup, group.owners),
+            _shorten_text(group.description),
+            self.places.groups.get(group.id, ()),
+            self.places.node_groups.get(group.id, ()),
+        )
+
+    def host_row(self, host: Host) -> Row:
+        """Return the row of a host."""
+        line = join_words(count_noun(host.cores, "core") if host.cores else "", host.scheduling)
+        return (
+            f"host:{host.id}",
+            host.id,
+            host.title,
+            line,
+            _shorten_text(host.description),
+            self.places.hosts.get(host.id, ()),
+        )
+
+    def component_row(self, component: Component) -> Row:
+        """Return the row of a component."""
+        paces = self._list_paces(component.id, self.lookup.nodes_of.get(component.id, ()))
+        return (
+            f"component:{component.id}",
+            component.id,
+            component.title,
+            self.group_numbers[component.group],
+            _describe_paces(paces),
+            _shorten_text(component.functionality, component.description),
+            tuple(self.key_numbers[key] for key in self.component_keys[component.id]),
+            _shortest_step(paces),
+            self.progress[component.id],
+            worst_severity(self.lookup, component.id) or "",
+            self.places.components[component.id],
+        )
+
+    def node_row(self, node: Node) -> Row:
+        """Return the row of a node."""
+        paces = self._list_paces(None, (node,))
+        return (
+            f"node:{node.id}",
+            node.id,
+            node.id,
+            tuple(self.component_numbers[name] for name in node.implements if name in self.component_numbers),
+            self.group_numbers.get(self.node_groups.get(node.id, ""), -1),
+            self.host_numbers.get(node.host or "", -1),
+            _describe_paces(paces),
+            _shorten_text(node.description),
+            tuple(self.key_numbers[key] for key in self.node_keys[node.id]),
+            _shortest_step(paces),
+            worst_severity(self.lookup, node.id) or "",
+            self.places.nodes_by_group[node.id],
+            self.places.nodes_by_host.get(node.id, ()),
+        )
+
+    def _list_paces(self, component_id: str | None, nodes: Iterable[Node]) -> list[EventPace | None]:
+        """Return how often the activities of nodes happen; with a component, only those that are of it."""
+        timing = self.lookup.timing
+        if timing is None:
+            return []
+        return [
+            timing.analysis.paces.get(activity.id)
+            for node in nodes
+            for activity in timing.activities_of_node.get(node.id, ())
+            if component_id is None or activity.component in {None, component_id}
+        ]
+
+    def chain_rows(self) -> Iterator[Row]:
+        """Yield the chains of effect, the worst first, with what they lead through."""
+        architecture = self.lookup.architecture
+        results = self.lookup.timing.chains if self.lookup.timing else ()
+        ranks = {result.id: (rank, result) for rank, result in enumerate(results)}
+        for chain in sorted(architecture.chains.values(), key=lambda chain: ranks.get(chain.id, (len(ranks),))[0]):
+            chip = chain_status.chain_chip(ranks[chain.id][1])[0] if chain.id in ranks else None
+            names = [w.id.rpartition(".")[0] if w.kind == "output" else w.id for w in chain.through]
+            yield (
+                f"chain:{chain.id}",
+                chain.id,
+                chain.title,
+                chip.status or "" if chip else "",
+                chip.text if chip else "",
+                tuple(dict.fromkeys(self.component_numbers[name] for name in names if name in self.component_numbers)),
+                tuple(dict.fromkeys(self.node_numbers[name] for name in names if name in self.node_numbers)),
+            )
+
+    def requirement_rows(self) -> Iterator[Row]:
+        """Yield the requirements that shown components serve."""
+        for requirement in self.lookup.architecture.requirements.values():
+            servers = self.lookup.components_for_requirement.get(requirement.id, ())
+            numbers = tuple(self.component_numbers[c.id] for c in servers if c.id in self.component_numbers)
+            if numbers:
+                yield (f"requirement:{requirement.id}", requirement.id, requirement.title, numbers)
+
+    def finding_rows(self) -> Iterator[Row]:
+        """Yield the findings about shown components and nodes."""
+        for element_id, findings in self.lookup.findings_of.items():
+            is_node = element_id not in self.component_numbers
+            number = (self.node_numbers if is_node else self.component_numbers).get(element_id)
+            if number is not None:
+                yield from (
+                    (int(is_node), number, finding.effective_severity.value, finding.message.replace("`", ""))
+                    for finding in findings
+                )
+
+
+def measure_steps(lookup: Lookup, components: Iterable[Component]) -> dict[str, int]:
+    """Return the steps of progress that components have done, as bits: described, typed, mapped, timed, traced."""
+    declared = lookup.architecture.requirements
+    steps = {}
+    for component in components:
+        outputs = component.outputs.values()
+        nodes = [node for node in lookup.nodes_of.get(component.id, ()) if node.written]
+        done = (
+            bool(component.functionality),
+            bool(component.inputs or outputs) and all(output.type is not None for output in outputs),
+            bool(nodes),
+            component.timing is not None or (bool(nodes) and all(component.id in node.timing for node in nodes)),
+            any(use.is_id and use.text in declared for use in component.requirements),
+        )
+        steps[component.id] = int("".join("01"[is_done] for is_done in reversed(done)), base=2)
+    return steps
+
+
+def _describe_paces(paces: Iterable[EventPace | None]) -> str:
+    """Return a short line on how often something happens: `15 Hz, event`, `2 activities`."""
+    words = dict.fromkeys(_describe_pace(pace) for pace in paces if pace)
+    texts = [word.replace("<=", "≤").replace(">=", "≥") for word in words if word != "?"]
+    return texts[0] if len(texts) == 1 else count_noun(len(texts), "rate") if texts else ""
+
+
+def _describe_pace(pace: EventPace) -> str:
+    """Return a rate without its period, and the behaviour: a box is narrow."""
+    first_line, *more_lines = rate_phrases.format_box_lines(pace)
+    # A long figure takes two lines, the period being the second; what is not periodic says so on the last one.
+    behaviour = more_lines[-1:] if pace.behaviour != "periodic" else ()
+    return ", ".join((first_line.partition(" · ")[0], *behaviour))
+
+
+def _shortest_step(paces: Iterable[EventPace | None]) -> str:
+    """Return the step of the period scale that is shortest, `unknown` where nothing is known."""
+    order = list(rate_phrases.PERIOD_STEP_WORDS)
+    return min((rate_phrases.find_period_step(pace) for pace in paces), key=order.index, default="unknown")
+
+
+def _shorten_text(*texts: str | None) -> str:
+    """Return the beginning of a description, on one line."""
+    text = to_plain_text(*texts)
+    return text if len(text) <= _MAX_SUMMARY else f"{text[:_MAX_SUMMARY].rsplit(' ', 1)[0]} …"

@@ -1,0 +1,98 @@
+"""Make the tables of what flows: ports and connections of components, and topics between nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from archgen.model import flow_graph
+from archgen.model.architecture import Architecture
+from archgen.model.component import Input, Output
+from archgen.views.explorer.map_shapes import Row
+from archgen.views.graphs.component_flows import flow_style, list_flows
+from archgen.views.lookup import Lookup
+from archgen.views.search.search_entry import join_words
+
+_STYLES = ("data", "physical", "service", "action")
+
+Numbers = Mapping[str, int]
+"""The positions of elements in their table, by id."""
+
+
+def make_flow_tables(lookup: Lookup, components: Numbers, nodes: Numbers) -> dict[str, tuple[Row, ...]]:
+    """Make the tables of ports, of flows between shown components, and of topics between shown nodes."""
+    architecture = lookup.architecture
+    types = {name: number for number, name in enumerate(architecture.types)}
+    outputs = [port for port in architecture.outputs.values() if port.component in components]
+    inputs = [port for port in architecture.inputs.values() if port.component in components]
+    output_numbers = {port.id: number for number, port in enumerate(outputs)}
+    input_numbers = {port.id: number for number, port in enumerate(inputs)}
+    flows = tuple(_list_flow_rows(architecture, input_numbers, output_numbers))
+    topics: dict[str, int] = {}
+    links = tuple(_list_link_rows(architecture, nodes, topics))
+    return {
+        "outputs": tuple(_port_row(port, components, types) for port in outputs),
+        "inputs": tuple((*_port_row(port, components, types), int(port.optional)) for port in inputs),
+        "flows": flows,
+        "extra": tuple(_list_extra_steps(architecture, components, flows, outputs, inputs)),
+        "topics": tuple((f"topic:{name}", name, architecture.topics[name].flow) for name in topics),
+        "links": links,
+    }
+
+
+def _port_row(port: Input | Output, components: Numbers, types: Numbers) -> Row:
+    note = join_words(port.external, "physical" if port.physical else "")
+    return (components[port.component], port.name, types.get(port.type or "", -1), note)
+
+
+def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Numbers) -> Iterator[Row]:
+    """Yield each flow between two shown components. It runs from its outputs, a call from the input to them."""
+    for flow in list_flows(architecture):
+        connection = flow.connection
+        producer = flow.head if flow.style in {"service", "action"} else flow.tail
+        numbers = tuple(
+            outputs[output]
+            for output in connection.outputs
+            if output in outputs and architecture.outputs[output].component == producer
+        )
+        if numbers and connection.input in inputs:
+            yield (
+                _STYLES.index(flow_style(architecture, _first_output(architecture, connection.outputs, producer))),
+                inputs[connection.input],
+                numbers,
+            )
+
+
+def _first_output(architecture: Architecture, output_ids: tuple[str, ...], producer: str) -> str:
+    return next(name for name in output_ids if architecture.outputs[name].component == producer)
+
+
+def _list_extra_steps(
+    architecture: Architecture, components: Numbers, flows: tuple[Row, ...], outputs: list[Output], inputs: list[Input]
+) -> Iterator[Row]:
+    """Yield the steps that selectors take and no flow shows: from components of which no output is known yet, ..."""
+    known_steps = set()
+    for style, reader, numbers in flows:
+        for number in numbers:  # type: ignore[attr-defined]
+            ends = (outputs[number].component, inputs[reader].component)  # type: ignore[call-overload]
+            known_steps.add(ends)
+            if style in {_STYLES.index("service"), _STYLES.index("action")}:
+                known_steps.add(ends[::-1])
+    for tail, heads in flow_graph.build_component_graph(architecture).successors.items():
+        for head in heads:
+            if tail in components and head in components and (tail, head) not in known_steps:
+                yield (components[tail], components[head])
+
+
+def _list_link_rows(architecture: Architecture, nodes: Numbers, topics: dict[str, int]) -> Iterator[Row]:
+    """Yield what runs between two shown nodes over a topic, a call from client to server; add to `topics` which."""
+    seen_links = set()
+    for topic in architecture.topics.values():
+        for writer in topic.writers:
+            for reader in topic.readers:
+                # As in `model.flow_graph`: of a shared topic only what the reader's input names.
+                if (topic.shared and writer.port not in reader.sources) or writer.node == reader.node:
+                    continue
+                ends = (writer.node, reader.node) if topic.flow == "topic" else (reader.node, writer.node)
+                if ends[0] in nodes and ends[1] in nodes and (*ends, topic.name) not in seen_links:
+                    seen_links.add((*ends, topic.name))
+                    yield (nodes[ends[0]], nodes[ends[1]], topics.setdefault(topic.name, len(topics)))

@@ -1,0 +1,42 @@
+"""The shape ExplorerMap: plain rows that the page of the explorer reads.
+
+Rows refer to one another by their position in the other table. The page knows the order of the fields; it is written down
+here, and in `assets/explorer/data.js`, which reads them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+Row = tuple[object, ...]
+"""Texts, numbers and tuples of them."""
+LINKED_TABLES = frozenset({"groups", "hosts", "components", "nodes", "topics", "chains", "requirements"})
+"""Tables whose first field is an anchor: a site writes the address of its page there."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExplorerMap:
+    """The tables of an explorer, by name. Those of an element start with its anchor and its id.
+
+    | table | fields |
+    |---|---|
+    | `keys` | key, value: what selectors look for |
+    | `names` | key, value, title: how people call a value |
+    | `types` | name, message |
+    | `groups` | anchor, id, title, owners, summary, place among components, place among nodes |
+    | `hosts` | anchor, id, title, line, summary, place |
+    | `components` | anchor, id, title, group, line, summary, keys, period, progress, severity, place, ports |
+    | `nodes` | anchor, id, title, components, group, host, line, summary, keys, period, severity, place by group, by host |
+    | `topics` | anchor, name, flow |
+    | `outputs` | component, name, type, note |
+    | `inputs` | component, name, type, note, optional |
+    | `flows` | style, input, outputs: between components |
+    | `extra` | tail, head: what feeds a component of which no output is known yet |
+    | `links` | tail, head, topic: between nodes |
+    | `chains` | anchor, id, title, status, words, components, nodes |
+    | `requirements` | anchor, id, title, components |
+    | `findings` | is it a node, element, severity, message |
+    """
+
+    tables: Mapping[str, tuple[Row, ...]] = field(default_factory=dict)

@@ -1,0 +1,49 @@
+"""The explorer's page as it is without scripts: the picture of the whole, and a list of what flows between the groups."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.views import inline_text
+from archgen.views.graphs.component_flows import list_flows
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Column, Figure, Paragraph, Table, Text
+
+EXPLORER_LEAD = "With scripts this page is a map of all groups, components, nodes and hosts. Without them it is a picture and a list."
+_MAX_NAMED_TYPES = 6
+
+
+def make_explorer_blocks(lookup: Lookup, figures: Iterable[Figure]) -> tuple[Block, ...]:
+    """Make the blocks: pictures, where all connections are, and what flows from one group to another."""
+    link = Text("the table of all connections", ref="page:connections")
+    hint = Paragraph((Text(f"{EXPLORER_LEAD} Single ports stand in "), link, Text(".")))
+    table = _make_flow_table(lookup)
+    return (hint, *figures, *((table,) if table else ()))
+
+
+def _make_flow_table(lookup: Lookup) -> Table | None:
+    """Make the table of what flows between groups; None where nothing does."""
+    groups = lookup.architecture.groups
+    flow_types: dict[tuple[str, str], list[tuple[str, ...]]] = {}
+    for flow in list_flows(lookup.architecture):
+        tail, head = flow.tail.partition(".")[0], flow.head.partition(".")[0]
+        if lookup.scope.shows_component(flow.tail) and lookup.scope.shows_component(flow.head):
+            flow_types.setdefault((tail, head), []).append(flow.types)
+    rows = tuple(
+        (
+            (Text(groups[tail].title, ref=f"group:{tail}"),),
+            (Text(groups[head].title, ref=f"group:{head}"),) if head != tail else (Text("itself", muted=True),),
+            (Text(str(len(types)), sort_number=str(len(types))),),
+            inline_text.to_inlines(_name_types(types)),
+        )
+        for (tail, head), types in flow_types.items()
+    )
+    columns = (Column("From"), Column("To"), Column("Flows", align="right"), Column("What"))
+    return Table("table:explorer", "What flows between the groups", columns, rows) if rows else None
+
+
+def _name_types(flow_types: Iterable[tuple[str, ...]]) -> str:
+    """Name the types of some flows, each once; of many the first, and how many more there are."""
+    names = list(dict.fromkeys(name for types in flow_types for name in types))
+    shown_names = ", ".join(names[:_MAX_NAMED_TYPES])
+    return f"{shown_names} and {len(names) - _MAX_NAMED_TYPES} more" if len(names) > _MAX_NAMED_TYPES else shown_names

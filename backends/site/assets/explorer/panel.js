@@ -1,0 +1,126 @@
+// The panel at the side: what the chosen box or arrow is, its ports, chains, requirements and open points, and what can be done.
+"use strict";
+archgenExplorer.makePanel = function (model, root, actions) {
+  const { element, count } = archgenExplorer;
+  const MAX_FLOWS = 60;
+  const panel = element("aside", { className: "panel", ariaLabel: "Details", hidden: true });
+  const link = (address, text) => (address ? element("a", { href: root + address, textContent: text }) : element("span", { textContent: text }));
+
+  const pickButton = (each) => {
+    const button = element("button", { type: "button", className: "name", textContent: each.title });
+    button.addEventListener("click", () => actions.pick(each));
+    return button;
+  };
+  const section = (title, remark, ...children) => element("section", {}, element("h3", {}, title, remark ? element("span", { className: "muted", textContent: remark }) : ""), ...children);
+  const tag = (text) => element("span", { className: "tag", textContent: text });
+  const tool = (text, act, name = "") => {
+    const button = element("button", { type: "button", className: name, textContent: text });
+    button.addEventListener("click", act);
+    return button;
+  };
+
+  function open(kind, title, crumb, ...children) {
+    const close = tool("×", () => actions.pick(null), "close");
+    close.ariaLabel = "Close the details";
+    panel.replaceChildren(element("header", {}, element("p", { className: "crumb" }, ...[crumb].flat(), crumb ? " › " : "", kind), close,
+      element("h2", { textContent: title, tabIndex: -1 })), ...children.flat().filter(Boolean));
+    panel.hidden = false;
+    panel.scrollTop = 0;
+  }
+
+  // --- elements -------------------------------------------------------------------------------------------------
+  const titlesOf = (each, key) => actions.colours.valuesOf(each, key).map((value) => actions.colours.titleOf(key, value));
+
+  function tagsOf(each) {
+    const tags = each.keys.map((at) => model.keys[at]).filter(([key]) => key === "tag" || key === "role").map(([, value]) => value);
+    return [...new Set([...titlesOf(each, "owner"), ...titlesOf(each, "status"), ...titlesOf(each, "host"), ...tags])].map(tag);
+  }
+
+  function showMember(each) {
+    const home = each.kind === "component" ? model.groups[each.group] : model.groups[each.group] ?? null;
+    const chains = model.chains.filter((chain) => chain[each.kind + "s"].includes(each.number));
+    const requirements = model.requirements.filter(({ components }) =>
+      (each.kind === "component" ? [each.number] : each.components).some((at) => components.includes(at)));
+    open(each.kind, each.title, home ? pickButton(home) : "",
+      element("p", { className: "tags" }, ...tagsOf(each)),
+      each.summary ? element("p", {}, each.summary + " ", each.address ? element("a", { href: root + each.address, textContent: "More" }) : "") : "",
+      each.kind === "component" ? showPorts(each) : showTopics(each),
+      each.line ? section("Timing", "", element("p", { textContent: each.line })) : "",
+      chains.length ? section("Chains through it", "", element("ul", {}, chains.map((chain) => element("li", { className: "chain" }, link(chain.address, chain.title),
+        chain.words ? element("span", { className: "chip " + chain.status.replace(" ", "-"), textContent: chain.words }) : "")))) : "",
+      requirements.length ? section("Requirements", String(requirements.length), element("ul", {}, requirements.map(({ id, title, address }) =>
+        element("li", {}, link(address, id), " ", title)))) : "",
+      each.findings ? section("Open points", String(each.findings.length), element("ul", {}, each.findings.map(({ severity, message }) =>
+        element("li", {}, element("span", { className: "chip " + severity, textContent: severity }), " ", message)))) : "",
+      showOther(each), tools(each));
+  }
+
+  function showOther(each) {
+    const others = each.kind === "component" ? each.nodes.map((at) => model.nodes[at]) : each.components.map((at) => model.components[at]);
+    if (!others.length) return "";
+    return section(each.kind === "component" ? "Nodes" : "Implements", "", element("ul", {}, others.map((other) => element("li", {}, link(other.address, other.title)))));
+  }
+
+  function showPorts(component) {
+    const typeOf = (port) => model.types[port.type]?.name ?? model.types[model.outputs[model.sources[port.number]?.[0]]?.type]?.name ?? "";
+    const row = (port, direction, others, flowNote) => element("li", {}, element("span", { className: "muted", textContent: direction }),
+      element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "",
+        port.note ? element("div", { className: "muted", textContent: port.note }) : "",
+        others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other), others.length === 1 && other.line ? element("span", { className: "muted", textContent: " · " + other.line }) : ""])) : ""));
+    const unique = (list) => [...new Set(list)].map((at) => model.components[at]);
+    const inputs = component.inputs.map((port) => row(port, "in",
+      unique([...model.writers[port.number]]), "from "));
+    const outputs = component.outputs.map((port) => row(port, "out", unique([...model.readers[port.number]]), "to "));
+    if (!inputs.length && !outputs.length) return "";
+    return section("Ports", `${inputs.length} in, ${outputs.length} out`, element("ul", { className: "ports" }, inputs, outputs));
+  }
+
+  function showTopics(node) {
+    const own = model.links.filter((each) => each.tail === node.number || each.head === node.number);
+    if (!own.length) return "";
+    const rows = own.slice(0, MAX_FLOWS).map((each) => {
+      const [word, other] = each.tail === node.number ? ["to", each.head] : ["from", each.tail];
+      return element("li", {}, element("span", { className: "muted", textContent: word === "to" ? "out" : "in" }),
+        element("div", {}, link(each.topic.address, each.topic.name), element("div", {}, word + " ", pickButton(model.nodes[other]))));
+    });
+    return section("Topics", count(own.length, "link"), element("ul", { className: "ports" }, rows));
+  }
+
+  function showHome(home, members) {
+    open(home.kind, home.title, "", element("p", { className: "tags" }, home.owners ? tag(home.owners) : "", home.line ? tag(home.line) : ""),
+      home.summary ? element("p", { textContent: home.summary }) : "",
+      section(members[0]?.kind === "node" ? "Nodes" : "Components", String(members.length),
+        element("ul", { className: "columns" }, members.map((member) => element("li", {}, pickButton(member))))), tools(home));
+  }
+
+  function tools(each) {
+    const name = each.kind === "node" || each.kind === "component" ? each.id : each.kind === "host" ? `host:${archgenExplorer.grammar.quote(each.id)}` : each.id;
+    return element("p", { className: "tools" },
+      each.address ? element("a", { className: "primary", href: root + each.address, textContent: "Open page" }) : "",
+      each.id ? tool("Focus", () => actions.focus(name, 1, 1)) : "",
+      each.id ? tool("All before", () => actions.focus(name, Infinity, 0)) : "",
+      each.id ? tool("All after", () => actions.focus(name, 0, Infinity)) : "");
+  }
+
+  // --- arrows and folds -----------------------------------------------------------------------------------------
+  function showArrow(arrow) {
+    const members = arrow.flows[0].topic ? model.nodes : model.components;
+    const rows = arrow.flows.slice(0, MAX_FLOWS).map((flow) => element("li", {},
+      element("div", {}, element("strong", { textContent: flow.label }), flow.optional ? [" ", tag("optional")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : ""),
+      element("div", {}, pickButton(members[flow.tail]), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.from : flow.to}` }),
+        " → ", pickButton(members[flow.head]), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.to : flow.from}` }))));
+    open(count(arrow.flows.length, "flow"), `${arrow.tail.title} → ${arrow.head.title}`, "",
+      section("What flows", arrow.flows.length > MAX_FLOWS ? `the first ${MAX_FLOWS}` : "", element("ul", { className: "flows" }, rows)));
+  }
+
+  function showFold(box) {
+    const rows = box.homes ? box.homes.map((home) => {
+      const button = tool(home.title, () => actions.openHome(home), "name");
+      return element("li", {}, button);
+    }) : box.members.map((member) => element("li", {}, pickButton(member)));
+    open("folded", box.title, "", element("p", { textContent: "These have no box of their own, so that the map stays within 150 boxes." }),
+      element("ul", { className: "columns" }, rows), element("p", { className: "tools" }, tool("Show all boxes", () => actions.showAll())));
+  }
+
+  return { panel, showMember, showHome, showArrow, showFold, hide: () => (panel.hidden = true) };
+};

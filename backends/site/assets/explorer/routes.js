@@ -1,0 +1,128 @@
+// How arrows run: one curve with level ends, past the boxes of the columns between. Ends are spread along a side by the height
+// of the other end, so that lines leave and arrive without crossing.
+"use strict";
+archgenExplorer.routeArrows = (function () {
+  const SPREAD = 9; // px between two ends on one side
+  const MARGIN = 13; // px between a line and a box that it passes
+  const LOOP = 46; // px that a line between boxes of one column swings out
+
+  const middle = (box) => box.y + box.height / 2;
+  const right = (box) => box.x + box.width;
+
+  // Which sides an arrow leaves and reaches: to the right where the other end is, else back to the left, else round.
+  function chooseSides(arrow) {
+    const { tail, head } = arrow;
+    arrow.turn = right(tail) <= head.x ? "forward" : right(head) <= tail.x ? "back" : "loop";
+    arrow.tailSide = arrow.turn === "back" ? "left" : "right";
+    arrow.headSide = arrow.turn === "forward" ? "left" : "right";
+  }
+
+  function spreadEnds(arrows) {
+    const sides = new Map();
+    const add = (box, side, arrow, end, other) => {
+      const key = box.id + " " + side;
+      if (!sides.has(key)) sides.set(key, []);
+      sides.get(key).push({ box, side, arrow, end, other });
+    };
+    for (const arrow of arrows) {
+      add(arrow.tail, arrow.tailSide, arrow, "start", arrow.head);
+      add(arrow.head, arrow.headSide, arrow, "stop", arrow.tail);
+    }
+    for (const ends of sides.values()) {
+      ends.sort((a, b) => middle(a.other) - middle(b.other) || (a.arrow.id < b.arrow.id ? -1 : 1));
+      const { box } = ends[0];
+      const step = Math.min(SPREAD, (box.height - 14) / Math.max(1, ends.length - 1));
+      ends.forEach(({ arrow, end, side }, at) => {
+        arrow[end] = [side === "left" ? box.x : right(box), middle(box) + (at - (ends.length - 1) / 2) * step];
+      });
+    }
+  }
+
+  // The columns that a line passes on its way, from left to right: each with what is in the way there.
+  function listStrips(arrow, scene, bounds) {
+    const [left, to] = arrow.turn === "forward" ? [arrow.tail, arrow.head] : [arrow.head, arrow.tail];
+    const strips = [];
+    const add = (boxes, min, max) => {
+      const own = boxes.filter((box) => box !== left && box !== to && box !== left.parent && box !== to.parent);
+      if (own.length && own[0].columnX >= min - 1 && own[0].columnX + own[0].columnWidth <= max + 1) {
+        strips.push({ from: own[0].columnX, to: own[0].columnX + own[0].columnWidth, boxes: own });
+      }
+    };
+    const [start, end] = [right(left), to.x];
+    if (left.parent && left.parent === to.parent) for (const column of left.parent.inner.columns) add(column, start, end);
+    else {
+      if (left.parent) for (const column of left.parent.inner.columns) add(column, start, Math.min(end, right(left.parent)));
+      for (const column of bounds.columns) add(column, left.parent ? right(left.parent) : start, to.parent ? to.parent.x : end);
+      if (to.parent) for (const column of to.parent.inner.columns) add(column, Math.max(start, to.parent.x), end);
+    }
+    return strips;
+  }
+
+  // The free height that is nearest to a wished one; lines that share a gap keep a little apart.
+  function findGap(strip, wish, used) {
+    const taken = strip.boxes.map((box) => [box.y - MARGIN, box.y + box.height + MARGIN]).sort((a, b) => a[0] - b[0]);
+    const choices = [wish];
+    for (const [top, bottom] of taken) choices.push(top, bottom);
+    const free = choices.filter((y) => taken.every(([top, bottom]) => y <= top || y >= bottom));
+    const best = free.reduce((one, other) => (Math.abs(other - wish) < Math.abs(one - wish) ? other : one), free[0] ?? wish);
+    const key = Math.round(strip.from) + " " + Math.round(best / 4);
+    const count = used.get(key) ?? 0;
+    used.set(key, count + 1);
+    return best + (best === wish ? 0 : (count % 2 ? -1 : 1) * Math.ceil(count / 2) * 2.5);
+  }
+
+  const num = (value) => Math.round(value * 10) / 10;
+  const curve = ([x1, y1], [x2, y2]) => {
+    const bend = (x2 - x1) * 0.5;
+    return `C${num(x1 + bend)} ${num(y1)} ${num(x2 - bend)} ${num(y2)} ${num(x2)} ${num(y2)}`;
+  };
+
+  function drawPath(arrow, scene, bounds, used) {
+    const { start, stop } = arrow;
+    if (arrow.turn === "loop") {
+      const x = Math.max(start[0], stop[0]) + LOOP + Math.min(40, Math.abs(start[1] - stop[1]) / 12);
+      arrow.points = [start, [x - LOOP / 4, (start[1] + stop[1]) / 2], stop];
+      arrow.direction = -1;
+      return `M${num(start[0])} ${num(start[1])}C${num(x)} ${num(start[1])} ${num(x)} ${num(stop[1])} ${num(stop[0])} ${num(stop[1])}`;
+    }
+    arrow.direction = arrow.turn === "forward" ? 1 : -1;
+    const strips = listStrips(arrow, scene, bounds);
+    const way = [start];
+    for (const strip of arrow.direction > 0 ? strips : strips.reverse()) {
+      const [near, far] = arrow.direction > 0 ? [strip.from, strip.to] : [strip.to, strip.from];
+      const share = ((near + far) / 2 - start[0]) / (stop[0] - start[0] || 1);
+      const y = findGap(strip, start[1] + (stop[1] - start[1]) * share, used);
+      way.push([near - arrow.direction * 8, y], [far + arrow.direction * 8, y]);
+    }
+    way.push(stop);
+    arrow.points = way;
+    let path = `M${num(start[0])} ${num(start[1])}`;
+    for (let at = 1; at < way.length; at += 1) {
+      path += way[at][1] === way[at - 1][1] ? `L${num(way[at][0])} ${num(way[at][1])}` : curve(way[at - 1], way[at]);
+    }
+    return path;
+  }
+
+  // Where the name of what flows stands: in the widest free piece of the line, off both ends.
+  function placeLabel(arrow) {
+    if (arrow.turn === "loop") return arrow.points[1];
+    let best = null;
+    for (let at = 1; at < arrow.points.length; at += 1) {
+      const [[x1, y1], [x2, y2]] = [arrow.points[at - 1], arrow.points[at]];
+      const isChannel = at % 2 === 1;
+      if (isChannel && (!best || Math.abs(x2 - x1) > best.width)) best = { width: Math.abs(x2 - x1), at: [(x1 + x2) / 2, (y1 + y2) / 2] };
+    }
+    return best.at;
+  }
+
+  return function routeArrows(scene, bounds) {
+    const arrows = scene.arrows;
+    const used = new Map();
+    arrows.forEach(chooseSides);
+    spreadEnds(arrows);
+    for (const arrow of arrows) {
+      arrow.path = drawPath(arrow, scene, bounds, used);
+      arrow.labelAt = placeLabel(arrow);
+    }
+  };
+})();

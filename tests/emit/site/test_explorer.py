@@ -1,0 +1,483 @@
+"""The explorer in Chromium, opened from the disk: what is on the map, keys and pointer, the address, and hostile titles."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, Request, expect, sync_playwright
+
+from archgen import pipeline
+from archgen.emit.file_tree import write_tree
+from archgen.emit.site import build_site
+from archgen.products.output_options import OutputOptions
+from archgen.products.product_inputs import ProductInputs
+from archgen.views.explorer import make_explorer_map
+from archgen.views.search import make_search_entries
+
+ROOT = Path(__file__).resolve().parents[3]
+AXE = ROOT / "tests" / "judges" / "node_modules" / "axe-core" / "axe.min.js"
+HOSTILE = '</script><img src=x onerror=document.title="taken"><script>document.title="taken"</script>'
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; img-src 'self' data:; base-uri 'none'; "
+    "form-action 'none'"
+)
+"""The least that a page is allowed."""
+Open = Callable[..., Page]
+
+
+def write_site(project: Path, folder: Path) -> Path:
+    """Write a project's site, without pictures."""
+    inputs = ProductInputs(pipeline.check_project(project), OutputOptions(revision="test"))
+    tree = build_site(
+        inputs.pages,
+        {},
+        title=inputs.checked_project.architecture.project.title,
+        revision="test",
+        notices=(),
+        chapter_files=lambda _: None,
+        search_entries=make_search_entries(inputs.views.lookup, inputs.pages),
+        explorer_map=make_explorer_map(inputs.views.lookup),
+    )
+    write_tree(tree, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the case study's site."""
+    return write_site(ROOT / "example_ramcip", tmp_path_factory.mktemp("out") / "example")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Start Chromium."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def visit(browser: Browser, example: Path) -> Iterator[Open]:
+    """Open the explorer; a request to anywhere else, an error or a message in the console is a failure."""
+    wrong: list[str] = []
+
+    def judge(request: Request) -> None:
+        if not request.url.startswith(("file://", "data:")):
+            wrong.append(request.url)
+
+    def opened(  # noqa: PLR0913 - what a reader's browser may be
+        address: str = "",
+        *,
+        root: Path | None = None,
+        path: str = "explorer.html",
+        width: int = 1280,
+        scheme: str = "light",
+        scripts: bool = True,
+        touch: bool = False,
+    ) -> Page:
+        context = browser.new_context(
+            viewport={"width": width, "height": 800},
+            color_scheme=scheme,  # type: ignore[arg-type]
+            java_script_enabled=scripts,
+            reduced_motion="reduce",
+            has_touch=touch,
+        )
+        page = context.new_page()
+        page.on("request", judge)
+        page.on("console", lambda message: wrong.append(message.text))
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.goto(f"file://{root or example}/{path}{address}")
+        if scripts and path.startswith("explorer"):
+            expect(page.locator(".stage .box").first).to_be_attached()
+        return page
+
+    yield opened
+    for context in browser.contexts:
+        context.close()
+    assert wrong == []
+
+
+def box(page: Page, title: str) -> Locator:
+    """Find a box by its title."""
+    return page.locator(".stage .box").filter(has=page.locator("title", has_text=re.compile(rf"^{re.escape(title)}\n")))
+
+
+def lit(page: Page) -> list[str]:
+    """List the lit boxes by their titles."""
+    return sorted(
+        name.split("\n")[0] for name in page.locator(".stage .box.lit:not(:has(.open)) > title").all_text_contents()
+    )
+
+
+def address(page: Page) -> dict[str, str]:
+    """Give what stands in the address."""
+    return page.evaluate("Object.fromEntries(new URLSearchParams(location.hash.slice(1)))")  # type: ignore[no-any-return]
+
+
+def said_by_axe(page: Page) -> object:
+    page.evaluate(AXE.read_text())
+    return page.evaluate("axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")
+
+
+# --- what is on the map ---------------------------------------------------------------------------------------------
+
+
+def test_the_map_opens_with_all_groups_closed_and_one_arrow_for_all_that_runs_between_two(visit: Open) -> None:
+    page = visit()
+    assert page.locator(".stage .box").count() == 10
+    assert page.locator(".map .arrow").count() == 39
+    assert page.locator(".map .arrow.many").count() > 5
+
+
+def test_a_group_opens_in_place_and_back_closes_it(visit: Open) -> None:
+    page = visit()
+    before = box(page, "Robot Task Scheduler").bounding_box()
+    box(page, "Human State").locator(".sign").click(force=True)
+    expect(box(page, "Fall Detector")).to_be_visible()
+    assert address(page)["open"] == "human_state"
+    assert box(page, "Robot Task Scheduler").bounding_box()["x"] == pytest.approx(before["x"], abs=1)  # type: ignore[index]
+    page.go_back()
+    expect(box(page, "Fall Detector")).to_have_count(0)
+    page.go_forward()
+    expect(box(page, "Fall Detector")).to_be_visible()
+
+
+@pytest.mark.parametrize(
+    ("level", "boxes", "first"),
+    [("groups", 10, "Cognitive Reasoning"), ("nodes", 10, "Cognitive Reasoning"), ("hosts", 5, "Base Computer")],
+)
+def test_levels(visit: Open, level: str, boxes: int, first: str) -> None:
+    page = visit()
+    page.get_by_role("button", name=level.capitalize(), exact=True).click()
+    assert address(page)["level"] == level
+    expect(page.locator(".stage .box")).to_have_count(boxes)
+    assert box(page, first).is_visible()
+    assert box(page, first).locator(".sign").count() == (0 if level == "groups" else 1)
+
+
+def test_boxes_do_not_cover_one_another_when_all_is_open(visit: Open) -> None:
+    page = visit("#level=components&open=*")
+    expect(page.locator(".stage .box")).to_have_count(71)
+    overlapping = page.evaluate("""() => {
+      const boxes = [...document.querySelectorAll(".stage .box")].filter(b => !b.querySelector(".open"))
+        .map(b => b.querySelector(".shell").getBoundingClientRect());
+      return boxes.flatMap((a, i) => boxes.slice(i + 1).filter(b =>
+        a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)).length;
+    }""")
+    assert overlapping == 0
+
+
+def test_a_merged_arrow_opens_into_its_flows(visit: Open) -> None:
+    page = visit()
+    page.locator(".map .arrow.many").first.evaluate("a => a.dispatchEvent(new MouseEvent('click', {bubbles: true}))")
+    flows = page.locator(".panel .flows li")
+    assert flows.count() >= 4
+    assert page.locator(".panel .crumb").inner_text() == f"{flows.count()} flows"
+    assert ">" in address(page)["pick"]
+
+
+# --- what is chosen, and the address ----------------------------------------------------------------------------------
+
+
+def test_a_focus_lights_what_feeds_it_and_what_it_feeds(visit: Open) -> None:
+    page = visit("#level=components&open=human_state&sel=1%2Bfall_detector%2B1")
+    assert lit(page) == ["Cognitive Reasoning", "Fall Detector", "Skeleton Tracking", "Speech Recognition"]
+    assert page.locator(".map .arrow.lit.before").count() == 2
+    assert page.locator(".map .arrow.lit.after").count() == 1
+    assert sorted(page.locator(".map .label").all_text_contents()) == ["Distress call", "Fall alarm", "Skeletons"]
+    assert page.locator("#selector-says").inner_text() == "4 of 61 lit"
+    assert box(page, "Person Identification").evaluate("b => getComputedStyle(b).opacity") == "1"
+
+
+def test_steps_before_and_after_are_counted_up_and_down(visit: Open) -> None:
+    page = visit("#level=components&open=human_state&sel=1%2Bfall_detector%2B1")
+    page.get_by_role("button", name="More steps before").click()
+    assert address(page)["sel"] == "2+fall_detector+1"
+    page.get_by_role("button", name="Fewer steps after").click()
+    assert address(page)["sel"] == "2+fall_detector"
+    expect(page.get_by_role("button", name="Fewer steps after")).to_be_disabled()
+    page.go_back()
+    expect(page.locator("#selector")).to_have_value("2+fall_detector+1")
+
+
+def test_positions_stay_on_focus_filter_and_theme(visit: Open) -> None:
+    page = visit("#level=components&open=human_state")
+    places = "() => [...document.querySelectorAll('.stage .box')].map(b => [b.dataset.box, b.getAttribute('transform')]).sort()"
+    before = page.evaluate(places)
+    page.locator("#selector").fill("2+fall_detector+1")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Dark").click()
+    assert page.evaluate(places) == before
+    page.get_by_role("button", name="Filter").click()
+    page.get_by_label("Partner", exact=True).select_option("certh")
+    after = dict(page.evaluate(places))
+    assert 0 < len(after) < len(before)
+    assert all(dict(before)[name] == place for name, place in after.items())
+
+
+def test_ways_from_a_to_b(visit: Open) -> None:
+    page = visit("#level=components&open=human_state")
+    page.get_by_role("button", name="A → B: all ways").click()
+    page.get_by_label("From", exact=True).fill("skeleton_tracking")
+    page.get_by_label("To", exact=True).fill("situation_assessment")
+    page.get_by_role("button", name="Show all ways").click()
+    assert address(page)["sel"] == "skeleton_tracking..situation_assessment"
+    assert {"Skeleton Tracking", "Fall Detector", "Cognitive Reasoning"} <= set(lit(page))
+
+
+@pytest.mark.parametrize(
+    ("hash_", "words"),
+    [
+        ("#sel=fall_detectr", "nothing is called fall_detectr; did you mean fall_detector?"),
+        ("#open=human_stat", "human_stat is not here; nearest: human_state."),
+        ("#pick=nobody_at_all_here", "nobody_at_all_here is not here."),
+        ("#level=rooms", "There is no level “rooms”."),
+        ("#sel=a,b", ", is reserved; words are separated by blanks"),
+    ],
+)
+def test_names_that_are_not_there_are_said_and_the_rest_is_obeyed(visit: Open, hash_: str, words: str) -> None:
+    page = visit(hash_ + "&colour=owner")
+    assert page.locator(".notes").inner_text() == words
+    assert page.locator(".legend .colours li").first.inner_text() == "TU München (16)"
+
+
+def test_moving_is_kept_in_the_address_but_is_no_step_for_back(visit: Open) -> None:
+    page = visit()
+    length = page.evaluate("history.length")
+    page.mouse.move(600, 300)
+    page.mouse.down()
+    page.mouse.move(500, 240, steps=4)
+    page.mouse.up()
+    page.mouse.wheel(0, -240)
+    page.wait_for_function("location.hash.includes('at=')")
+    assert page.evaluate("history.length") == length
+    x, y, zoom = map(float, address(page)["at"].split(","))
+    page.reload()
+    expect(page.locator(".stage .box").first).to_be_attached()
+    transform = page.locator(".map").evaluate("m => m.style.transform")
+    assert [float(n) for n in re.findall(r"-?[\d.]+", transform)] == pytest.approx([x, y, zoom], abs=0.01)
+
+
+def test_hover_lights_a_box_with_its_arrows_and_leaving_ends_that(visit: Open) -> None:
+    page = visit()
+    box(page, "Human Model").hover()
+    expect(page.locator(".map.dims")).to_have_count(1)
+    assert "Human Model" in lit(page)
+    assert "Hardware at the Boundary" not in lit(page)
+    page.mouse.move(640, 130)
+    expect(page.locator(".map.dims")).to_have_count(0)
+
+
+def test_colours_have_words_in_the_legend(visit: Open) -> None:
+    page = visit("#open=*")
+    for key, word in (("status", "planned"), ("period", "up to 100 ms"), ("finding", "a warning"), ("progress", "5 of 5 steps"),
+                      ("requirement", "serves none"), ("host", "Vision Computer"), ("type", "others")):  # fmt: skip
+        page.locator("#colour").select_option(key)
+        assert word in page.locator(".legend .colours").inner_text(), key
+        assert address(page)["colour"] == key
+
+
+# --- keys -----------------------------------------------------------------------------------------------------------
+
+
+def test_everything_by_keyboard(visit: Open) -> None:
+    page = visit()
+    page.locator('.stage .box[tabindex="0"]').focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    focused = page.evaluate("document.activeElement.querySelector('title').textContent.split('\\n')[0]")
+    page.keyboard.press("o")
+    assert address(page)["open"]
+    assert page.evaluate("document.activeElement.querySelector('title').textContent.split('\\n')[0]") == focused
+    page.keyboard.press("o")
+    assert "open" not in address(page)
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.textContent") == focused
+    page.keyboard.press("f")
+    assert address(page)["sel"].startswith("1+")
+    page.keyboard.press("]")
+    page.keyboard.press("{")
+    assert address(page)["sel"].startswith("2+")
+    assert not address(page)["sel"].endswith("+1")
+    page.keyboard.press("Escape")
+    page.keyboard.press("Escape")
+    assert {"sel", "pick"}.isdisjoint(address(page))
+    before = page.locator(".map").evaluate("m => m.style.transform")
+    page.keyboard.press("+")
+    page.wait_for_function(f"document.querySelector('.map').style.transform !== '{before}'")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
+    page.keyboard.press("Escape")
+    page.keyboard.press("s")
+    page.keyboard.type("o")
+    assert page.locator("#selector").input_value() == "o"
+
+
+def test_a_list_has_all_that_the_map_has(visit: Open) -> None:
+    page = visit("#level=components&open=human_state&view=list")
+    entries = page.locator(".as-list li > span:first-child > .name").all_inner_texts()
+    assert len(entries) == page.locator(".stage .box").count() == 15
+    assert (
+        page.locator(".as-list").get_by_role("button", name="flow").count() == 2 * page.locator(".map .arrow").count()
+    )
+    page.get_by_role("button", name="Close Human State").click()
+    assert "open" not in address(page)
+    page.locator(".as-list").get_by_role("button", name="Human Model", exact=True).first.click()
+    assert page.locator(".panel h2").inner_text() == "Human Model"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(
+    "hash_",
+    ["", "#open=human_state&sel=2%2Bfall_detector%2B1&pick=human_state.fall_detector&colour=owner", "#view=list"],
+)
+def test_axe_finds_nothing(visit: Open, scheme: str, hash_: str) -> None:
+    assert AXE.exists(), "this test needs axe-core (`npm ci` in tests/judges)"
+    assert said_by_axe(visit(hash_, scheme=scheme)) == []
+
+
+# --- ways in and out ------------------------------------------------------------------------------------------------
+
+
+def test_pages_of_elements_lead_to_their_box(visit: Open) -> None:
+    page = visit(path="components/human_state.fall_detector.html")
+    page.get_by_role("link", name="Show in explorer").click()
+    expect(page.locator(".panel h2")).to_have_text("Fall Detector")
+    expect(box(page, "Fall Detector")).to_be_visible()
+    page.get_by_role("link", name="Open page").click()
+    assert page.url.endswith("components/human_state.fall_detector.html")
+
+
+def test_the_search_shows_what_it_found_on_the_map(visit: Open) -> None:
+    page = visit()
+    page.keyboard.press("/")
+    page.keyboard.type("fall detector")
+    expect(page.locator("#find-list")).to_have_attribute("aria-busy", "false", timeout=20_000)
+    page.keyboard.press("Shift+Enter")
+    expect(page.locator(".panel h2")).to_have_text("Fall Detector")
+    expect(box(page, "Fall Detector")).to_be_visible()
+
+
+def test_without_scripts_there_is_a_list_of_what_flows(visit: Open) -> None:
+    page = visit(scripts=False)
+    assert page.get_by_role("link", name="the table of all connections").is_visible()
+    assert page.locator("table tbody tr").count() > 40
+    assert page.locator("nav#navigation").is_visible()
+
+
+@pytest.mark.parametrize("form", ["SVG", "PNG"])
+def test_a_view_is_saved_as_a_picture_that_stands_alone(visit: Open, form: str, tmp_path: Path) -> None:
+    page = visit("#open=human_state&sel=2%2Bfall_detector%2B1")
+    page.get_by_role("button", name="Share").click()
+    with page.expect_download() as download:
+        page.get_by_role("button", name=f"Save as {form}").click()
+    file = tmp_path / download.value.suggested_filename
+    download.value.save_as(file)
+    assert file.name == f"explorer-components-2_fall_detector_1.{form.lower()}"
+    data = file.read_bytes()
+    if form == "PNG":
+        assert data.startswith(b"\x89PNG")
+        assert len(data) > 20_000
+        return
+    text = data.decode()
+    assert "Fall Detector" in text
+    assert "rgb(138, 83, 0)" in text  # what feeds it
+    assert "class=" not in text
+    assert "var(" not in text
+
+
+def test_a_strict_policy_refuses_nothing_of_it(visit: Open, example: Path) -> None:
+    text = (example / "explorer.html").read_text("utf-8")
+    assert " style=" not in text
+    assert "<style" not in text
+    (example / "explorer_strict.html").write_text(
+        text.replace("<head>", f'<head><meta http-equiv="Content-Security-Policy" content="{POLICY}">'), "utf-8"
+    )
+    page = visit("#open=human_state&pick=human_state.fall_detector", path="explorer_strict.html")
+    page.get_by_role("button", name="Share").click()
+    with page.expect_download():
+        page.get_by_role("button", name="Save as PNG").click()
+
+
+def test_pinch_zooms_on_a_phone(visit: Open) -> None:
+    page = visit(width=390, touch=True)
+    scale = "() => Number(document.querySelector('.map').style.transform.match(/scale\\(([\\d.]+)/)[1])"
+    before = page.evaluate(scale)
+    page.evaluate("""() => {
+      const stage = document.querySelector(".stage"), at = stage.getBoundingClientRect();
+      stage.setPointerCapture = () => {};
+      const send = (type, id, x) => stage.dispatchEvent(new PointerEvent(type, { pointerId: id, pointerType: "touch",
+        clientX: at.left + x, clientY: at.top + 200, bubbles: true, button: 0 }));
+      send("pointerdown", 1, 150); send("pointerdown", 2, 200);
+      for (let step = 1; step < 12; step += 1) { send("pointermove", 1, 150 - step * 6); send("pointermove", 2, 200 + step * 6); }
+      send("pointerup", 1, 90); send("pointerup", 2, 260);
+    }""")
+    page.wait_for_function(f"({scale})() > {before * 1.5}")
+
+
+# --- hostile, large -------------------------------------------------------------------------------------------------
+
+
+def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
+    title = HOSTILE.replace("'", "''")
+    long = "x" * 300
+    (tmp_path / "robot.yaml").write_text(
+        f"archgen: 1\nproject: {{id: r, title: '{title}'}}\npartners: {{p: {{title: '{title}'}}}}\n"
+        f"hosts: {{h: {{title: '{title}'}}}}\n"
+        f"groups:\n  a:\n    title: '{title}'\n    owner: p\n    components:\n"
+        f"      c: {{title: '{title}', functionality: '{title}', outputs: {{o: '{title}'}}, tags: [t]}}\n"
+        f"      d: {{title: '{long}', inputs: {{i: c.o}}}}\n"
+        "  b:\n    title: \u202e\u202eevil\n    components:\n      e: {title: \U0001f916\U0001f9be, inputs: {i: a.c.o}}\n"
+        "nodes: {n: {implements: [a.c], host: h}}\n",
+        encoding="utf-8",
+    )
+    site = write_site(tmp_path / "robot.yaml", tmp_path / "site")
+    for hash_ in ("#open=a+b&pick=a.c", "#open=a+b&pick=a.d&sel=a.c%2B1", "#level=hosts&open=h", "#view=list&open=*", f"#sel={HOSTILE}&pick={HOSTILE}"):  # fmt: skip
+        page = visit(hash_, root=site)
+        assert page.locator("img").count() == 0
+        assert "taken" not in page.title().split(" · ")[0]
+        page.close()
+    page = visit("#open=a", root=site)
+    assert box(page, long).locator(".title.near").last.text_content().endswith("…")  # type: ignore[union-attr]
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write a site of 30 groups with 10 components each, wired at random but always alike."""
+    folder = tmp_path_factory.mktemp("large")
+    groups = []
+    for group in range(30):
+        groups.append(f"  g{group}:\n    title: Group {group}\n    components:")
+        for number in range(10):
+            sources = [f"g{(group * 7 + number * 3 + k) % 30}.c{(number + k) % 10}" for k in (1, 5, 11)]
+            inputs = ", ".join(f"i{k}: {source}.o" for k, source in enumerate(sources))
+            groups.append(f"      c{number}: {{inputs: {{{inputs}}}, outputs: {{o: T}}}}")
+    (folder / "robot.yaml").write_text(
+        "archgen: 1\nproject: {id: r, title: R}\ngroups:\n" + "\n".join(groups) + "\n", "utf-8"
+    )
+    return write_site(folder / "robot.yaml", folder / "site")
+
+
+def test_above_the_budget_groups_fold_and_what_is_chosen_keeps_its_neighbours(visit: Open, large: Path) -> None:
+    page = visit("#open=*&pick=g20.c5", root=large)
+    assert page.locator(".stage .box").count() <= 150
+    assert page.locator(".map .arrow").count() <= 300
+    assert re.search(
+        r"^\d+ groups folded, \d+ components, \d+ thin arrows left out\.", page.locator(".notes").inner_text()
+    )
+    arrows = page.locator(".map .arrow.lit").count()
+    assert arrows >= 6 - 1  # three inputs, and three readers or so
+    assert page.locator(".stage .box.picked, .stage .box.lit").count() > 4
+    folded = page.locator(".notes button").first.inner_text()
+    page.locator(".notes button").first.click()
+    expect(page.locator(".stage .box:has(.open)").filter(has_text=folded)).to_have_count(1)
+    page.get_by_role("button", name="Show all", exact=True).click()
+    expect(page.locator(".stage .box")).to_have_count(330)
+    expect(page.locator(".notes")).to_be_hidden()
