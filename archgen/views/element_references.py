@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
+from archgen.model.message_types import full_message_name
 from archgen.views import inline_text
 from archgen.views.shapes import Inlines, Text
 
 
 def find_reference(architecture: Architecture, name: str) -> str | None:
-    """Return the anchor of the element with this id; of a port that of its component. None where there is none."""
+    """Return the anchor of the element with this id; of a port that of its component. None for a name of nothing."""
     for kind, elements in (
         ("component", architecture.components),
         ("node", architecture.nodes),
@@ -27,7 +28,15 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         if name in elements:
             return f"{kind}:{name}"
     port = architecture.inputs.get(name) or architecture.outputs.get(name)
-    return f"component:{port.component}" if port else None
+    if port:
+        return f"component:{port.component}"
+    # A short name is none: `my_group/Part` may be anything.
+    return f"message:{name}" if full_message_name(name) == name else None
+
+
+def message_link(message: str) -> Text:
+    """Link to a message, service or action, by its full name."""
+    return Text(message, ref=f"message:{message}", code=True)
 
 
 def find_owners(architecture: Architecture, element_id: str | None) -> tuple[str, ...]:

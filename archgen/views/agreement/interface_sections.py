@@ -11,6 +11,7 @@ from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
+from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
@@ -145,7 +146,7 @@ class SectionWriter:
         if message in self.anchors_by_message:
             first_link = Text("the first interface that carries it", ref=self.anchors_by_message[message])
             yield Paragraph(
-                inline_text.to_inlines("The fields of ", Text(message, code=True), " stand at ", first_link, ".")
+                inline_text.to_inlines("The fields of ", message_link(message), " stand at ", first_link, ".")
             )
             return
         # The writer is stateful: sections must be written in the order of the document.
@@ -154,7 +155,7 @@ class SectionWriter:
             yield message_fields.field_table(message, interface_terms.field_rows)
         elif interface_terms.field_rows is not None:
             # That a definition is missing is one of the open points.
-            yield Paragraph(inline_text.to_inlines(Text(message, code=True), " has no fields."))
+            yield Paragraph(inline_text.to_inlines(message_link(message), " has no fields."))
 
     def _chain_tables(self, interface_terms: InterfaceTerms) -> Iterator[Block]:
         rows = tuple(

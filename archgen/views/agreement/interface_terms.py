@@ -20,6 +20,7 @@ from archgen.views.agreement import interface_timing, interface_versions, messag
 from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
+from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
@@ -153,7 +154,7 @@ def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:
         return inline_text.UNKNOWN_INLINES
     message_type = lookup.architecture.types.get(interface.type or "")
     planned_note = [" (planned)"] if message_type and message_type.status == "planned" else []
-    return inline_text.to_inlines(Text(interface.message, code=True), *planned_note)
+    return inline_text.to_inlines(message_link(interface.message), *planned_note)
 
 
 def _list_promises(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.node import Endpoint, Node
-from archgen.views import inline_text
+from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
 from archgen.views.timing import element_timing
@@ -113,7 +113,7 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
         (
             inline_text.to_inlines(_USE_LABELS[endpoint.use]),
             inline_text.to_inlines(inline_text.topic_link(endpoint.name), *_internal_mark(endpoint)),
-            inline_text.to_inlines(Text(endpoint.message, code=True))
+            inline_text.to_inlines(element_references.message_link(endpoint.message))
             if endpoint.message
             else inline_text.UNKNOWN_INLINES,
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),

@@ -11,6 +11,7 @@ from archgen.model.deployment import Host
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.views import inline_text
+from archgen.views.element_references import message_link
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import chain_link
@@ -69,11 +70,12 @@ def make_page_slug(name: str) -> str:
 
 def make_topic_pages(lookup: Lookup) -> Iterator[Page]:
     """Make a page for each topic, service and action that a shown node uses."""
-    for topic in _shown_topics(lookup):
+    for topic in shown_topics(lookup):
         yield _topic_page(lookup, topic)
 
 
-def _shown_topics(lookup: Lookup) -> list[Topic]:
+def shown_topics(lookup: Lookup) -> list[Topic]:
+    """Return the topics, services and actions that a shown node uses."""
     # Each kind by name: nobody finds `/scan/front` by eye in the order of the files.
     return [
         topic
@@ -85,7 +87,7 @@ def _shown_topics(lookup: Lookup) -> list[Topic]:
 def make_topic_tables(lookup: Lookup) -> Iterator[Table]:
     """List topics, services and actions, each kind in a table of its own."""
     for flow, title in (("topic", "Topics"), ("service", "Services"), ("action", "Actions")):
-        flow_topics = [topic for topic in _shown_topics(lookup) if topic.flow == flow]
+        flow_topics = [topic for topic in shown_topics(lookup) if topic.flow == flow]
         table = architecture_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
         if table:
             yield table
@@ -95,7 +97,7 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
     facts: list[tuple[str, Inlines]] = [
         (
             "Message",
-            inline_text.join_inlines((Text(message, code=True),) for message in topic.messages)
+            inline_text.join_inlines((message_link(message),) for message in topic.messages)
             or inline_text.UNKNOWN_INLINES,
         ),
         ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in topic.types)),
