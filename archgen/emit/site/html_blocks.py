@@ -79,7 +79,13 @@ class PageWriter:
         )
 
     def _write_inside(self, section: Section, level: int) -> str:
-        parts = [self._write_block(block, level) for block in section.blocks]
+        parts = [
+            # A caption that says what the heading right above it says is for those who go from table to table.
+            self._write_table(block, hides_caption=block.caption == section.title and level > 1)
+            if isinstance(block, Table)
+            else self._write_block(block, level)
+            for block in section.blocks
+        ]
         parts += [self._write_section(inner, level + 1) for inner in section.sections]
         return "\n".join(parts)
 
@@ -137,7 +143,7 @@ class PageWriter:
             html = f'<span class="muted">{html}</span>'
         return "<br>" + html if run.line_break else html
 
-    def _write_table(self, table: Table) -> str:
+    def _write_table(self, table: Table, *, hides_caption: bool = False) -> str:
         caption = escape_html(table.caption)
         # A table without anchors has an empty tuple, and `zip` is strict.
         anchors = table.row_anchors or (None,) * len(table.rows)
@@ -145,7 +151,8 @@ class PageWriter:
         return (
             f'<div class="table{" narrow" if len(table.columns) < _MIN_WIDE_COLUMNS else ""}"{self._id_attribute(table.anchor)}>\n'
             f'<div class="scroll" role="group" tabindex="0" aria-label="{caption}">\n<table>\n'
-            f"<caption>{caption}</caption>\n{_write_widths(table.columns)}"
+            f"<caption{' class=spoken' if hides_caption else ''}>{caption}</caption>\n"
+            f"{_write_widths(table.columns)}"
             f"<thead><tr>{_write_heads(table.columns)}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"
         )
 

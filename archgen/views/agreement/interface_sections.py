@@ -116,11 +116,11 @@ class SectionWriter:
         return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows, numbered=False))
 
     def _end_row(self, end: InterfaceEnd, undecided: Inlines) -> tuple[Inlines, ...]:
-        component = inline_text.to_inlines(end.component.title) if end.component else ()
+        component = (inline_text.component_link(end.component),) if end.component else ()
         port = inline_text.to_inlines(" · ", Text(end.port, code=True)) if end.port else ()
         return (
             inline_text.to_inlines(Text(end.role, strong=not end.is_taker)),
-            inline_text.to_inlines(partner_titles(self.lookup, end.owners))
+            inline_text.owner_links(self.lookup.architecture, end.owners)
             if end.owners
             else inline_text.to_inlines(Text("nobody", muted=True)),
             (*component, *port),
@@ -134,7 +134,7 @@ class SectionWriter:
         details = " · ".join(part for part in (node.status or "", f"on {host.title}" if host else "") if part)
         return inline_text.join_lines(
             [
-                inline_text.to_inlines(Text(name, code=True)),
+                (inline_text.node_link(node),),
                 *([inline_text.to_inlines(Text(details, muted=True))] if details else []),
             ]
         )
@@ -160,7 +160,7 @@ class SectionWriter:
     def _chain_tables(self, interface_terms: InterfaceTerms) -> Iterator[Block]:
         rows = tuple(
             (
-                inline_text.to_inlines(self.lookup.architecture.chains[chain.id].title),
+                inline_text.to_inlines(Text(self.lookup.architecture.chains[chain.id].title, ref=f"chain:{chain.id}")),
                 inline_text.to_inlines(value_format.display_duration(chain.deadline)) if chain.deadline else (),
                 inline_text.to_inlines(value_format.display_duration(chain.bound)),
                 inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),

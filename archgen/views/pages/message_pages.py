@@ -11,6 +11,7 @@ from archgen.model.known_interfaces import Interface, InterfaceConstant, Interfa
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Topic
 from archgen.views import inline_text
+from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -162,11 +163,9 @@ class MessagePages:
         return drop_empty_columns(Table(anchor, f"{title}: fields" if title else "Fields", columns, rows))
 
     def _field_type_cell(self, field: InterfaceField) -> Inlines:
-        if "/" not in field.type:
-            return (Text(f"{field.type}{field.array}", code=True),)
-        array = (Text(field.array, code=True),) if field.array else ()
-        remark = () if self._definition_of(field.type) else (Text(" definition not at hand", muted=True),)
-        return (message_link(field.type), *array, *remark)
+        is_unknown = "/" in field.type and self._definition_of(field.type) is None
+        remark = (Text(" definition not at hand", muted=True),) if is_unknown else ()
+        return (field_type_run(field.type, f"{field.type}{field.array}"), *remark)
 
     def _make_use_blocks(self, message: str) -> Iterator[Block]:
         """Yield who sends and reads it: on which topics, and by which ports of components."""

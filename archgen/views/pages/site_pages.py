@@ -13,7 +13,7 @@ from archgen.views import inline_text
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, dashboard, page_marks, timing_chapter
+from archgen.views.pages import context_pages, dashboard, page_marks, partner_pages, timing_chapter
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
@@ -34,6 +34,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     surrounding_pages = [
         *page_maker.message_pages().make_pages(),
         *context_pages.make_context_pages(lookup, page_maker.keep_drawn),
+        *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn),
     ]
     implementation_pages = (
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
@@ -14,6 +15,8 @@ from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
 from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
+
+_ACTIVITY_NAME = re.compile(r"([a-z0-9.]+(?:_[a-z0-9.]+)+)")
 
 
 def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> tuple[Block, ...]:
@@ -49,7 +52,10 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
                 inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
             ),
         ),
-        ("Assumptions", inline_text.to_inlines("; ".join(dict.fromkeys(_list_assumptions(timing_lookup, result))))),
+        (
+            "Assumptions",
+            _link_activities(timing_lookup, "; ".join(dict.fromkeys(_list_assumptions(timing_lookup, result)))),
+        ),
     ]
     name = f"chains/{result.id}"
     title = f"{chain.title}: how the time adds up"
@@ -101,6 +107,18 @@ def _list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Itera
     )
 
 
+def _link_activities(timing_lookup: TimingLookup, sentence: str) -> Inlines:
+    """Return a sentence of the timing analysis with its activities as links to their nodes."""
+    activities = timing_lookup.analysis.system.activities
+    # Split at names: even positions are what stands between them. A name without `_` may be a word of the sentence.
+    parts = _ACTIVITY_NAME.split(sentence)
+    return tuple(
+        Text(part, ref=f"node:{activities[part].node}" if index % 2 and part in activities else None)
+        for index, part in enumerate(parts)
+        if part
+    )
+
+
 def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> tuple[Inlines, ...]:
     term = result.terms[index]
     return (
@@ -108,7 +126,7 @@ def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> t
         timing_tables.duration_cell(term.sampling),
         timing_tables.duration_cell(term.response),
         timing_tables.duration_cell(term.link),
-        inline_text.to_inlines(term.why),
+        _link_activities(timing_lookup, term.why),
         inline_text.to_inlines(Text(timing_tables.format_location(term.at), code=True))
         if timing_tables.format_location(term.at)
         else (),
@@ -160,11 +178,14 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
     lines = []
     for activity in matching_activities:
         pace = timing_lookup.analysis.paces.get(activity.id)
-        if pace and (
-            rate_text := rate_phrases.format_rate_sentence(pace, timing_lookup.rate_origins.get(activity.id, ()))
-        ):
+        if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+            name = timing_tables.activity_link(timing_lookup, activity.id) if len(matching_activities) > 1 else ()
+            origin_ids = timing_lookup.rate_origins.get(activity.id, ())
+            source = (
+                timing_tables.describe_rate_source(timing_lookup, activity, pace, origin_ids) if pace.inferred else ()
+            )
             lines.append(
-                inline_text.to_inlines(f"{activity.id}: {rate_text}" if len(matching_activities) > 1 else rate_text)
+                (*name, Text(f": {rate_text}" if name else rate_text), *((Text(", "), *source) if source else ()))
             )
     return inline_text.join_lines(lines)
 

@@ -171,9 +171,14 @@ def describe_rate_source(
         )
     if pace.rate.value is None or not origin_ids:
         return ()
+    return inline_text.to_inlines("from ", *link_origins(timing_lookup, origin_ids))
+
+
+def link_origins(timing_lookup: TimingLookup, origin_ids: tuple[str, ...]) -> Inlines:
+    """Link the activities that a rate is inferred from: `a, b and others`."""
     # `find_rate_origins` returns one more than is named here, which is how "and others" is known.
     producers = inline_text.join_inlines(activity_link(timing_lookup, name) for name in origin_ids[:3])
-    return inline_text.to_inlines("from ", *producers, *([" and others"] if len(origin_ids) > 3 else []))  # noqa: PLR2004
+    return (*producers, *([Text(" and others")] if len(origin_ids) > 3 else []))  # noqa: PLR2004
 
 
 def format_location(span: Span) -> str:
