@@ -15,7 +15,7 @@ from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
-from archgen.views.timing import value_format
+from archgen.views.timing import timing_tables
 
 _MAX_VALUE_LENGTH = 400
 """Maximal number of characters of a value in a table of changes."""
@@ -161,8 +161,8 @@ class SectionWriter:
         rows = tuple(
             (
                 inline_text.to_inlines(Text(self.lookup.architecture.chains[chain.id].title, ref=f"chain:{chain.id}")),
-                inline_text.to_inlines(value_format.display_duration(chain.deadline)) if chain.deadline else (),
-                inline_text.to_inlines(value_format.display_duration(chain.bound)),
+                timing_tables.duration_cell(chain.deadline) if chain.deadline else (),
+                timing_tables.duration_cell(chain.bound),
                 inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),
             )
             for chain in interface_terms.chains

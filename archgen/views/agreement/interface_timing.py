@@ -163,7 +163,7 @@ class _GivenPace:
         # "Answers within at least 20 ms" would read as a limit.
         figure = value_format.display_duration(response.worst)
         words = f"{figure.removeprefix('>= ')} or more" if figure.startswith(">= ") else figure
-        return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}{source}"))
+        return PromiseRow(name, expected=_figure(f"{words}{SOURCE_PHRASE}{source}", response.worst.value))
 
 
 def _spell_rate(pace: EventPace) -> str:
