@@ -120,7 +120,7 @@ class _GivenPace:
             return PromiseRow(name, _figure(words, pace.rate.value), self._rate_by_inputs(pace), strength)
         if pace.behaviour in {"once", "on_demand"}:
             is_written = self.timing.behaviour is not None
-            runs = inline_text.to_inlines(words)
+            runs = _figure(words, pace.rate.value)
             return PromiseRow(name, runs) if is_written else PromiseRow(name, expected=runs)
         return PromiseRow(name, expected=self._expected_rate(pace, words))
 
