@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import full_message_name
 from archgen.views import inline_text
+from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
 
@@ -76,6 +78,14 @@ def _link_run(architecture: Architecture, finding: Diagnostic, run: Text) -> Tex
     return Text(run.text, ref=reference, code=True, muted=run.muted) if reference else run
 
 
-def place_cell(finding: Diagnostic) -> Inlines:
+def place_cell(lookup: Lookup, finding: Diagnostic) -> Inlines:
     """Return file and line of a finding; empty where it has no place."""
-    return (Text(f"{finding.span.file}:{finding.span.line}", code=True),) if finding.span.file else ()
+    return (place,) if (place := place_run(lookup, finding.span)) else ()
+
+
+def place_run(lookup: Lookup, span: Span) -> Text | None:
+    """Return file and line of a span, with the address in the repository where one is configured; None for no place."""
+    if not span.file:
+        return None
+    address = lookup.repository.file_address(span.file, span.line) if lookup.repository else None
+    return Text(f"{span.file}:{span.line}", url=address, code=True, is_place=True)

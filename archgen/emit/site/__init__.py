@@ -77,6 +77,7 @@ def _page_variables(
     return {
         "heading": replace_forbidden(page.title),
         "lead": replace_forbidden(page.lead),
+        "place": writer.write_inlines((page.place,)) if page.place else "",
         "verdict": writer.write_inlines(page.verdict),
         "root": current_page.root,
         "start": current_page.root + navigation.start,

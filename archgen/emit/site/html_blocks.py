@@ -128,7 +128,7 @@ class PageWriter:
             return status_marks.write_meter(run.meter)
         html = status_marks.write_chip(run.status, run.text) if run.status else escape_breakable(run.text)
         if run.code:
-            html = f"<code>{html}</code>"
+            html = f'<code class="place">{html}</code>' if run.is_place else f"<code>{html}</code>"
         if run.strong and not run.status:
             html = f"<strong>{html}</strong>"
         if run.emphasis:

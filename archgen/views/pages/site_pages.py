@@ -13,7 +13,7 @@ from archgen.views import inline_text
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, dashboard, page_marks, partner_pages, timing_chapter
+from archgen.views.pages import context_pages, dashboard, page_marks, page_places, partner_pages, timing_chapter
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
@@ -41,7 +41,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
     all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
-    return page_marks.mark_pages(lookup, all_pages)
+    return page_places.place_pages(lookup, page_marks.mark_pages(lookup, all_pages))
 
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:

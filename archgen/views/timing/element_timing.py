@@ -10,7 +10,7 @@ from archgen.timing.analysis import ChainResult, ResponseTier
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
-from archgen.views import inline_text
+from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
 from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
@@ -59,7 +59,7 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
     ]
     name = f"chains/{result.id}"
     title = f"{chain.title}: how the time adds up"
-    rows = tuple(_term_row(timing_lookup, result, index) for index in range(len(result.terms)))
+    rows = tuple(_term_row(lookup, timing_lookup, result, index) for index in range(len(result.terms)))
     columns = (
         Column("Activity", 1.6),
         Column("Waits", 0.85, "right"),
@@ -119,7 +119,7 @@ def _link_activities(timing_lookup: TimingLookup, sentence: str) -> Inlines:
     )
 
 
-def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> tuple[Inlines, ...]:
+def _term_row(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult, index: int) -> tuple[Inlines, ...]:
     term = result.terms[index]
     return (
         timing_tables.activity_link(timing_lookup, term.activity),
@@ -127,9 +127,7 @@ def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> t
         timing_tables.duration_cell(term.response),
         timing_tables.duration_cell(term.link),
         _link_activities(timing_lookup, term.why),
-        inline_text.to_inlines(Text(timing_tables.format_location(term.at), code=True))
-        if timing_tables.format_location(term.at)
-        else (),
+        (place,) if (place := element_references.place_run(lookup, term.at)) else (),
     )
 
 
@@ -142,17 +140,23 @@ def make_node_facts(lookup: Lookup, node: Node) -> Iterator[tuple[str, Inlines]]
     for activity in activities:
         # Only a node with several activities needs to tell them apart.
         suffix = f" of {activity.id.rsplit('.', 1)[-1]}" if len(activities) > 1 else ""
-        yield from _activity_facts(timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()), suffix)
+        yield from _activity_facts(
+            lookup, timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()), suffix
+        )
 
 
 def _activity_facts(
-    timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...], suffix: str
+    lookup: Lookup, timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...], suffix: str
 ) -> Iterator[tuple[str, Inlines]]:
     """Yield rate and response of one activity, as far as they are known."""
     pace, response = timing_lookup.analysis.paces.get(activity.id), timing_lookup.analysis.responses.get(activity.id)
     if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
         # A written rate needs no source here: the fact `Timing` beside it says what was written.
-        source = timing_tables.describe_rate_source(timing_lookup, activity, pace, origin_ids) if pace.inferred else ()
+        source = (
+            timing_tables.describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids)
+            if pace.inferred
+            else ()
+        )
         yield f"Rate{suffix}", (*inline_text.to_inlines(rate_text), *((Text(", "), *source) if source else ()))
     if response and response.worst.value is not None:
         tier = f" ({timing_tables.TIER_WORDS[response.tier]})" if timing_tables.TIER_WORDS[response.tier] else ""
@@ -182,7 +186,9 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
             name = timing_tables.activity_link(timing_lookup, activity.id) if len(matching_activities) > 1 else ()
             origin_ids = timing_lookup.rate_origins.get(activity.id, ())
             source = (
-                timing_tables.describe_rate_source(timing_lookup, activity, pace, origin_ids) if pace.inferred else ()
+                timing_tables.describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids)
+                if pace.inferred
+                else ()
             )
             lines.append(
                 (*name, Text(f": {rate_text}" if name else rate_text), *((Text(", "), *source) if source else ()))

@@ -143,6 +143,30 @@
   });
   for (const box of document.querySelectorAll(".scroll")) fitting.observe(box);
 
+  // --- places that lead nowhere are copied ------------------------------------------------------------------------
+  function copy(words) {
+    if (navigator.clipboard) return navigator.clipboard.writeText(words);
+    // Some browsers have no clipboard for pages from the disk.
+    const field = element("textarea", { value: words, readOnly: true, className: "spoken" });
+    document.body.append(field);
+    field.select();
+    document.execCommand("copy");
+    field.remove();
+    return Promise.resolve();
+  }
+
+  for (const place of document.querySelectorAll("code.place")) {
+    if (place.closest("a")) continue;
+    const control = element("button", { type: "button", className: "copy", ariaLabel: "Copy " + place.textContent, title: "Copy" });
+    control.addEventListener("click", () => {
+      copy(place.textContent).then(() => {
+        control.textContent = " copied";
+        setTimeout(() => (control.textContent = ""), 1500);
+      });
+    });
+    place.after(control);
+  }
+
   // --- pictures: the whole window, with wheel, drag and keys ----------------------------------------------------
   function look(svg, caption) {
     const view = svg.cloneNode(true);
