@@ -17,6 +17,7 @@ from archgen.emit.site.chapter_html import ChapterFiles, ChapterWriter
 from archgen.emit.site.html_blocks import PageWriter
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
+from archgen.emit.site.page_policy import PAGE_POLICY
 from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
 from archgen.views.search.search_entry import SearchEntry
@@ -75,6 +76,7 @@ def _page_variables(
     """Return the variables of a page's template."""
     current_page = writer.current_page
     return {
+        "policy": PAGE_POLICY,
         "heading": replace_forbidden(page.title),
         "lead": replace_forbidden(page.lead),
         "place": writer.write_inlines((page.place,)) if page.place else "",

@@ -232,9 +232,12 @@ def _write_heads(columns: Iterable[Column]) -> str:
 
 
 def _write_widths(columns: tuple[Column, ...]) -> str:
-    """Return the columns' shares of the width, where they differ. A browser takes them as hints."""
+    """Return the columns' shares of the width, where they differ, as classes: a page's policy refuses style attributes.
+
+    A browser takes them as hints.
+    """
     total = math.fsum(column.weight for column in columns)
     if len({column.weight for column in columns}) == 1 or not total:
         return ""
-    cols = "".join([f'<col style="width:{column.weight / total * 100:.3g}%">' for column in columns])
+    cols = "".join([f'<col class="p{column.weight / total * 100:.0f}">' for column in columns])
     return f"<colgroup>{cols}</colgroup>\n"
