@@ -128,9 +128,11 @@ def _order_greedily(loop: Sequence[T], weights: Mapping[tuple[T, T], int]) -> li
         if sink is not None:
             remove(sink, back)
             continue
-        source = next((element for element in remaining if not taken[element]), None)
-        if source is None:
-            # `max` takes the first of equals, as in the given order.
-            source = max(remaining, key=lambda each: sum(given[each].values()) - sum(taken[each].values()))
-        remove(source, front)
+        # `max` takes the first of equals, as in the given order.
+        remove(max(remaining, key=lambda each: _rank_source(given[each], taken[each])), front)
     return front + back[::-1]
+
+
+def _rank_source(given: Mapping[T, int], taken: Mapping[T, int]) -> tuple[bool, int]:
+    """Return how well an element begins an order: one that nothing feeds before all others."""
+    return not taken, sum(given.values()) - sum(taken.values())

@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from archgen.views.matrix_shapes import Matrix
+
 Record = Mapping[str, Any]
 """The resolved model as plain data: dicts, lists, strings, numbers, booleans, None."""
 
@@ -237,6 +239,8 @@ class Page:
     """Where the thing is written."""
     dashboard: Dashboard | None = None
     """What stands above the page's section, at a glance; the pages that it links to say the same at length."""
+    matrix: Matrix | None = None
+    """A matrix above the page's section."""
     mark: Literal["open", "missed"] | None = None
     """What the navigation marks: something here is open, or a deadline is missed."""
 

@@ -16,6 +16,8 @@ from archgen.emit.site import page_pictures as drawing
 from archgen.emit.site.chapter_html import ChapterFiles, ChapterWriter
 from archgen.emit.site.html_blocks import PageWriter
 from archgen.emit.site.html_text import replace_forbidden
+from archgen.emit.site.matrix_files import build_matrix_files
+from archgen.emit.site.matrix_html import write_matrix
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
 from archgen.emit.site.page_policy import PAGE_POLICY
 from archgen.emit.site.search_files import build_search_files
@@ -58,6 +60,8 @@ def build_site(  # noqa: PLR0913 - what a site is made of
         path = links.files[page.path]
         writer = PageWriter(open_page(path, links), pictures, chapter_writer)
         variables = _page_variables(page, writer, navigation, notices)
+        if page.matrix:
+            files += build_matrix_files(page.matrix, writer.current_page)
         # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
         files.append(
             (
@@ -89,6 +93,7 @@ def _page_variables(
         "contents": [
             (replace_forbidden(section.title), current_page.id_for(section.anchor)) for section in page.section.sections
         ],
+        "matrix": write_matrix(page.matrix, current_page) if page.matrix else "",
         "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
         "content": writer.write_content(page.section),
     }

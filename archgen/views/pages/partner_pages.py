@@ -15,7 +15,9 @@ from archgen.views.agreement.partner_exchanges import PartnerExchange, gather_ex
 from archgen.views.agreement.term_changes import InterfaceRecord
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
+from archgen.views.matrix_shapes import Matrix
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter, make_node_table, make_page, make_page_slug
+from archgen.views.pages.matrix_pages import make_partner_matrix
 from archgen.views.shapes import (
     Block,
     Column,
@@ -84,7 +86,23 @@ def _overview_page(lookup: Lookup, exchanges: Sequence[PartnerExchange]) -> Page
     count = inline_text.count_noun(sum(len(exchange.interfaces) for exchange in exchanges), "interface")
     lead = f"{count} between {inline_text.count_noun(len(exchanges), 'pair')} of partners"
     section = Section(_OVERVIEW_CRUMB[1], _OVERVIEW_TITLE, (drop_empty_columns(table),))
-    return Page("partners.html", section.anchor, _OVERVIEW_TITLE, "partners", section, (HOME_CRUMB,), lead)
+    return Page(
+        "partners.html",
+        section.anchor,
+        _OVERVIEW_TITLE,
+        "partners",
+        section,
+        (HOME_CRUMB,),
+        lead,
+        matrix=_make_matrix(lookup, exchanges),
+    )
+
+
+def _make_matrix(lookup: Lookup, exchanges: Sequence[PartnerExchange]) -> Matrix:
+    directions = [(direction, exchange) for exchange in exchanges for direction in (exchange.pair, exchange.pair[::-1])]
+    counts = {(pair[0], pair[1]): len(exchange.list_given(pair[0])) for pair, exchange in directions}
+    references = {(pair[0], pair[1]): pair_reference(exchange.pair) for pair, exchange in directions}
+    return make_partner_matrix(lookup, counts, references)
 
 
 def _count_cells(givers: Iterable[str], exchange: PartnerExchange) -> Iterator[Inlines]:

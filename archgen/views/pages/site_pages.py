@@ -13,7 +13,15 @@ from archgen.views import inline_text
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, dashboard, page_marks, page_places, partner_pages, timing_chapter
+from archgen.views.pages import (
+    context_pages,
+    dashboard,
+    matrix_pages,
+    page_marks,
+    page_places,
+    partner_pages,
+    timing_chapter,
+)
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
@@ -30,6 +38,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         *page_maker.chapter_pages(),
         *page_maker.spanning_pages(),
         *page_maker.rule_pages(),
+        *matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation"),
     ]
     surrounding_pages = [
         *page_maker.message_pages().make_pages(),
