@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures, status_marks
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.html_text import escape_breakable, escape_html, web_address
+from archgen.emit.site.html_text import escape_breakable, escape_html, web_address, write_signs
 from archgen.emit.site.page_links import CurrentPage
 from archgen.views.shapes import (
     Block,
@@ -126,7 +126,8 @@ class PageWriter:
     def _write_run(self, run: Text) -> str:
         if run.meter:
             return status_marks.write_meter(run.meter)
-        html = status_marks.write_chip(run.status, run.text) if run.status else escape_breakable(run.text)
+        text = run.text if run.code else write_signs(run.text)
+        html = status_marks.write_chip(run.status, text) if run.status else escape_breakable(text)
         if run.code:
             html = f'<code class="place">{html}</code>' if run.is_place else f"<code>{html}</code>"
         if run.strong and not run.status:

@@ -8,7 +8,7 @@
   const MOST_ROWS = 150; // a table of so many squared is still drawn within a second
   const DENSE = 24; // from so many columns on cells are small
   const WAIT = 120; // ms that the pointer rests before a card is shown
-  const MOST_LISTED = 8;
+  const MOST_LISTED = 6;
   const box = document.querySelector(".matrix-box");
   const tools = document.querySelector(".matrix-tools");
   const summary = document.querySelector(".matrix-summary");

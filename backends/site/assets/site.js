@@ -132,6 +132,36 @@
   addEventListener("pageshow", obeyAddress);
   if (location.search) obeyAddress();
 
+  // On a telephone the rows of a table stand below one another: title and figure, and what else there is with its name.
+  const narrow = matchMedia("(max-width: 44.99rem)");
+
+  function standRows(table) {
+    const titles = [...table.tHead.rows[0].cells].map((head) => head.textContent.trim());
+    const figure = [...table.tHead.rows[0].cells].findIndex((head, at) => at > 0 && head.classList.contains("right"));
+    // As blocks they are no table any more to those who listen: these words keep it one.
+    table.setAttribute("role", "table");
+    for (const part of table.querySelectorAll("thead, tbody")) part.setAttribute("role", "rowgroup");
+    for (const row of table.rows) {
+      row.setAttribute("role", "row");
+      [...row.cells].forEach((cell, at) => {
+        cell.setAttribute("role", cell.tagName === "TH" ? "columnheader" : "cell");
+        if (cell.tagName === "TD" && at > 0) cell.dataset.label = titles[at];
+        if (cell.tagName === "TD" && at === figure) cell.classList.add("key-figure");
+      });
+    }
+  }
+
+  const tables = [...document.querySelectorAll(".table:not(.narrow) table")].filter((table) => !table.closest(".card"));
+  function arrangeRows() {
+    for (const table of tables) {
+      if (narrow.matches && !table.classList.contains("stood")) standRows(table);
+      if (narrow.matches) table.classList.add("stood");
+      table.classList.toggle("as-rows", narrow.matches);
+    }
+  }
+  narrow.addEventListener("change", arrangeRows);
+  arrangeRows();
+
   // A table that fits needs no box to scroll in: no stop for the Tab key, and its head stays in sight.
   const fitting = new ResizeObserver((entries) => {
     for (const { target } of entries) {
