@@ -187,11 +187,11 @@
 
   for (const place of document.querySelectorAll("code.place")) {
     if (place.closest("a")) continue;
-    const control = element("button", { type: "button", className: "copy", ariaLabel: "Copy " + place.textContent, title: "Copy" });
+    const control = element("button", { type: "button", className: "copy", textContent: "Copy", ariaLabel: "Copy " + place.textContent });
     control.addEventListener("click", () => {
       copy(place.textContent).then(() => {
-        control.textContent = " copied";
-        setTimeout(() => (control.textContent = ""), 1500);
+        control.textContent = "Copied";
+        setTimeout(() => (control.textContent = "Copy"), 1500);
       });
     });
     place.after(control);

@@ -108,3 +108,31 @@ def test_no_page_is_heavy_without_its_pictures(example: Path) -> None:
         if size >= MOST_BYTES:
             heavy[path.relative_to(example).as_posix()] = size
     assert heavy == {}
+
+
+def test_a_place_without_a_repository_can_be_copied(browser: Browser, example: Path) -> None:
+    context = browser.new_context()
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.goto(f"file://{example}/components/cognitive_reasoning.situation_assessment.html")
+    page.get_by_role("button", name="Copy groups/cognitive_reasoning.yaml:11").click()
+    page.get_by_text("Copied").wait_for()
+    assert page.evaluate("navigator.clipboard.readText()") == "groups/cognitive_reasoning.yaml:11"
+    context.close()
+
+
+def test_on_paper_there_is_neither_bar_nor_button(browser: Browser, example: Path) -> None:
+    page = browser.new_page()
+    for path in (
+        "matrix.html",
+        "components/cognitive_reasoning.situation_assessment.html",
+        "partners/certh/forth.html",
+    ):
+        page.goto(f"file://{example}/{path}")
+        page.emulate_media(media="print", color_scheme="dark")
+        assert not page.locator("#navigation").is_visible()
+        assert (
+            page.locator("main button:visible:not(.sort, .fold, .back-list button), .bar button:visible").count() == 0
+        ), path
+        assert page.evaluate("getComputedStyle(document.body).color") == "rgb(27, 33, 39)"
+    page.close()

@@ -85,6 +85,6 @@ def test_rows_can_still_be_sorted_and_filtered(page: BrowserPage, example: Path)
 
 def test_a_wider_window_has_tables_again(page: BrowserPage, example: Path) -> None:
     page.goto(f"file://{example}/messages.html")
-    assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "grid"
+    assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "flex"
     page.set_viewport_size({"width": 1200, "height": 800})
     assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "table-row"
