@@ -82,6 +82,7 @@ def link_project(  # noqa: PLR0913 - all by name
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),
         review=section_declaration.declare_review(root),
+        repository=section_declaration.declare_repository(root),
         interfaces=interfaces,
         partial=is_partial,
         unread_keys=lost_keys,

@@ -15,6 +15,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.quantity import Quantity
 from archgen.model.review_settings import ReviewSettings
+from archgen.model.source_repository import SourceRepository
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -138,6 +139,8 @@ class Architecture:
     """
 
     project: ProjectInfo
+    repository: SourceRepository | None = None
+    """Where its files are on the web; None where the project does not say."""
     distro: str | None = None
     distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()

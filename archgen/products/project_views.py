@@ -13,6 +13,7 @@ from archgen.model import selector_evaluation
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.model.selector_parser import SelectorProblem
+from archgen.model.source_repository import SourceRepository
 from archgen.pipeline import ALL_RULES, CheckedProject
 from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
@@ -76,7 +77,9 @@ def make_views(
     Without `draws_components` there is no drawing of a single component.
     """
     lookup = replace(
-        make_scoped_lookup(checked_project, options), timing=analyse_with_chains(checked_project.architecture)
+        make_scoped_lookup(checked_project, options),
+        timing=analyse_with_chains(checked_project.architecture),
+        repository=_locate_repository(checked_project),
     )
     project_history = read_history(checked_project, options)
     all_drawings = drawing_set.make_drawings(
@@ -95,6 +98,17 @@ def make_views(
         has_errors=checked_project.has_errors,
     )
     return ProjectViews(lookup, edition, all_drawings)
+
+
+def _locate_repository(checked_project: CheckedProject) -> SourceRepository | None:
+    """Return where the project's files are on the web, with the folder that git tells where none is written."""
+    repository = checked_project.architecture.repository
+    if repository is None or repository.folder is not None:
+        return repository
+    try:
+        return replace(repository, folder=git.find_repository(checked_project.root).prefix)
+    except git.GitError:
+        return repository
 
 
 def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:

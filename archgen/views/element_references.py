@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
+from archgen.model.message_types import full_message_name
 from archgen.views import inline_text
+from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
 
 def find_reference(architecture: Architecture, name: str) -> str | None:
-    """Return the anchor of the element with this id; of a port that of its component. None where there is none."""
+    """Return the anchor of the element with this id; of a port that of its component. None for a name of nothing."""
     for kind, elements in (
         ("component", architecture.components),
         ("node", architecture.nodes),
@@ -27,7 +30,15 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         if name in elements:
             return f"{kind}:{name}"
     port = architecture.inputs.get(name) or architecture.outputs.get(name)
-    return f"component:{port.component}" if port else None
+    if port:
+        return f"component:{port.component}"
+    # A short name is none: `my_group/Part` may be anything.
+    return f"message:{name}" if full_message_name(name) == name else None
+
+
+def message_link(message: str) -> Text:
+    """Link to a message, service or action, by its full name."""
+    return Text(message, ref=f"message:{message}", code=True)
 
 
 def find_owners(architecture: Architecture, element_id: str | None) -> tuple[str, ...]:
@@ -67,6 +78,14 @@ def _link_run(architecture: Architecture, finding: Diagnostic, run: Text) -> Tex
     return Text(run.text, ref=reference, code=True, muted=run.muted) if reference else run
 
 
-def place_cell(finding: Diagnostic) -> Inlines:
+def place_cell(lookup: Lookup, finding: Diagnostic) -> Inlines:
     """Return file and line of a finding; empty where it has no place."""
-    return (Text(f"{finding.span.file}:{finding.span.line}", code=True),) if finding.span.file else ()
+    return (place,) if (place := place_run(lookup, finding.span)) else ()
+
+
+def place_run(lookup: Lookup, span: Span) -> Text | None:
+    """Return file and line of a span, with the address in the repository where one is configured; None for no place."""
+    if not span.file:
+        return None
+    address = lookup.repository.file_address(span.file, span.line) if lookup.repository else None
+    return Text(f"{span.file}:{span.line}", url=address, code=True, is_place=True)

@@ -12,6 +12,7 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
+from archgen.model.source_repository import SourceRepository
 from archgen.timing.system import message_sizes
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -64,6 +65,8 @@ class Lookup:
     # A closure over the interfaces: it has no useful equality or repr, so both leave it out.
     message_size: message_sizes.SizeQuery = field(kw_only=True, compare=False, repr=False)
     """Size of a message on the wire, by message and type."""
+    repository: SourceRepository | None = None
+    """Where the project's files are on the web, with the project's folder in it."""
     timing: TimingLookup | None = None
     """Results of the timing analysis; None for the many views that need no timing."""
 

@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from archgen.views.matrix_shapes import Matrix
+
 Record = Mapping[str, Any]
 """The resolved model as plain data: dicts, lists, strings, numbers, booleans, None."""
 
@@ -56,6 +58,8 @@ class Text:
     """
     status: Status | None = None
     """The state that this run tells. Emitters may show it as a coloured chip; its words say the same."""
+    is_place: bool = False
+    """Whether this is a place in the project's files, `FILE:LINE`. One without an address may be offered to be copied."""
     meter: Meter | None = None
     """A bar that repeats a figure of the same row; emitters may leave it out."""
 
@@ -231,8 +235,12 @@ class Page:
     """One line below the title: what kind of thing this is, its status, its owner."""
     verdict: Inlines = ()
     """The state of the thing, beside the title."""
+    place: Text | None = None
+    """Where the thing is written."""
     dashboard: Dashboard | None = None
     """What stands above the page's section, at a glance; the pages that it links to say the same at length."""
+    matrix: Matrix | None = None
+    """A matrix above the page's section."""
     mark: Literal["open", "missed"] | None = None
     """What the navigation marks: something here is open, or a deadline is missed."""
 

@@ -89,6 +89,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project layout": "a section of its own",
     "project chapters": "below `report`",
     "project review": "a section of its own",
+    "project site": "a section of its own",
     "project rules": "a section of its own",
 }
 MODEL_ONLY = {
@@ -120,7 +121,7 @@ TABLE_ONLY_FOR_MODEL = {
     "component mapped": "follows from the nodes",
     **{
         f"project {key}": "a field of the architecture or of the version"
-        for key in ("distro", "shared_topics", "layout", "chapters", "review", "rules")
+        for key in ("distro", "shared_topics", "layout", "chapters", "review", "rules", "site")
     },
 }
 RECORD_ONLY = {
@@ -140,7 +141,7 @@ NOT_IN_RECORD = {
     **dict.fromkeys(("group layout", "component layout", "project layout"), "only for pictures"),
     "component mapped": "follows from the nodes",
     "link latency": "the keys `best` and `worst`",
-    **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules")},
+    **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules", "site")},
 }
 KINDS_NOT_IN_RECORD = {
     "chapter": "a text, not a part of the system",

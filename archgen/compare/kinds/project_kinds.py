@@ -30,6 +30,18 @@ def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, ob
     }
 
 
+def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    repository = context.architecture.repository
+    if repository is None:
+        return {}
+    return {
+        "repository": repository.address,
+        "branch": repository.branch,
+        "folder": repository.folder,
+        "forge": repository.forge,
+    }
+
+
 def _group_accepted(review: ReviewSettings) -> Mapping[str, list[str]]:
     """Return what is accepted of each element; several partners may accept the same change."""
     texts_by_element: dict[str, list[str]] = {}
@@ -57,6 +69,7 @@ PROJECT = KindSpec(
         KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),
         KeySpec("chapters", lambda _, context: context.version.chapter_order),
         KeySpec("review.", _read_review),
+        KeySpec("site.", _read_site, Effect.TEXT),
         KeySpec("rules.", lambda _, context: context.version.rule_settings),
     ),
     Effect.SYSTEM,

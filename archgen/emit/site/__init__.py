@@ -23,7 +23,10 @@ from archgen.emit.site.explorer_files import (
 )
 from archgen.emit.site.html_blocks import PageWriter
 from archgen.emit.site.html_text import replace_forbidden
+from archgen.emit.site.matrix_files import build_matrix_files
+from archgen.emit.site.matrix_html import write_matrix
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
+from archgen.emit.site.page_policy import PAGE_POLICY
 from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
 from archgen.views.explorer.map_shapes import ExplorerMap
@@ -72,6 +75,8 @@ def build_site(  # noqa: PLR0913 - what a site is made of
         variables = _page_variables(page, writer, navigation, notices)
         if map_files:
             variables |= _explorer_variables(page, writer, map_files)
+        if page.matrix:
+            files += build_matrix_files(page.matrix, writer.current_page)
         # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
         files.append(
             (
@@ -90,8 +95,10 @@ def _page_variables(
     """Return the variables of a page's template."""
     current_page = writer.current_page
     return {
+        "policy": PAGE_POLICY,
         "heading": replace_forbidden(page.title),
         "lead": replace_forbidden(page.lead),
+        "place": writer.write_inlines((page.place,)) if page.place else "",
         "verdict": writer.write_inlines(page.verdict),
         "root": current_page.root,
         "start": current_page.root + navigation.start,
@@ -101,6 +108,7 @@ def _page_variables(
         "contents": [
             (replace_forbidden(section.title), current_page.id_for(section.anchor)) for section in page.section.sections
         ],
+        "matrix": write_matrix(page.matrix, current_page) if page.matrix else "",
         "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
         "content": writer.write_content(page.section),
         "explorer_style": "",

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 ChapterFiles = Callable[[str], bytes | None]
 """Returns a file of the project by its path (`/`, relative to the project), or None if there is none."""
 
+_CELL_CLASSES = {"text-align:right": ' class="right"', "text-align:center": ' class="centre"'}
 _PICTURE_SIGNATURES = (
     (b"\x89PNG\r\n\x1a\n", ".png"),
     (b"\xff\xd8\xff", ".jpg"),
@@ -131,6 +132,8 @@ def _chapter_parser() -> MarkdownIt:
         ("text", _render_text),
         ("table_open", _render_table_open),
         ("table_close", _render_table_close),
+        ("th_open", _render_cell_open),
+        ("td_open", _render_cell_open),
     ):
         parser.add_render_rule(name, rule)
     return parser
@@ -168,6 +171,13 @@ def _render_text(_: object, tokens: Sequence[Token], index: int, *__: object) ->
 
 def _render_table_open(*_: object) -> str:
     return '<div class="scroll" role="group" tabindex="0" aria-label="Table"><table>\n'
+
+
+def _render_cell_open(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    """Render the begin of a cell, its alignment as a class: a page's policy refuses style attributes."""
+    token = tokens[index]
+    alignment = _CELL_CLASSES.get(str(token.attrs.get("style", "")), "")
+    return f"<{token.tag}{alignment}>"
 
 
 def _render_table_close(*_: object) -> str:

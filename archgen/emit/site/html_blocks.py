@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures, status_marks
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.html_text import escape_breakable, escape_html, web_address
+from archgen.emit.site.html_text import escape_breakable, escape_html, web_address, write_signs
 from archgen.emit.site.page_links import CurrentPage
 from archgen.views.shapes import (
     Block,
@@ -79,7 +79,13 @@ class PageWriter:
         )
 
     def _write_inside(self, section: Section, level: int) -> str:
-        parts = [self._write_block(block, level) for block in section.blocks]
+        parts = [
+            # A caption that says what the heading right above it says is for those who go from table to table.
+            self._write_table(block, hides_caption=block.caption == section.title and level > 1)
+            if isinstance(block, Table)
+            else self._write_block(block, level)
+            for block in section.blocks
+        ]
         parts += [self._write_section(inner, level + 1) for inner in section.sections]
         return "\n".join(parts)
 
@@ -120,9 +126,10 @@ class PageWriter:
     def _write_run(self, run: Text) -> str:
         if run.meter:
             return status_marks.write_meter(run.meter)
-        html = status_marks.write_chip(run.status, run.text) if run.status else escape_breakable(run.text)
+        text = run.text if run.code else write_signs(run.text)
+        html = status_marks.write_chip(run.status, text) if run.status else escape_breakable(text)
         if run.code:
-            html = f"<code>{html}</code>"
+            html = f'<code class="place">{html}</code>' if run.is_place else f"<code>{html}</code>"
         if run.strong and not run.status:
             html = f"<strong>{html}</strong>"
         if run.emphasis:
@@ -137,7 +144,7 @@ class PageWriter:
             html = f'<span class="muted">{html}</span>'
         return "<br>" + html if run.line_break else html
 
-    def _write_table(self, table: Table) -> str:
+    def _write_table(self, table: Table, *, hides_caption: bool = False) -> str:
         caption = escape_html(table.caption)
         # A table without anchors has an empty tuple, and `zip` is strict.
         anchors = table.row_anchors or (None,) * len(table.rows)
@@ -145,7 +152,8 @@ class PageWriter:
         return (
             f'<div class="table{" narrow" if len(table.columns) < _MIN_WIDE_COLUMNS else ""}"{self._id_attribute(table.anchor)}>\n'
             f'<div class="scroll" role="group" tabindex="0" aria-label="{caption}">\n<table>\n'
-            f"<caption>{caption}</caption>\n{_write_widths(table.columns)}"
+            f"<caption{' class=spoken' if hides_caption else ''}>{caption}</caption>\n"
+            f"{_write_widths(table.columns)}"
             f"<thead><tr>{_write_heads(table.columns)}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"
         )
 
@@ -227,9 +235,12 @@ def _write_heads(columns: Iterable[Column]) -> str:
 
 
 def _write_widths(columns: tuple[Column, ...]) -> str:
-    """Return the columns' shares of the width, where they differ. A browser takes them as hints."""
+    """Return the columns' shares of the width, where they differ, as classes: a page's policy refuses style attributes.
+
+    A browser takes them as hints.
+    """
     total = math.fsum(column.weight for column in columns)
     if len({column.weight for column in columns}) == 1 or not total:
         return ""
-    cols = "".join([f'<col style="width:{column.weight / total * 100:.3g}%">' for column in columns])
+    cols = "".join([f'<col class="p{column.weight / total * 100:.0f}">' for column in columns])
     return f"<colgroup>{cols}</colgroup>\n"

@@ -12,6 +12,8 @@ _UNBROKEN_LENGTH = 17
 _FORBIDDEN_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
 _LONG_WORD = re.compile(r"[^\s<>&;]{18,}")
 _BREAK_POSITION = re.compile(r"(?<=[a-z0-9])([._/:-])(?=[A-Za-z0-9~])")
+_COMPARISON = re.compile(r"([<>])= (?=[0-9])")
+_MICROSECONDS = re.compile(r"([0-9][ \u00a0])us\b")
 _WEB_ADDRESS = re.compile(r"(?:https?://[^\s/]|mailto:[^\s:]+@)", re.IGNORECASE)
 
 
@@ -36,6 +38,14 @@ def escape_breakable(text: str) -> str:
         if len(escaped_text) > _UNBROKEN_LENGTH
         else escaped_text
     )
+
+
+def write_signs(text: str) -> str:
+    """Write signs before and units behind figures as people do: `<= 15 Hz` as `≤ 15 Hz`, `60 us` as `60 µs`."""
+    # Most texts have none of these: the pattern costs more than looking for them.
+    if "=" in text:
+        text = _COMPARISON.sub(lambda sign: "≤ " if sign[1] == "<" else "≥ ", text)
+    return _MICROSECONDS.sub("\\1µs", text) if "us" in text else text
 
 
 def web_address(url: str | None) -> str | None:

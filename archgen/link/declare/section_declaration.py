@@ -9,6 +9,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
+from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode
 
 _WAYPOINT_KINDS = ("node", "component", "output")
@@ -117,6 +118,21 @@ def declare_views(root: MappingNode) -> dict[str, View]:
             show_at=mapping_values.get_span(body, "show"),
         )
     return views_by_id
+
+
+def declare_repository(root: MappingNode) -> SourceRepository | None:
+    """Declare where the files are on the web; None where the project does not say."""
+    body = mapping_values.get_mapping(root, "site")
+    address = mapping_values.get_text(body, "repository")
+    if address is None:
+        return None
+    main_line = mapping_values.get_text(mapping_values.get_mapping(root, "review"), "main")
+    return SourceRepository(
+        address,
+        mapping_values.get_text(body, "branch") or main_line or DEFAULT_BRANCH,
+        mapping_values.get_text(body, "folder"),
+        mapping_values.get_text(body, "forge"),  # type: ignore[arg-type]
+    )
 
 
 def declare_review(root: MappingNode) -> ReviewSettings:

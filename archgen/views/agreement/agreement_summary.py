@@ -10,6 +10,7 @@ from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
+from archgen.views.element_references import message_link
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 
 
@@ -81,7 +82,7 @@ def _carried_runs(interface: PartnerInterface) -> Inlines:
     carried_parts = (
         [inline_text.to_inlines(interface.type)] if interface.type and interface.type != interface.message else []
     )
-    carried_parts += [inline_text.to_inlines(Text(interface.message, code=True))] if interface.message else []
+    carried_parts += [inline_text.to_inlines(message_link(interface.message))] if interface.message else []
     return inline_text.join_lines(carried_parts) or inline_text.to_inlines(interface.flow)
 
 

@@ -11,10 +11,11 @@ from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
+from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
-from archgen.views.timing import value_format
+from archgen.views.timing import timing_tables
 
 _MAX_VALUE_LENGTH = 400
 """Maximal number of characters of a value in a table of changes."""
@@ -115,11 +116,11 @@ class SectionWriter:
         return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows, numbered=False))
 
     def _end_row(self, end: InterfaceEnd, undecided: Inlines) -> tuple[Inlines, ...]:
-        component = inline_text.to_inlines(end.component.title) if end.component else ()
+        component = (inline_text.component_link(end.component),) if end.component else ()
         port = inline_text.to_inlines(" · ", Text(end.port, code=True)) if end.port else ()
         return (
             inline_text.to_inlines(Text(end.role, strong=not end.is_taker)),
-            inline_text.to_inlines(partner_titles(self.lookup, end.owners))
+            inline_text.owner_links(self.lookup.architecture, end.owners)
             if end.owners
             else inline_text.to_inlines(Text("nobody", muted=True)),
             (*component, *port),
@@ -133,7 +134,7 @@ class SectionWriter:
         details = " · ".join(part for part in (node.status or "", f"on {host.title}" if host else "") if part)
         return inline_text.join_lines(
             [
-                inline_text.to_inlines(Text(name, code=True)),
+                (inline_text.node_link(node),),
                 *([inline_text.to_inlines(Text(details, muted=True))] if details else []),
             ]
         )
@@ -145,7 +146,7 @@ class SectionWriter:
         if message in self.anchors_by_message:
             first_link = Text("the first interface that carries it", ref=self.anchors_by_message[message])
             yield Paragraph(
-                inline_text.to_inlines("The fields of ", Text(message, code=True), " stand at ", first_link, ".")
+                inline_text.to_inlines("The fields of ", message_link(message), " stand at ", first_link, ".")
             )
             return
         # The writer is stateful: sections must be written in the order of the document.
@@ -154,14 +155,14 @@ class SectionWriter:
             yield message_fields.field_table(message, interface_terms.field_rows)
         elif interface_terms.field_rows is not None:
             # That a definition is missing is one of the open points.
-            yield Paragraph(inline_text.to_inlines(Text(message, code=True), " has no fields."))
+            yield Paragraph(inline_text.to_inlines(message_link(message), " has no fields."))
 
     def _chain_tables(self, interface_terms: InterfaceTerms) -> Iterator[Block]:
         rows = tuple(
             (
-                inline_text.to_inlines(self.lookup.architecture.chains[chain.id].title),
-                inline_text.to_inlines(value_format.display_duration(chain.deadline)) if chain.deadline else (),
-                inline_text.to_inlines(value_format.display_duration(chain.bound)),
+                inline_text.to_inlines(Text(self.lookup.architecture.chains[chain.id].title, ref=f"chain:{chain.id}")),
+                timing_tables.duration_cell(chain.deadline) if chain.deadline else (),
+                timing_tables.duration_cell(chain.bound),
                 inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),
             )
             for chain in interface_terms.chains

@@ -6,7 +6,7 @@ No term names a line of a file: text that moves changes nothing between the part
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.model.component import Component
 from archgen.model.interface_ends import foreign_owners
@@ -20,6 +20,7 @@ from archgen.views.agreement import interface_timing, interface_versions, messag
 from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
+from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
@@ -74,13 +75,18 @@ class InterfaceTerms:
     @property
     def open_terms(self) -> tuple[str, ...]:
         """Return the names of the terms that are still to be settled."""
-        names = (name if name.startswith("QoS") else name.lower() for name in self._list_open_names())
+        names = (name if name.startswith("QoS") else name.lower() for name in self.open_names)
         return tuple("definition of the message" if name == "fields" else name for name in names)
 
     @property
     def open_points(self) -> tuple[str, ...]:
         """Return a sentence for each term that is still to be settled, and for each contradiction."""
-        return (*map(describe_open_term, self._list_open_names()), *self.contradictions, *self.late_chains)
+        return (*map(describe_open_term, self.open_names), *self.contradictions, *self.late_chains)
+
+    @property
+    def open_names(self) -> tuple[str, ...]:
+        """Return the terms that are still to be settled, as facts and rows name them."""
+        return tuple(self._list_open_names())
 
     def _list_open_names(self) -> Iterator[str]:
         for name, value in self.facts:
@@ -133,12 +139,12 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interfa
     else:
         yield (
             flow_name,
-            inline_text.join_inlines((Text(name, code=True),) for name in interface.topic_names)
+            inline_text.join_inlines((inline_text.topic_link(name),) for name in interface.topic_names)
             or inline_text.UNKNOWN_INLINES,
         )
     # Where no type has a name, the message alone says what flows.
     if interface.type or not interface.message:
-        yield "Type", inline_text.value_or_unknown(interface.type)
+        yield "Type", inline_text.type_link(interface.type)
     if interface.output and interface.output.description:
         yield "Meaning", inline_text.to_inlines(interface.output.description)
     if interface.flow != "physical":
@@ -153,7 +159,7 @@ def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:
         return inline_text.UNKNOWN_INLINES
     message_type = lookup.architecture.types.get(interface.type or "")
     planned_note = [" (planned)"] if message_type and message_type.status == "planned" else []
-    return inline_text.to_inlines(Text(interface.message, code=True), *planned_note)
+    return inline_text.to_inlines(message_link(interface.message), *planned_note)
 
 
 def _list_promises(
@@ -190,8 +196,10 @@ def describe_qos(endpoint: Endpoint) -> str:
 
 def _other_reader(lookup: Lookup, component_id: str) -> Inlines:
     component_model = lookup.architecture.components[component_id]
-    owners = partner_titles(lookup, component_model.owners)
-    return inline_text.to_inlines(component_model.title, Text(f" ({owners})" if owners else ""))
+    owners = inline_text.join_inlines(
+        inline_text.partner_link(lookup.architecture, owner) for owner in component_model.owners
+    )
+    return (inline_text.component_link(component_model), *((Text(" ("), *owners, Text(")")) if owners else ()))
 
 
 def partner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
@@ -269,14 +277,26 @@ def _components_of(lookup: Lookup, interface: PartnerInterface) -> Iterable[Comp
 
 def _requirement_runs(lookup: Lookup, interface: PartnerInterface) -> Iterator[Inlines]:
     """Yield the requirements that the components at the ends serve, each once, with the components."""
-    titles_by_requirement: dict[str, dict[str, None]] = {}
+    components_by_requirement: dict[str, dict[str, Component]] = {}
     for component in _components_of(lookup, interface):
         for use in component.requirements:
-            titles_by_requirement.setdefault(use.text, {})[component.title] = None
-    for text, titles in titles_by_requirement.items():
+            components_by_requirement.setdefault(use.text, {})[component.title] = component
+    for text, components in components_by_requirement.items():
         declared = lookup.architecture.requirements.get(text)
-        requirement_runs = [Text(text, strong=True), Text(f" {declared.title}")] if declared else [Text(text)]
-        yield (*requirement_runs, Text(f" ({', '.join(titles)})", muted=True))
+        requirement_runs = (
+            [Text(text, ref=f"requirement:{text}", strong=True), Text(f" {declared.title}")]
+            if declared
+            else [Text(text)]
+        )
+        links = (replace(inline_text.component_link(component), muted=True) for component in components.values())
+        names = inline_text.join_inlines(((link,) for link in links), ", ")
+        # All of it is muted: that tells the titles, which may change, from the requirement.
+        yield (
+            *requirement_runs,
+            Text(" (", muted=True),
+            *(replace(run, muted=True) for run in names),
+            Text(")", muted=True),
+        )
 
 
 def _shared_sentences(lookup: Lookup, interface: PartnerInterface) -> Iterator[str]:

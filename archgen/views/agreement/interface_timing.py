@@ -19,8 +19,8 @@ from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, promise_limit
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines
-from archgen.views.timing import rate_phrases, value_format
+from archgen.views.shapes import Inlines, Text
+from archgen.views.timing import rate_phrases, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 TermFact = tuple[str, Inlines]
@@ -117,28 +117,28 @@ class _GivenPace:
         if pace.rate.value is not None and not pace.inferred:
             # "At each activation" is a promise of its own: an output that becomes conditional promises less.
             strength: PromiseStrength = {"rate": pace.rate.value, "each activation": int(not output_timing.conditional)}
-            return PromiseRow(name, inline_text.to_inlines(words), self._rate_by_inputs(pace), strength)
+            return PromiseRow(name, _figure(words, pace.rate.value), self._rate_by_inputs(pace), strength)
         if pace.behaviour in {"once", "on_demand"}:
             is_written = self.timing.behaviour is not None
-            runs = inline_text.to_inlines(words)
+            runs = _figure(words, pace.rate.value)
             return PromiseRow(name, runs) if is_written else PromiseRow(name, expected=runs)
         return PromiseRow(name, expected=self._expected_rate(pace, words))
 
     def _expected_rate(self, pace: EventPace, words: str) -> Inlines:
         if pace.rate.value is None:
             return ()
-        origins = value_format.describe_origins(self.timed.rate_origins.get(self.activity, ()))
-        source = f"{SOURCE_PHRASE}the rate of {origins.removeprefix('from ')}" if origins else ", computed"
-        return inline_text.to_inlines(f"{words}{source}")
+        origins = timing_tables.link_origins(self.timed, self.timed.rate_origins.get(self.activity, ()))
+        source = f"{SOURCE_PHRASE}the rate of " if origins else ", computed"
+        # Names of programs as plain text: in a contract they are words like others.
+        return (*_figure(f"{words}{source}", pace.rate.value), *(replace(run, code=False) for run in origins))
 
     def _rate_by_inputs(self, pace: EventPace) -> Inlines:
         """Return what the inputs give, where that is another rate than the written one."""
         by_inputs = self.timed.analysis.derived.get(self.activity)
         if by_inputs is None or by_inputs.rate.value in {None, pace.rate.value}:
             return ()
-        return inline_text.to_inlines(
-            f"{_spell_signs(value_format.display_rate(by_inputs.rate))}{SOURCE_PHRASE}its inputs"
-        )
+        words = f"{_spell_signs(value_format.display_rate(by_inputs.rate))}{SOURCE_PHRASE}its inputs"
+        return _figure(words, by_inputs.rate.value)
 
     def _gap_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
         # What is not conditional is sent at each activation: `max_gap` has no effect there.
@@ -163,7 +163,7 @@ class _GivenPace:
         # "Answers within at least 20 ms" would read as a limit.
         figure = value_format.display_duration(response.worst)
         words = f"{figure.removeprefix('>= ')} or more" if figure.startswith(">= ") else figure
-        return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}{source}"))
+        return PromiseRow(name, expected=_figure(f"{words}{SOURCE_PHRASE}{source}", response.worst.value))
 
 
 def _spell_rate(pace: EventPace) -> str:
@@ -191,20 +191,24 @@ def _size_row(name: str, size: MessageSize) -> PromiseRow:
     amount = value_format.display_bytes(TimingValue(Fraction(size.bytes)))
     words = amount if size.exact else f"at most {amount}"
     if size.written:
-        return PromiseRow(name, inline_text.to_inlines(words), strength={"size": -size.bytes})
-    return PromiseRow(name, expected=inline_text.to_inlines(f"{words}{SOURCE_PHRASE}the definition of the message"))
+        return PromiseRow(name, _figure(words, size.bytes), strength={"size": -size.bytes})
+    return PromiseRow(name, expected=_figure(f"{words}{SOURCE_PHRASE}the definition of the message", size.bytes))
 
 
 def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
-    loads = ((name, timed.analysis.topics.get(name)) for name in interface.topic_names)
+    loads = [(name, timed.analysis.topics.get(name)) for name in interface.topic_names]
     traffic_phrases = [
         f"{_spell_signs(value_format.display_traffic(load.published))}{f' on {name}' if len(interface.topic_names) > 1 else ''}"
         for name, load in loads
         if load and load.published.value is not None
     ]
-    return (
-        inline_text.to_inlines(f"{', '.join(traffic_phrases)}{SOURCE_PHRASE}rate and size") if traffic_phrases else ()
-    )
+    total = sum(load.published.value or 0 for _, load in loads if load)
+    return _figure(f"{', '.join(traffic_phrases)}{SOURCE_PHRASE}rate and size", total) if traffic_phrases else ()
+
+
+def _figure(words: str, number: Fraction | int | None) -> Inlines:
+    """Return a figure in words, sorted by its number in the base unit."""
+    return (Text(words, sort_number=None if number is None else str(number)),)
 
 
 def find_chains_through(

@@ -105,4 +105,10 @@ def field_table(message: str, field_rows: tuple[FieldRow, ...]) -> Table:
 def _type_cell(row: FieldRow) -> Inlines:
     type_text = f"{row.type} = {row.value}" if row.value else row.type
     remark = [Text(f" {row.remark}", muted=True)] if row.remark else []
-    return inline_text.to_inlines(Text(type_text, code=True), *remark)
+    return (field_type_run(row.type, type_text), *remark)
+
+
+def field_type_run(field_type: str, text: str) -> Text:
+    """Return the type of a field, written as `text`: a link where it is a message, or several (`pkg/msg/Name[]`)."""
+    message = field_type.partition("[")[0]
+    return Text(text, ref=f"message:{message}" if "/" in message else None, code=True)

@@ -38,7 +38,8 @@ class PromiseRow:
 def promise_limit(name: str, limit: Quantity, aspect: str, words: str = "{}") -> PromiseRow:
     """Return the promise to stay below a limit; `words` has a place for it."""
     strength = {aspect: -limit.value}
-    return PromiseRow(name, inline_text.to_inlines(words.format(limit)), (), strength, str(limit.value))
+    promised = (Text(words.format(limit), sort_number=str(limit.value)),)
+    return PromiseRow(name, promised, (), strength, str(limit.value))
 
 
 def is_weaker(old_strength: PromiseStrength, new_strength: PromiseStrength) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.node import Endpoint, Node
-from archgen.views import inline_text
+from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
 from archgen.views.timing import element_timing
@@ -45,7 +45,7 @@ def make_node_blocks(lookup: Lookup, node: Node) -> tuple[Block, ...]:
     else:
         blocks.append(Paragraph(inline_text.to_inlines(Text("It uses no topic, service or action.", muted=True))))
     if node.parameters:
-        blocks.append(_parameter_table(node))
+        blocks.append(_parameter_table(lookup, node))
     return tuple(blocks)
 
 
@@ -113,7 +113,7 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
         (
             inline_text.to_inlines(_USE_LABELS[endpoint.use]),
             inline_text.to_inlines(inline_text.topic_link(endpoint.name), *_internal_mark(endpoint)),
-            inline_text.to_inlines(Text(endpoint.message, code=True))
+            inline_text.to_inlines(element_references.message_link(endpoint.message))
             if endpoint.message
             else inline_text.UNKNOWN_INLINES,
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
@@ -129,13 +129,18 @@ def _internal_mark(endpoint: Endpoint) -> Inlines:
     return (Text(" internal", muted=True),) if endpoint.internal else ()
 
 
-def _parameter_table(node: Node) -> Table:
+def _parameter_table(lookup: Lookup, node: Node) -> Table:
     rows = tuple(
-        (inline_text.to_inlines(Text(name, code=True)), inline_text.to_inlines(Text(value, code=True)))
+        (inline_text.to_inlines(Text(name, code=True)), inline_text.to_inlines(_parameter_run(lookup, value)))
         for name, value in _flatten_parameters(node)
     )
     columns = (Column("Parameter"), Column("Value"))
     return Table(f"table:parameters/{node.id}", f"{node.id}: parameters", columns, rows)
+
+
+def _parameter_run(lookup: Lookup, value: str) -> Text:
+    """Return a parameter's value, as a link where it is the name of a topic, service or action."""
+    return inline_text.topic_link(value) if value in lookup.architecture.topics else Text(value, code=True)
 
 
 def _flatten_parameters(node: Node) -> list[tuple[str, str]]:

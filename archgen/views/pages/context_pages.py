@@ -1,16 +1,17 @@
-"""The site's pages around components and nodes: topics, types, requirements, use cases, hosts, partners."""
+"""The site's pages around components and nodes: topics, types, requirements, use cases, hosts."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
 
-from archgen.model.architecture import Partner, Requirement
+from archgen.model.architecture import Requirement
 from archgen.model.component import Component
 from archgen.model.deployment import Host
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.views import inline_text
+from archgen.views.element_references import message_link
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import chain_link
@@ -39,7 +40,7 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
-    """Make a page for each type, requirement, use case, host, container and partner."""
+    """Make a page for each type, requirement, use case, host and container."""
     for conceptual_type in sorted(architecture_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
         yield _type_page(lookup, conceptual_type)
     for requirement in architecture_tables.shown_requirements(lookup):
@@ -50,11 +51,9 @@ def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Pag
         yield _host_page(lookup, host, keep_drawn)
     for name in lookup.architecture.containers:
         yield _container_page(lookup, name)
-    for partner in lookup.architecture.partners.values():
-        yield _partner_page(lookup, partner, keep_drawn)
 
 
-def _make_page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
+def make_page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
     """Make a page below a folder; its name is the anchor without the kind before the colon."""
     crumbs = (HOME_CRUMB, crumb) if crumb else (HOME_CRUMB,)
     path = f"{folder}/{make_page_slug(section.anchor.partition(':')[2])}.html"
@@ -69,11 +68,12 @@ def make_page_slug(name: str) -> str:
 
 def make_topic_pages(lookup: Lookup) -> Iterator[Page]:
     """Make a page for each topic, service and action that a shown node uses."""
-    for topic in _shown_topics(lookup):
+    for topic in shown_topics(lookup):
         yield _topic_page(lookup, topic)
 
 
-def _shown_topics(lookup: Lookup) -> list[Topic]:
+def shown_topics(lookup: Lookup) -> list[Topic]:
+    """Return the topics, services and actions that a shown node uses."""
     # Each kind by name: nobody finds `/scan/front` by eye in the order of the files.
     return [
         topic
@@ -85,7 +85,7 @@ def _shown_topics(lookup: Lookup) -> list[Topic]:
 def make_topic_tables(lookup: Lookup) -> Iterator[Table]:
     """List topics, services and actions, each kind in a table of its own."""
     for flow, title in (("topic", "Topics"), ("service", "Services"), ("action", "Actions")):
-        flow_topics = [topic for topic in _shown_topics(lookup) if topic.flow == flow]
+        flow_topics = [topic for topic in shown_topics(lookup) if topic.flow == flow]
         table = architecture_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
         if table:
             yield table
@@ -95,7 +95,7 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
     facts: list[tuple[str, Inlines]] = [
         (
             "Message",
-            inline_text.join_inlines((Text(message, code=True),) for message in topic.messages)
+            inline_text.join_inlines((message_link(message),) for message in topic.messages)
             or inline_text.UNKNOWN_INLINES,
         ),
         ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in topic.types)),
@@ -108,7 +108,7 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
         lookup, topic, topic.readers, reader
     )
     crumb = ("Topics, services and actions", "page:topics")
-    return _make_page(
+    return make_page(
         Section(f"topic:{topic.name}", topic.name, tuple(blocks)), f"{topic.flow}s", crumb, _FLOW_TITLES[topic.flow]
     )
 
@@ -213,7 +213,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
             Bullets(tuple(inline_text.port_link(architecture, architecture.inputs[name]) for name in reading_inputs)),
         ]
     section = Section(f"type:{conceptual_type.name}", conceptual_type.name, tuple(blocks))
-    return _make_page(section, "types", ("Types", "page:types"), "Conceptual type")
+    return make_page(section, "types", ("Types", "page:types"), "Conceptual type")
 
 
 def _size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
@@ -255,7 +255,7 @@ def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
         blocks.append(Paragraph(inline_text.to_inlines("No component serves this requirement yet."), "warning"))
     crumb = ("Requirements and use cases", "page:requirements")
     section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))
-    return _make_page(section, "requirements", crumb, "Requirement")
+    return make_page(section, "requirements", crumb, "Requirement")
 
 
 def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
@@ -266,7 +266,7 @@ def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += [table] if table else []
     crumb = ("Requirements and use cases", "page:requirements")
-    return _make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")
+    return make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")
 
 
 def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
@@ -298,7 +298,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     blocks += [Markdown(host.description)] if host.description else []
     blocks += keep_drawn(element_timing.make_load_blocks(lookup, host.id))
     blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.host == host.id], host_id=host.id)
-    return _make_page(
+    return make_page(
         Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts and containers", "page:hosts"), "Host"
     )
 
@@ -327,27 +327,4 @@ def _container_page(lookup: Lookup, container_id: str) -> Page:
     nodes = make_node_table(lookup, [node for node in lookup.shown_nodes() if node.container == container_id])
     crumb = ("Hosts and containers", "page:hosts")
     section = Section(f"container:{container_id}", container.title, (Facts(tuple(facts)), *nodes))
-    return _make_page(section, "containers", crumb, "Container")
-
-
-def _partner_page(lookup: Lookup, partner: Partner, keep_drawn: FigureFilter) -> Page:
-    """Make a partner's page: contact, components, and the nodes that it owns or that implement its components."""
-    blocks: list[Block] = [Markdown(partner.description)] if partner.description else []
-    if partner.contact:
-        blocks.append(Facts((("Contact", inline_text.to_inlines(partner.contact)),)))
-    owned_components = [
-        c
-        for c in lookup.architecture.components.values()
-        if partner.id in c.owners and lookup.scope.shows_component(c.id)
-    ]
-    if owned_components:
-        caption = f"Components of {partner.title}"
-        blocks.append(make_component_table(lookup, f"table:owned/{partner.id}", caption, owned_components))
-    owned_ids = {component.id for component in owned_components}
-    node_ids = {
-        node.id for node in lookup.shown_nodes() if partner.id in node.owners or owned_ids & set(node.implements)
-    }
-    blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.id in node_ids])
-    if not blocks:
-        blocks.append(Paragraph(inline_text.to_inlines(Text("This partner owns nothing yet.", muted=True))))
-    return _make_page(Section(f"partner:{partner.id}", partner.title, keep_drawn(blocks)), "partners", None, "Partner")
+    return make_page(section, "containers", crumb, "Container")

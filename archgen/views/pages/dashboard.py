@@ -163,7 +163,7 @@ def _point_card(lookup: Lookup) -> DashboardCard:
             Text(" "),
             *element_references.owner_cell(lookup.architecture, finding.element),
             *_on_new_line(element_references.link_message(lookup.architecture, finding)),
-            *_on_new_line(element_references.place_cell(finding)),
+            *_on_new_line(element_references.place_cell(lookup, finding)),
         )
         for finding in findings
     ]

@@ -66,7 +66,7 @@ def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple
         yield (
             "Partners",
             inline_text.join_lines(
-                inline_text.to_inlines(partner.title) for partner in lookup.architecture.partners.values()
+                inline_text.partner_link(lookup.architecture, name) for name in lookup.architecture.partners
             ),
         )
 

@@ -13,8 +13,18 @@ from archgen.views import inline_text
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, dashboard, explorer_page, page_marks, timing_chapter
+from archgen.views.pages import (
+    context_pages,
+    dashboard,
+    explorer_page,
+    matrix_pages,
+    page_marks,
+    page_places,
+    partner_pages,
+    timing_chapter,
+)
 from archgen.views.pages.context_pages import HOME_CRUMB
+from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
@@ -29,14 +39,19 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         *page_maker.chapter_pages(),
         *page_maker.spanning_pages(),
         *page_maker.rule_pages(),
+        *matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation"),
     ]
-    surrounding_pages = list(context_pages.make_context_pages(lookup, page_maker.keep_drawn))
+    surrounding_pages = [
+        *page_maker.message_pages().make_pages(),
+        *context_pages.make_context_pages(lookup, page_maker.keep_drawn),
+        *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn),
+    ]
     implementation_pages = (
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
     all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
-    return page_marks.mark_pages(lookup, all_pages)
+    return page_places.place_pages(lookup, page_marks.mark_pages(lookup, all_pages))
 
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
@@ -80,6 +95,11 @@ class _PageMaker:
     def keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
         """Drop figures that are not among this site's drawings: of another level, or outside of the selection."""
         return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
+
+    def message_pages(self) -> MessagePages:
+        """Return the maker of the pages on messages: those of shown types and, with the ROS side, of shown topics."""
+        topics = context_pages.shown_topics(self.lookup) if self.edition.level == "implementation" else ()
+        return MessagePages(self.lookup, architecture_tables.shown_types(self.lookup), topics)
 
     def make_figures(self, *names: str) -> Iterator[Figure]:
         """Yield figures for those of the named drawings that exist."""
@@ -208,6 +228,7 @@ class _PageMaker:
             "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
         )
         yield self._spanning_page("types", "Types", architecture_tables.make_type_table(self.lookup))
+        yield self._spanning_page("messages", "Messages", self.message_pages().make_list())
         requirement_table = architecture_tables.make_requirement_table(
             self.lookup, architecture_tables.shown_requirements(self.lookup)
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import Interface
@@ -10,6 +9,7 @@ from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+from archgen.views.used_messages import collect_messages
 
 
 def make_node_entries(lookup: Lookup) -> Iterator[SearchEntry]:
@@ -78,9 +78,12 @@ def make_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 
 def make_message_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the messages in use, with their fields and constants, and the messages that they contain."""
-    interfaces = lookup.architecture.interfaces
-    for message, refs in _collect_messages(lookup).items():
-        definition = interfaces.definitions.get(message)
+    architecture = lookup.architecture
+    users = collect_messages(architecture, architecture.types.values(), architecture.topics.values())
+    for message, anchors in users.items():
+        # Its own page; where the part that a site shows has none, whoever uses it.
+        refs = (f"message:{message}", *anchors)
+        definition = architecture.interfaces.definitions.get(message)
         count = sum(map(len, definition.parts)) if definition else 0
         size = inline_text.count_noun(count, "field") if definition else "definition not at hand"
         line = join_words(message.split("/")[1].replace("srv", "service").replace("msg", "message"), size)
@@ -105,25 +108,3 @@ def _make_field_entries(definition: Interface, refs: tuple[str, ...]) -> Iterato
             title = f"{short_name} · {constant.name}"
             text = to_plain_text(constant.comment)
             yield SearchEntry("field", title, join_words(f"{constant.type} = {constant.value}", line), refs, text=text)
-
-
-def _collect_messages(lookup: Lookup) -> dict[str, tuple[str, ...]]:
-    """Return the messages that types and topics use, and those inside of them, with where each is to be seen."""
-    architecture = lookup.architecture
-    users: defaultdict[str, list[str]] = defaultdict(list)
-    for conceptual_type in architecture.types.values():
-        if conceptual_type.message:
-            users[conceptual_type.message].append(f"type:{conceptual_type.name}")
-    for topic in architecture.topics.values():
-        for message in topic.messages:
-            users[message].append(f"topic:{topic.name}")
-    # A message that another one contains is to be seen where that one is. The list grows while it is walked.
-    pending = list(users)
-    for message in pending:
-        definition = architecture.interfaces.definitions.get(message)
-        for field in (field for part in definition.parts for field in part) if definition else ():
-            if "/" in field.type and field.type not in users:
-                users[field.type] = list(users[message])
-                pending.append(field.type)
-    # A few are enough: all but the first count only where the part that a site shows leaves the first one out.
-    return {message: (f"message:{message}", *refs) for message, refs in users.items()}

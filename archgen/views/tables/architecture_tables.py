@@ -77,11 +77,15 @@ def _message_cell(lookup: Lookup, connection: Connection) -> Inlines:
     """Return the messages that a connection carries."""
     architecture = lookup.architecture
     outputs = [architecture.outputs[output] for output in connection.outputs]
-    # `physical` is a remark in place of a message, hence not set as code.
+    # `physical` is a remark in place of a message, hence neither code nor a link.
     names = dict.fromkeys("physical" if o.physical else architecture.message_of(o) for o in outputs)
     return inline_text.join_inlines(
-        (Text(name, code=name != "physical"),) if name else inline_text.UNKNOWN_INLINES for name in names
+        _link_message_or_remark(name) if name else inline_text.UNKNOWN_INLINES for name in names
     )
+
+
+def _link_message_or_remark(name: str) -> Inlines:
+    return (Text(name) if name == "physical" else element_references.message_link(name),)
 
 
 def shown_connections(lookup: Lookup) -> list[Connection]:
@@ -144,7 +148,7 @@ def size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
 def message_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
     """Return the message of a type, or that it needs none, or that it is not known yet."""
     if conceptual_type.message:
-        return inline_text.to_inlines(Text(conceptual_type.message, code=True))
+        return inline_text.to_inlines(element_references.message_link(conceptual_type.message))
     return (
         inline_text.to_inlines(Text("none: physical", muted=True))
         if conceptual_type.name in lookup.physical_types
@@ -237,7 +241,7 @@ def make_finding_table(
             severity_chip(finding),
             inline_text.join_lines(_finding_lines(lookup, finding)),
             element_references.owner_cell(lookup.architecture, finding.element),
-            element_references.place_cell(finding),
+            element_references.place_cell(lookup, finding),
             inline_text.to_inlines(Text(finding.rule, ref=f"rule:{finding.rule}")),
         )
         for finding in sorted(findings, key=lambda each: -each.effective_severity.rank)
@@ -371,7 +375,7 @@ def make_topic_table(lookup: Lookup, selected_topics: Iterable[Topic], anchor: s
     rows = tuple(
         (
             inline_text.to_inlines(inline_text.topic_link(topic.name)),
-            inline_text.join_inlines((Text(message, code=True),) for message in topic.messages)
+            inline_text.join_inlines((element_references.message_link(message),) for message in topic.messages)
             or inline_text.UNKNOWN_INLINES,
             # A node may have several endpoints on a topic; it is named once.
             inline_text.join_inlines(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
@@ -9,11 +10,13 @@ from archgen.timing.analysis import ChainResult, ResponseTier
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
-from archgen.views import inline_text
+from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
 from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
+
+_ACTIVITY_NAME = re.compile(r"([a-z0-9.]+(?:_[a-z0-9.]+)+)")
 
 
 def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> tuple[Block, ...]:
@@ -49,11 +52,14 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
                 inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
             ),
         ),
-        ("Assumptions", inline_text.to_inlines("; ".join(dict.fromkeys(_list_assumptions(timing_lookup, result))))),
+        (
+            "Assumptions",
+            _link_activities(timing_lookup, "; ".join(dict.fromkeys(_list_assumptions(timing_lookup, result)))),
+        ),
     ]
     name = f"chains/{result.id}"
     title = f"{chain.title}: how the time adds up"
-    rows = tuple(_term_row(timing_lookup, result, index) for index in range(len(result.terms)))
+    rows = tuple(_term_row(lookup, timing_lookup, result, index) for index in range(len(result.terms)))
     columns = (
         Column("Activity", 1.6),
         Column("Waits", 0.85, "right"),
@@ -101,17 +107,27 @@ def _list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Itera
     )
 
 
-def _term_row(timing_lookup: TimingLookup, result: ChainResult, index: int) -> tuple[Inlines, ...]:
+def _link_activities(timing_lookup: TimingLookup, sentence: str) -> Inlines:
+    """Return a sentence of the timing analysis with its activities as links to their nodes."""
+    activities = timing_lookup.analysis.system.activities
+    # Split at names: even positions are what stands between them. A name without `_` may be a word of the sentence.
+    parts = _ACTIVITY_NAME.split(sentence)
+    return tuple(
+        Text(part, ref=f"node:{activities[part].node}" if index % 2 and part in activities else None)
+        for index, part in enumerate(parts)
+        if part
+    )
+
+
+def _term_row(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult, index: int) -> tuple[Inlines, ...]:
     term = result.terms[index]
     return (
         timing_tables.activity_link(timing_lookup, term.activity),
         timing_tables.duration_cell(term.sampling),
         timing_tables.duration_cell(term.response),
         timing_tables.duration_cell(term.link),
-        inline_text.to_inlines(term.why),
-        inline_text.to_inlines(Text(timing_tables.format_location(term.at), code=True))
-        if timing_tables.format_location(term.at)
-        else (),
+        _link_activities(timing_lookup, term.why),
+        (place,) if (place := element_references.place_run(lookup, term.at)) else (),
     )
 
 
@@ -124,17 +140,23 @@ def make_node_facts(lookup: Lookup, node: Node) -> Iterator[tuple[str, Inlines]]
     for activity in activities:
         # Only a node with several activities needs to tell them apart.
         suffix = f" of {activity.id.rsplit('.', 1)[-1]}" if len(activities) > 1 else ""
-        yield from _activity_facts(timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()), suffix)
+        yield from _activity_facts(
+            lookup, timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()), suffix
+        )
 
 
 def _activity_facts(
-    timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...], suffix: str
+    lookup: Lookup, timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...], suffix: str
 ) -> Iterator[tuple[str, Inlines]]:
     """Yield rate and response of one activity, as far as they are known."""
     pace, response = timing_lookup.analysis.paces.get(activity.id), timing_lookup.analysis.responses.get(activity.id)
     if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
         # A written rate needs no source here: the fact `Timing` beside it says what was written.
-        source = timing_tables.describe_rate_source(timing_lookup, activity, pace, origin_ids) if pace.inferred else ()
+        source = (
+            timing_tables.describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids)
+            if pace.inferred
+            else ()
+        )
         yield f"Rate{suffix}", (*inline_text.to_inlines(rate_text), *((Text(", "), *source) if source else ()))
     if response and response.worst.value is not None:
         tier = f" ({timing_tables.TIER_WORDS[response.tier]})" if timing_tables.TIER_WORDS[response.tier] else ""
@@ -160,11 +182,16 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
     lines = []
     for activity in matching_activities:
         pace = timing_lookup.analysis.paces.get(activity.id)
-        if pace and (
-            rate_text := rate_phrases.format_rate_sentence(pace, timing_lookup.rate_origins.get(activity.id, ()))
-        ):
+        if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+            name = timing_tables.activity_link(timing_lookup, activity.id) if len(matching_activities) > 1 else ()
+            origin_ids = timing_lookup.rate_origins.get(activity.id, ())
+            source = (
+                timing_tables.describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids)
+                if pace.inferred
+                else ()
+            )
             lines.append(
-                inline_text.to_inlines(f"{activity.id}: {rate_text}" if len(matching_activities) > 1 else rate_text)
+                (*name, Text(f": {rate_text}" if name else rate_text), *((Text(", "), *source) if source else ()))
             )
     return inline_text.join_lines(lines)
 

@@ -80,12 +80,3 @@ def _format_rate_figure(pace: analysis.EventPace | None, separator: str) -> str:
 def _behaviour_word(pace: analysis.EventPace | None) -> str:
     """Return the word for a behaviour; empty for periodic ones, whose figures speak for themselves."""
     return _BEHAVIOUR_WORDS.get(pace.behaviour or "", "") if pace else ""
-
-
-def format_rate_sentence(pace: analysis.EventPace, origin_ids: tuple[str, ...]) -> str:
-    """Format a rate with its origins: `10 Hz, from scanner`; empty where nothing is known."""
-    rate_text = format_rate_words(pace)
-    if rate_text == "?":
-        return ""
-    origin_text = value_format.describe_origins(origin_ids) if pace.inferred and pace.rate.value else ""
-    return f"{rate_text}, {origin_text}" if origin_text else rate_text

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.diagnostics.source_span import Span
 from archgen.timing.analysis import EventPace, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
-from archgen.views import inline_text
+from archgen.views import element_references, inline_text
 from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
@@ -113,7 +112,7 @@ def make_period_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | No
 def make_activity_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
     """List every shown activity: behaviour, rate, longest gap and response, and where the figures come from."""
     rows = tuple(
-        _activity_row(timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()))
+        _activity_row(lookup, timing_lookup, activity, timing_lookup.rate_origins.get(activity.id, ()))
         for activity in timing_lookup.analysis.system.activities.values()
         if lookup.scope.shows_node(activity.node)
     )
@@ -133,7 +132,9 @@ def make_activity_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
     )
 
 
-def _activity_row(timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...]) -> tuple[Inlines, ...]:
+def _activity_row(
+    lookup: Lookup, timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...]
+) -> tuple[Inlines, ...]:
     # Activities without any rate are still listed, by the behaviour that was written.
     pace = timing_lookup.analysis.paces.get(activity.id, EventPace(activity.behaviour))
     response = timing_lookup.analysis.responses.get(activity.id)
@@ -143,7 +144,7 @@ def _activity_row(timing_lookup: TimingLookup, activity: Activity, origin_ids: t
         figure_cell(_format_shown_rate(pace), pace.rate),
         # What runs on demand or once has no longest gap: nothing promises a next activation.
         duration_cell(pace.gap) if pace.behaviour not in {"on_demand", "once"} else (),
-        describe_rate_source(timing_lookup, activity, pace, origin_ids),
+        describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids),
         duration_cell(response.worst) if response else (_MUTED_UNKNOWN,),
         inline_text.to_inlines(_SHORT_TIER_WORDS[response.tier])
         if response and _SHORT_TIER_WORDS[response.tier]
@@ -159,26 +160,23 @@ def _format_shown_rate(pace: EventPace) -> str:
 
 
 def describe_rate_source(
-    timing_lookup: TimingLookup, activity: Activity, pace: EventPace, origin_ids: tuple[str, ...]
+    lookup: Lookup, timing_lookup: TimingLookup, activity: Activity, pace: EventPace, origin_ids: tuple[str, ...]
 ) -> Inlines:
     """Return where a rate was written, or the activities it is inferred from."""
     if not pace.inferred:
-        location = format_location(activity.places.get("period") or activity.places.get("rate") or activity.at)
-        return (
-            inline_text.to_inlines("written", Text(f" {location}", muted=True))
-            if location
-            else inline_text.to_inlines("written")
-        )
+        span = activity.places.get("period") or activity.places.get("rate") or activity.at
+        place = element_references.place_run(lookup, span)
+        return inline_text.to_inlines("written", *([Text(" "), place] if place else []))
     if pace.rate.value is None or not origin_ids:
         return ()
+    return inline_text.to_inlines("from ", *link_origins(timing_lookup, origin_ids))
+
+
+def link_origins(timing_lookup: TimingLookup, origin_ids: tuple[str, ...]) -> Inlines:
+    """Link the activities that a rate is inferred from: `a, b and others`."""
     # `find_rate_origins` returns one more than is named here, which is how "and others" is known.
     producers = inline_text.join_inlines(activity_link(timing_lookup, name) for name in origin_ids[:3])
-    return inline_text.to_inlines("from ", *producers, *([" and others"] if len(origin_ids) > 3 else []))  # noqa: PLR2004
-
-
-def format_location(span: Span) -> str:
-    """Format file and line of a span; empty where nothing was written."""
-    return f"{span.file}:{span.line}" if span.file else ""
+    return (*producers, *([Text(" and others")] if len(origin_ids) > 3 else []))  # noqa: PLR2004
 
 
 def activity_link(timing_lookup: TimingLookup, activity_id: str) -> Inlines:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 from decimal import ROUND_HALF_UP, Decimal
 from fractions import Fraction
@@ -219,12 +219,3 @@ def find_rate_origins(analysis: Analysis) -> dict[str, tuple[str, ...]]:
         for name, root_ids in origin_ids.items()
         if name not in declared_ids
     }
-
-
-def describe_origins(origin_names: Iterable[str]) -> str:
-    """Describe origins: `from a, b and others`; empty for none."""
-    name_list = list(origin_names)
-    if not name_list:
-        return ""
-    joined_names = ", ".join(name_list[:_MAX_NAMED_ORIGINS])
-    return f"from {joined_names} and others" if len(name_list) > _MAX_NAMED_ORIGINS else f"from {joined_names}"

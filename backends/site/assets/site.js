@@ -132,6 +132,36 @@
   addEventListener("pageshow", obeyAddress);
   if (location.search) obeyAddress();
 
+  // On a telephone the rows of a table stand below one another: title and figure, and what else there is with its name.
+  const narrow = matchMedia("(max-width: 44.99rem)");
+
+  function standRows(table) {
+    const titles = [...table.tHead.rows[0].cells].map((head) => head.textContent.trim());
+    const figure = [...table.tHead.rows[0].cells].findIndex((head, at) => at > 0 && head.classList.contains("right"));
+    // As blocks they are no table any more to those who listen: these words keep it one.
+    table.setAttribute("role", "table");
+    for (const part of table.querySelectorAll("thead, tbody")) part.setAttribute("role", "rowgroup");
+    for (const row of table.rows) {
+      row.setAttribute("role", "row");
+      [...row.cells].forEach((cell, at) => {
+        cell.setAttribute("role", cell.tagName === "TH" ? "columnheader" : "cell");
+        if (cell.tagName === "TD" && at > 0) cell.dataset.label = titles[at];
+        if (cell.tagName === "TD" && at === figure) cell.classList.add("key-figure");
+      });
+    }
+  }
+
+  const tables = [...document.querySelectorAll(".table:not(.narrow) table")].filter((table) => !table.closest(".card"));
+  function arrangeRows() {
+    for (const table of tables) {
+      if (narrow.matches && !table.classList.contains("stood")) standRows(table);
+      if (narrow.matches) table.classList.add("stood");
+      table.classList.toggle("as-rows", narrow.matches);
+    }
+  }
+  narrow.addEventListener("change", arrangeRows);
+  arrangeRows();
+
   // A table that fits needs no box to scroll in: no stop for the Tab key, and its head stays in sight.
   const fitting = new ResizeObserver((entries) => {
     for (const { target } of entries) {
@@ -142,6 +172,30 @@
     }
   });
   for (const box of document.querySelectorAll(".scroll")) fitting.observe(box);
+
+  // --- places that lead nowhere are copied ------------------------------------------------------------------------
+  function copy(words) {
+    if (navigator.clipboard) return navigator.clipboard.writeText(words);
+    // Some browsers have no clipboard for pages from the disk.
+    const field = element("textarea", { value: words, readOnly: true, className: "spoken" });
+    document.body.append(field);
+    field.select();
+    document.execCommand("copy");
+    field.remove();
+    return Promise.resolve();
+  }
+
+  for (const place of document.querySelectorAll("code.place")) {
+    if (place.closest("a")) continue;
+    const control = element("button", { type: "button", className: "copy", textContent: "Copy", ariaLabel: "Copy " + place.textContent });
+    control.addEventListener("click", () => {
+      copy(place.textContent).then(() => {
+        control.textContent = "Copied";
+        setTimeout(() => (control.textContent = "Copy"), 1500);
+      });
+    });
+    place.after(control);
+  }
 
   // --- pictures: the whole window, with wheel, drag and keys ----------------------------------------------------
   function look(svg, caption) {

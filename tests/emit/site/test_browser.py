@@ -37,6 +37,16 @@ EXAMPLE = (
     "groups/environment_state.html",
     "components/environment_state.object_recognition.html",
     "hosts.html",
+    "messages.html",
+    "messages/ramcip_msgs/msg/fallenobject.html",
+    "partners.html",
+    "partners/certh.html",
+    "partners/certh/forth.html",
+    "partners/forth/certh/human_state.fall_detector.fall.html",
+    "nodes/object_recognizer.html",
+    "requirements.html",
+    "timing/hosts.html",
+    "rules/uncovered-requirement.html",
 )
 HOSTILE = '</title><script>document.title="taken"</script><img src=x onerror=document.title="taken">{{7*7}}'
 
@@ -119,7 +129,9 @@ def said_by_nu(folder: Path) -> list[str]:
         *pages,
     ]  # the language it would guess from ids
     done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
-    return [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in json.loads(done.stderr)["messages"]]
+    messages = [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in json.loads(done.stderr)["messages"]]
+    # To Nu nothing on a disk is a page's own. Browsers see that otherwise: test_page_policy opens each kind in one.
+    return [message for message in messages if "blocked by" not in message or "Content Security Policy" not in message]
 
 
 def said_by_axe(page: Page) -> object:

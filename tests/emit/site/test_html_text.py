@@ -55,3 +55,17 @@ def test_only_web_and_mail_become_links(url: str | None, address: str | None) ->
 
 def test_ids_hold_no_blank_and_no_quote() -> None:
     assert html_text.make_element_id('type:Colour image "x"') == "type:Colour-image-x-"
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("<= 15 Hz · >= 66.667 ms", "≤ 15 Hz · ≥ 66.667 ms"),
+        ("60 us to 20 ms", "60 µs to 20 ms"),
+        ("a <= b", "a <= b"),
+        ("between us", "between us"),
+        ("x==1", "x==1"),
+    ],
+)
+def test_signs_and_units_of_figures_are_written_as_people_do(text: str, written: str) -> None:
+    assert html_text.write_signs(text) == written

@@ -103,7 +103,7 @@ def test_a_table_has_a_caption_widths_and_rows_with_anchors() -> None:
     table = Table("table:x", "Sizes", columns, (((Text("a"),), (Text("1"),)),), ("link:lan",))
     assert shown(table, Paragraph((Text("see", ref="link:lan"),))) == (
         '<div class="table narrow" id="table:x">\n<div class="scroll" role="group" tabindex="0" aria-label="Sizes">\n<table>\n'
-        '<caption>Sizes</caption>\n<colgroup><col style="width:75%"><col style="width:25%"></colgroup>\n'
+        '<caption>Sizes</caption>\n<colgroup><col class="p75"><col class="p25"></colgroup>\n'
         '<thead><tr><th scope="col">Name</th><th scope="col" class="right">Size</th></tr></thead>\n<tbody>\n'
         '<tr id="link:lan"><td>a</td><td class="right">1</td></tr>\n</tbody>\n</table>\n</div>\n</div>\n'
         '<p><a href="#link:lan">see</a></p>'
@@ -274,7 +274,7 @@ def test_chapters(site: FileTree) -> None:
     assert '<a href="https://example.org"><span class="muted">[badge: not shown]</span></a>' in html
     assert '<pre tabindex="0"><code>a block of code' in html
     assert '<div class="scroll" role="group" tabindex="0" aria-label="Table"><table>' in html
-    assert '<td style="text-align:right">&lt;b&gt;</td>' in html
+    assert '<td class="right">&lt;b&gt;</td>' in html
 
 
 @pytest.mark.parametrize(

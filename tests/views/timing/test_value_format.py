@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.analysis import EventPace
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.views.timing import rate_phrases, value_format
+from archgen.views.timing import rate_phrases, timing_tables, value_format
 from archgen.views.timing.timing_lookup import make_timing_lookup as with_origins
 from tests.timings import MS, analysis_of, exact
 
@@ -104,8 +104,8 @@ def test_an_inferred_pace_names_where_it_comes_from() -> None:
         {"lidar": (100 * MS, 1), "map": (None, 1), "plan": (None, 1), "loop": (None, 1)},
         [("lidar", "map"), ("map", "plan"), ("plan", "loop"), ("loop", "plan")],
     )
-    origins = with_origins(analysis).rate_origins
-    assert origins == {"map": ("lidar",), "plan": ("lidar",), "loop": ("lidar",)}
-    assert (
-        rate_phrases.format_rate_sentence(analysis.paces["map"], origins["map"]) == "10 Hz · 100 ms, event, from lidar"
-    )
+    timing_lookup = with_origins(analysis)
+    assert timing_lookup.rate_origins == {"map": ("lidar",), "plan": ("lidar",), "loop": ("lidar",)}
+    assert rate_phrases.format_rate_words(analysis.paces["map"]) == "10 Hz · 100 ms, event"
+    origin_runs = timing_tables.link_origins(timing_lookup, timing_lookup.rate_origins["map"])
+    assert [(run.text, run.ref) for run in origin_runs] == [("lidar", "node:lidar")]

@@ -1,0 +1,21 @@
+"""What a page may load and run: its own scripts, styles, fonts and pictures, and nothing from anywhere else."""
+
+from __future__ import annotations
+
+_DIRECTIVES = (
+    "default-src 'none'",
+    "script-src 'self'",
+    "style-src 'self'",
+    "font-src 'self'",
+    # Pictures that a page made itself: a view that is saved is drawn from such an address.
+    "img-src 'self' data: blob:",
+    # By name, although the default says it: a server of live pages allows itself, and nothing else.
+    "connect-src 'none'",
+    "base-uri 'none'",
+    "form-action 'none'",
+)
+PAGE_POLICY = "; ".join(_DIRECTIVES)
+"""The Content-Security-Policy of each page, in an element of the page: there is no server to send a header.
+
+Neither a script nor a style in the page itself counts, so that no text of a project can ever become one.
+"""

@@ -1,0 +1,46 @@
+"""Where the project's files are on the web: addresses of places, as GitHub, GitLab and Gitea have them."""
+
+from __future__ import annotations
+
+import posixpath
+from typing import Literal
+from urllib.parse import quote, urlsplit
+
+from archgen.frozen import dataclass
+
+Forge = Literal["github", "gitlab", "gitea"]
+_FORGE_NAMES: tuple[tuple[str, Forge], ...] = (
+    ("github", "github"),
+    ("gitea", "gitea"),
+    ("forgejo", "gitea"),
+    ("codeberg", "gitea"),
+)
+"""What in a host's name tells the forge; of the others GitLab is what most run themselves."""
+_FILE_PATHS = {"github": "/blob/{0}/{1}", "gitlab": "/-/blob/{0}/{1}", "gitea": "/src/branch/{0}/{1}"}
+DEFAULT_BRANCH = "main"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceRepository:
+    """The section `site`: the repository's address, and how its files are found there.
+
+    `folder` is the project's in the repository, None where the section leaves that to git.
+    """
+
+    address: str
+    branch: str = DEFAULT_BRANCH
+    folder: str | None = None
+    forge: Forge | None = None
+
+    def file_address(self, file: str, line: int) -> str | None:
+        """Return the address of a line of a file, given from the project's folder; None where it leads out."""
+        path = posixpath.normpath(posixpath.join((self.folder or "").strip("/"), file))
+        if not file or path.startswith(("../", "/")):
+            return None
+        base = self.address.rstrip("/").removesuffix(".git")
+        file_path = _FILE_PATHS[self.forge or self._guess_forge()].format(quote(self.branch), quote(path))
+        return f"{base}{file_path}#L{line}"
+
+    def _guess_forge(self) -> Forge:
+        host = urlsplit(self.address).hostname or ""
+        return next((forge for name, forge in _FORGE_NAMES if name in host), "gitlab")

@@ -1,0 +1,164 @@
+"""Tables of what two partners give each other: what is promised beside what is derived, and what is open with who writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from archgen.model.partner_interfaces import components_at_ends
+from archgen.views import inline_text
+from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
+from archgen.views.agreement.open_points import describe_open_term
+from archgen.views.agreement.partner_exchanges import PartnerExchange
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow
+from archgen.views.element_references import message_link
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
+
+_PACE_ROWS = ("Rate", "Answers within")
+_TERM_WORDS = {"definition of the message": "fields", "QoS offered": "QoS"}
+_NOT_PROMISED: Inlines = (Text("not promised", muted=True),)
+
+
+def interface_reference(terms: InterfaceTerms) -> str:
+    """Return the anchor of an interface's page: one output may be given to several partners, so both are in it."""
+    interface = terms.interface
+    return f"interface:{interface.key}:{interface.pair[0]}:{interface.pair[1]}"
+
+
+def interface_link(terms: InterfaceTerms) -> Text:
+    """Link to an interface's page, by what flows."""
+    return Text(terms.interface.type or terms.title, ref=interface_reference(terms))
+
+
+def make_given_table(lookup: Lookup, anchor: str, caption: str, interfaces: Sequence[InterfaceTerms]) -> Table:
+    """List what one partner gives another: what is promised of it, what is derived, and what is still open."""
+    rows = tuple(_given_row(lookup, terms) for terms in interfaces)
+    columns = (
+        Column("What flows", 1.7),
+        Column("Message, topic", 1.6),
+        Column("Promised", 0.8, "right"),
+        Column("Derived", 0.8, "right"),
+        Column("QoS promised", 0.9),
+        Column("Size", 0.6, "right"),
+        Column("Traffic", 0.7, "right"),
+        Column("Still open", 0.9),
+    )
+    return drop_empty_columns(Table(anchor, caption, columns, rows))
+
+
+def _given_row(lookup: Lookup, terms: InterfaceTerms) -> tuple[Inlines, ...]:
+    pace, qos = _find_row(terms, _PACE_ROWS), _find_row(terms, ("QoS offered",))
+    size, traffic = _find_row(terms, ("Size",)), _find_row(terms, ("Traffic",))
+    return (
+        inline_text.join_lines([(interface_link(terms),), *_end_lines(lookup, terms)]),
+        _carrier_cell(terms),
+        (_shorten(pace.promised) or _NOT_PROMISED) if pace else (),
+        _shorten(pace.expected) if pace else (),
+        (_shorten(qos.promised) or _NOT_PROMISED) if qos else (),
+        _shorten(size.promised or size.expected) if size else (),
+        _shorten(traffic.expected) if traffic else (),
+        inline_text.join_inlines(((chip,) for chip in _list_chips(terms)), " "),
+    )
+
+
+def _find_row(terms: InterfaceTerms, starts: tuple[str, ...]) -> PromiseRow | None:
+    """Return the row of a term; of several (one for each node that gives) the first with a figure."""
+    rows = [row for row in terms.promise_rows if row.name.startswith(starts)]
+    return next((row for row in rows if row.promised or row.expected), rows[0] if rows else None)
+
+
+def _shorten(runs: Inlines) -> Inlines:
+    """Return a figure alone, without what it follows from and the gap behind it: these stand on the interface's page."""
+    if not runs:
+        return ()
+    figure = runs[0].text.partition(SOURCE_PHRASE)[0].partition(" · ")[0].removesuffix(", computed")
+    return (Text(figure.replace("at most ", "<= ").replace("at least ", ">= "), sort_number=runs[0].sort_number),)
+
+
+def _end_lines(lookup: Lookup, terms: InterfaceTerms) -> Iterator[Inlines]:
+    """Yield the line below what flows: from which component to which."""
+    ends = components_at_ends(lookup.architecture, terms.interface)
+    sides = [
+        inline_text.join_inlines((inline_text.component_link(component),) for component in components)
+        for components in ends
+    ]
+    if all(sides):
+        yield (*sides[0], Text(" → "), *sides[1])
+
+
+def _carrier_cell(terms: InterfaceTerms) -> Inlines:
+    interface = terms.interface
+    if interface.flow == "physical":
+        return inline_text.to_inlines(Text("physical", muted=True))
+    lines = [(message_link(interface.message),)] if interface.message else [inline_text.UNKNOWN_INLINES]
+    lines += [(inline_text.topic_link(name),) for name in interface.topic_names]
+    return inline_text.join_lines(lines)
+
+
+def _list_chips(terms: InterfaceTerms) -> Iterator[Text]:
+    for name in terms.open_terms:
+        yield Text(_TERM_WORDS.get(name, name), status="open")
+    if terms.contradictions:
+        yield Text(inline_text.count_noun(len(terms.contradictions), "contradiction"), status="error")
+    if terms.late_chains:
+        yield Text(inline_text.count_noun(len(terms.late_chains), "late chain"), status="not proven")
+
+
+def make_point_table(lookup: Lookup, anchor: str, exchange: PartnerExchange) -> Table | None:
+    """List what two partners have still to settle, the gravest first, each with the interfaces and who writes it."""
+    rows = tuple(_list_point_rows(lookup, exchange))
+    columns = (Column("State", 0.6), Column("Still to be settled", 2.6), Column("Who writes it", 1))
+    return Table(anchor, "Open points between the two", columns, rows) if rows else None
+
+
+def _list_point_rows(lookup: Lookup, exchange: PartnerExchange) -> Iterator[tuple[Inlines, ...]]:
+    both = inline_text.join_inlines(
+        (inline_text.partner_link(lookup.architecture, partner) for partner in exchange.pair), " and "
+    )
+    for status, word, sentences in (
+        ("error", "contradiction", {s: t for t in exchange.interfaces for s in t.contradictions}),
+        ("not proven", "late chain", {s: t for t in exchange.interfaces for s in t.late_chains}),
+    ):
+        for sentence, terms in sentences.items():
+            # One chain may pass over several interfaces: it is late once.
+            point = inline_text.join_lines([inline_text.message_to_inlines(sentence), (interface_link(terms),)])
+            yield _chip(word, status), point, both  # type: ignore[arg-type]
+    for name, interfaces in _group_open_terms(exchange.interfaces).items():
+        links = inline_text.join_inlines((interface_link(terms),) for terms in interfaces)
+        point = inline_text.join_lines([inline_text.message_to_inlines(describe_open_term(name)), links])
+        yield _chip(_TERM_WORDS.get(name, name.lower()), "open"), point, _count_writers(lookup, interfaces)
+
+
+def _chip(word: str, status: Status) -> Inlines:
+    return (Text(word, status=status),)
+
+
+def _group_open_terms(interfaces: Iterable[InterfaceTerms]) -> Mapping[str, list[InterfaceTerms]]:
+    """Return the open terms by name, that of most interfaces first."""
+    grouped: dict[str, list[InterfaceTerms]] = {}
+    for terms in interfaces:
+        for name in terms.open_names:
+            grouped.setdefault(name, []).append(terms)
+    return dict(sorted(grouped.items(), key=lambda entry: -len(entry[1])))
+
+
+def _count_writers(lookup: Lookup, interfaces: Sequence[InterfaceTerms]) -> Inlines:
+    """Return who states the terms of these interfaces, with how many are theirs: who gives something says what it is."""
+    counts: dict[str, int] = {}
+    for terms in interfaces:
+        giver = terms.interface.pair[0]
+        counts[giver] = counts.get(giver, 0) + 1
+    return inline_text.join_lines(
+        (*inline_text.partner_link(lookup.architecture, giver), Text(f": {count}")) for giver, count in counts.items()
+    )
+
+
+def count_promised(interfaces: Iterable[InterfaceTerms], starts: tuple[str, ...]) -> tuple[int, int]:
+    """Return of how many interfaces a term is promised, and how many have such a term."""
+    rows = [row for terms in interfaces if (row := _find_row(terms, starts))]
+    return sum(bool(row.promised) for row in rows), len(rows)
+
+
+def pair_title(lookup: Lookup, pair: Sequence[str]) -> str:
+    """Return the titles of two partners: `CERTH-ITI and FORTH-ICS`."""
+    return " and ".join(partner_titles(lookup, [partner]) for partner in pair)

@@ -1,0 +1,40 @@
+"""Where the thing that a page is about is written: the line below the page's title says it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
+from archgen.views.element_references import place_run
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Page
+
+
+def place_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
+    """Return the pages, those on something that is written in a file with its place."""
+    spans = _list_spans(lookup.architecture)
+    return tuple(
+        replace(page, place=place_run(lookup, spans[page.anchor])) if page.anchor in spans else page for page in pages
+    )
+
+
+def _list_spans(architecture: Architecture) -> Mapping[str, Span]:
+    """Return where each element with a page is written, by the page's anchor."""
+    kinds = (
+        ("group", architecture.groups),
+        ("component", architecture.components),
+        ("node", architecture.nodes),
+        ("requirement", architecture.requirements),
+        ("use_case", architecture.use_cases),
+        ("chain", architecture.chains),
+        ("host", architecture.hosts),
+        ("container", architecture.containers),
+        ("partner", architecture.partners),
+    )
+    spans = {f"{kind}:{name}": element.at for kind, elements in kinds for name, element in elements.items()}
+    # Types of the mapper that ships with archgen are in none of the project's files.
+    types = (each for each in architecture.types.values() if each.origin == "project")
+    spans |= {f"type:{each.name}": each.at for each in types}
+    return {anchor: span for anchor, span in spans.items() if span is not NO_SPAN}

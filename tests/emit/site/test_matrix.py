@@ -1,0 +1,158 @@
+"""A matrix as a page: a table without a script, and one to fold, order and walk through by keys with it; CSV and SVG."""
+
+from __future__ import annotations
+
+import csv
+import io
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Page as BrowserPage
+
+from archgen.emit.file_tree import FileTree, write_tree
+from archgen.emit.site import build_site
+from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow
+from archgen.views.shapes import Page, Section
+
+HOSTILE = '=1+1</script><b>"x"'
+
+
+def make_matrix(members: int = 20) -> Matrix:
+    """Make two groups of components: all of the first feed the first of the second, which feeds back."""
+    rows = tuple(
+        MatrixEntry(f"{name} {at}", f"component:{name}{at}", "Owner", group)
+        for group, name in enumerate("AB")
+        for at in range(members)
+    )
+    flows = [MatrixFlow(at, members, "Picture", "component:A0") for at in range(members)]
+    flows += [MatrixFlow(members, 0, "Plan", ""), MatrixFlow(0, 1, HOSTILE, "")]
+    groups = (MatrixEntry("Group A", "group:a"), MatrixEntry(HOSTILE, "group:b"))
+    return Matrix("components", "Components", rows, tuple(flows), groups=groups, order="the best order")
+
+
+def build(matrix: Matrix) -> FileTree:
+    page = Page("index.html", "page:index", "Matrix", "spanning", Section("page:index", "Matrix"), matrix=matrix)
+    other = Page("a.html", "component:A0", "A 0", "x", Section("component:A0", "A 0"), (("Matrix", "page:index"),))
+    return build_site((page, other), {}, title="R", revision="", notices=(), chapter_files=lambda _: None)
+
+
+def test_without_a_script_a_large_matrix_is_that_of_its_groups() -> None:
+    html = build(make_matrix()).files["index.html"].decode()
+    table = html.partition('<table class="matrix">')[2].partition("</table>")[0]
+    assert table.count("<tr>") == 3
+    assert '<td class="f8"><a href="a.html">20</a></td>' in table
+    assert '<td class="f1 back"><b>1<span class=spoken> runs back</span></b></td>' in table
+    assert "rows give, columns take; 21 flows between 2 groups, 1 of them runs back" in html
+    assert "the best order" in html
+
+
+def test_without_a_script_a_small_matrix_is_whole() -> None:
+    html = build(make_matrix(3)).files["index.html"].decode()
+    assert html.partition('<table class="matrix">')[2].count("<tr>") == 7
+
+
+def test_a_matrix_that_is_too_large_for_a_table_says_so() -> None:
+    matrix = make_matrix(40)
+    flat = Matrix("components", "Components", matrix.rows, matrix.flows)
+    html = build(flat).files["index.html"].decode()
+    assert "80 components are too many for a table without a script" in html
+
+
+def test_the_csv_has_all_rows_and_no_formula() -> None:
+    lines = list(csv.reader(io.StringIO(build(make_matrix(2)).files["matrix/components.csv"].decode())))
+    assert lines[1] == ["", "A 0", "A 1", "B 0", "B 1"]
+    assert lines[2] == ["A 0", "", "1", "1", ""]
+    assert lines[4] == ["B 0", "1", "", "", ""]
+
+
+def test_the_svg_draws_each_cell() -> None:
+    svg = ET.fromstring(build(make_matrix(2)).files["matrix/components.svg"])  # noqa: S314 - our own
+    texts = [text.text for text in svg.iter("{http://www.w3.org/2000/svg}text")]
+    assert texts.count("A 0") == 2
+    assert texts.count("1") == 4
+
+
+def test_the_data_is_a_script_that_no_title_can_end() -> None:
+    data = build(make_matrix()).files["matrix/components.js"].decode()
+    assert data.startswith("const archgenMatrix = {")
+    assert "</script><b>" in data  # in a file of its own it ends nothing
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Start Chromium."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert chromium, "this test needs Chromium (Debian: `chromium`)"
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def page(browser: Browser, tmp_path: Path) -> Iterator[BrowserPage]:
+    """Open the matrix from the disk; an error or a message in the console is a failure."""
+    write_tree(build(make_matrix(3)), tmp_path / "site")
+    opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+    wrong: list[str] = []
+    opened.on("console", lambda message: wrong.append(message.text))
+    opened.on("pageerror", lambda error: wrong.append(str(error)))
+    opened.goto(f"file://{tmp_path}/site/index.html")
+    yield opened
+    opened.context.close()
+    assert wrong == []
+
+
+ROWS = "[...document.querySelectorAll('.matrix tbody th')].map(head => head.innerText.split('\\n')[0].replace(/^[▸▾]\\s*/, ''))"
+
+
+def test_groups_fold_and_the_address_says_so(page: BrowserPage) -> None:
+    page.get_by_role("button", name="Groups").click()
+    assert page.evaluate(ROWS) == ["Group A", HOSTILE]
+    page.get_by_role("button", name="Unfold Group A").click()
+    assert page.evaluate(ROWS) == ["A 0", "A 1", "A 2", HOSTILE]
+    assert "open=Group+A" in page.url
+    page.reload()
+    assert page.evaluate(ROWS) == ["A 0", "A 1", "A 2", HOSTILE]
+    page.get_by_role("button", name="Components").click()
+    assert page.evaluate("document.querySelectorAll('.matrix tbody tr').length") == 6
+
+
+def test_rows_are_ordered_by_name_or_by_flows_within_their_groups(page: BrowserPage) -> None:
+    page.get_by_role("combobox", name="Order").select_option("flows")
+    # B 0 has four flows, A 0 three.
+    assert page.evaluate(ROWS)[0] == "A 0"
+    page.get_by_role("combobox", name="Order").select_option("name")
+    assert page.evaluate(ROWS)[:3] == ["B 0", "B 1", "B 2"]  # `=1+1...` comes before `Group A`
+    assert "order=name" in page.url
+
+
+def test_arrows_go_from_filled_cell_to_filled_cell_and_focus_shows_what_hover_shows(page: BrowserPage) -> None:
+    page.locator("td > a").first.focus()
+    assert page.evaluate("document.activeElement.ariaLabel") == "A 0 to A 1: 1 flow"
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("document.activeElement.ariaLabel") == "A 0 to B 0: 1 flow"
+    card = page.locator(".matrix-card")
+    assert card.is_visible()
+    assert "Loop: A 0 → B 0 → back" in card.inner_text()
+    page.keyboard.press("Escape")
+    assert not card.is_visible()
+    page.keyboard.press("ArrowDown")
+    assert page.evaluate("document.activeElement.ariaLabel") == "A 1 to B 0: 1 flow"
+
+
+def test_hover_shows_both_partners_and_what_flows_as_text(page: BrowserPage) -> None:
+    page.locator("td > a").first.hover()
+    card = page.locator(".matrix-card")
+    card.wait_for()
+    assert card.locator(".pair").inner_text() == "A 0 → A 1"
+    assert HOSTILE in card.inner_text()
+
+
+def test_what_runs_back_is_listed(page: BrowserPage) -> None:
+    page.get_by_role("button", name="B 0 → A 0").click()
+    assert page.evaluate("document.activeElement.ariaLabel") == "B 0 to A 0: 1 flow, runs back"

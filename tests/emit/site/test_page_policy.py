@@ -1,0 +1,138 @@
+"""What pages may run and load: the policy stands in each page, nothing in the page breaks it, and no text gets around it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+
+from archgen import pipeline
+from archgen.emit.file_tree import FileTree
+from archgen.emit.site.page_policy import PAGE_POLICY
+from archgen.products import project_outputs
+from archgen.products.output_options import OutputOptions
+
+ROOT = Path(__file__).resolve().parents[3]
+MOST_BYTES = 100_000
+"""A page's bytes without its pictures."""
+_PICTURE = re.compile(r'<svg\b[^>]*class="archgen".*?</svg>', re.DOTALL)
+_INLINE = re.compile(r"<[a-z]+\b[^>]*\s(?:style|on[a-z]+)=|<style\b|<script(?![^>]*\bsrc=)")
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the case study's site, with its real pictures."""
+    place = tmp_path_factory.mktemp("out") / "example"
+    project_outputs.write_site(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"), place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Start Chromium."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert chromium, "this test needs Chromium (Debian: `chromium`)"
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield started
+        started.close()
+
+
+def choose_pages(folder: Path) -> list[str]:
+    """Choose one page of each kind: those of the folder itself, and of each folder below the first of each depth."""
+    paths = sorted(path.relative_to(folder) for path in folder.rglob("*.html"))
+    chosen = {(path.parts[0], len(path.parts)): path.as_posix() for path in reversed(paths)}
+    return sorted(chosen.values())
+
+
+def test_each_page_has_the_policy_and_nothing_that_it_refuses(site: FileTree) -> None:
+    for path, data in site.files.items():
+        if path.endswith(".html"):
+            text = data.decode()
+            assert PAGE_POLICY in text.replace("&#39;", "'"), path
+            assert '<meta name="referrer" content="no-referrer">' in text, path
+            assert _INLINE.findall(text) == [], path
+
+
+def test_the_case_study_has_nothing_in_its_pages_that_the_policy_refuses(example: Path) -> None:
+    for path in example.rglob("*.html"):
+        assert _INLINE.findall(path.read_text(encoding="utf-8")) == [], path.name
+
+
+def test_the_policy_refuses_all_but_the_sites_own_files() -> None:
+    directives = dict(part.split(" ", 1) for part in PAGE_POLICY.split("; "))
+    assert directives["default-src"] == "'none'"
+    assert directives["script-src"] == directives["style-src"] == "'self'"
+    assert not re.search(r"unsafe|https?:|\*", PAGE_POLICY)
+
+
+def test_a_browser_refuses_nothing_on_any_kind_of_page_from_the_disk(browser: Browser, example: Path) -> None:
+    messages: list[str] = []
+    page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+    page.on("console", lambda message: messages.append(f"{page.url}: {message.text}"))
+    page.on("pageerror", lambda error: messages.append(f"{page.url}: {error}"))
+    for path in choose_pages(example):
+        page.goto(f"file://{example}/{path}")
+        assert page.evaluate("[...document.fonts].some(face => face.status == 'loaded')"), path
+    # The scripts of the search come later, by a script.
+    page.keyboard.press("/")
+    page.keyboard.type("scan")
+    page.get_by_role("option").first.wait_for()
+    page.context.close()
+    assert messages == []
+
+
+def test_a_script_in_a_page_would_not_run(browser: Browser, example: Path, tmp_path: Path) -> None:
+    text = (example / "chains.html").read_text(encoding="utf-8")
+    (tmp_path / "x.html").write_text(
+        text.replace(
+            "<main", '<script>document.title = "taken"</script><img src=x onerror="document.title = 1"><main', 1
+        ),
+        encoding="utf-8",
+    )
+    page = browser.new_page()
+    page.goto(f"file://{tmp_path}/x.html")
+    assert page.title() != "taken"
+    assert page.title() != "1"
+    page.close()
+
+
+def test_no_page_is_heavy_without_its_pictures(example: Path) -> None:
+    heavy = {}
+    for path in example.rglob("*.html"):
+        size = len(_PICTURE.sub("", path.read_text(encoding="utf-8")).encode())
+        if size >= MOST_BYTES:
+            heavy[path.relative_to(example).as_posix()] = size
+    assert heavy == {}
+
+
+def test_a_place_without_a_repository_can_be_copied(browser: Browser, example: Path) -> None:
+    context = browser.new_context()
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page = context.new_page()
+    page.goto(f"file://{example}/components/cognitive_reasoning.situation_assessment.html")
+    page.get_by_role("button", name="Copy groups/cognitive_reasoning.yaml:11").click()
+    page.get_by_text("Copied").wait_for()
+    assert page.evaluate("navigator.clipboard.readText()") == "groups/cognitive_reasoning.yaml:11"
+    context.close()
+
+
+def test_on_paper_there_is_neither_bar_nor_button(browser: Browser, example: Path) -> None:
+    page = browser.new_page()
+    for path in (
+        "matrix.html",
+        "components/cognitive_reasoning.situation_assessment.html",
+        "partners/certh/forth.html",
+    ):
+        page.goto(f"file://{example}/{path}")
+        page.emulate_media(media="print", color_scheme="dark")
+        assert not page.locator("#navigation").is_visible()
+        assert (
+            page.locator("main button:visible:not(.sort, .fold, .back-list button), .bar button:visible").count() == 0
+        ), path
+        assert page.evaluate("getComputedStyle(document.body).color") == "rgb(27, 33, 39)"
+    page.close()

@@ -1,0 +1,90 @@
+"""Pages on a telephone: tables become rows with the names of their figures, and no kind of page scrolls sideways."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Page as BrowserPage
+
+from archgen import pipeline
+from archgen.products import project_outputs
+from archgen.products.output_options import OutputOptions
+from tests.emit.site.test_page_policy import choose_pages
+
+ROOT = Path(__file__).resolve().parents[3]
+WIDE = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken, .matrix-box, thead") &&
+    e.getBoundingClientRect().right > innerWidth + 1).map(e => e.outerHTML.slice(0, 90))"""
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the case study's site, with its real pictures."""
+    place = tmp_path_factory.mktemp("out") / "example"
+    project_outputs.write_site(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"), place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Start Chromium."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert chromium, "this test needs Chromium (Debian: `chromium`)"
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield started
+        started.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[BrowserPage]:
+    """Open a page as wide as a telephone."""
+    opened = browser.new_context(viewport={"width": 390, "height": 844}).new_page()
+    yield opened
+    opened.context.close()
+
+
+def test_no_kind_of_page_scrolls_sideways(page: BrowserPage, example: Path) -> None:
+    wide = {}
+    for path in choose_pages(example):
+        page.goto(f"file://{example}/{path}")
+        if page.evaluate("document.documentElement.scrollWidth") > 390 or page.evaluate(WIDE):
+            wide[path] = page.evaluate(WIDE)
+    assert wide == {}
+
+
+def test_rows_of_a_table_stand_below_one_another_with_the_names_of_their_figures(
+    page: BrowserPage, example: Path
+) -> None:
+    page.goto(f"file://{example}/partners/certh/forth.html")
+    table = page.get_by_role("table", name="CERTH-ITI gives FORTH-ICS")
+    title, figure, size = (table.get_by_role("row").nth(1).get_by_role("cell").nth(at) for at in (0, 2, 5))
+    boxes = [cell.bounding_box() for cell in (title, figure, size)]
+    assert all(boxes)
+    tops = [box["y"] for box in boxes if box]
+    assert tops[0] == pytest.approx(tops[1], abs=2)
+    assert tops[2] > tops[0]
+    assert (
+        page.evaluate("getComputedStyle(document.querySelector('.as-rows td[data-label]'), '::before').content")
+        == '"Message, topic "'
+    )
+
+
+def test_rows_can_still_be_sorted_and_filtered(page: BrowserPage, example: Path) -> None:
+    page.goto(f"file://{example}/messages.html")
+    page.get_by_role("searchbox").fill("fallen")
+    shown = "[...document.querySelectorAll('tbody tr')].filter(row => row.checkVisibility()).length"
+    assert page.evaluate(shown) == 1
+    page.get_by_role("searchbox").fill("")
+    page.get_by_role("button", name="Fields").click()
+    assert page.evaluate("document.querySelector('th[aria-sort]').ariaSort") == "ascending"
+
+
+def test_a_wider_window_has_tables_again(page: BrowserPage, example: Path) -> None:
+    page.goto(f"file://{example}/messages.html")
+    assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "flex"
+    page.set_viewport_size({"width": 1200, "height": 800})
+    assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "table-row"
