@@ -5,6 +5,7 @@ elsewhere.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -43,30 +44,69 @@ def build_site(  # noqa: PLR0913 - what a site is made of
 
     Links in the pictures must be `#` and the anchor that they lead to.
     """
-    backend = backend_manifests.read_shipped_backend("site")
-    links = collect_links(pages)
-    navigation = build_navigation(pages, links, _navigation_kinds(backend))
     chapter_writer = ChapterWriter(chapter_files)
-    template = _page_template(backend.folder)
+    frame = make_frame(pages, title=title, revision=revision, notices=notices)
     files = [
-        *_read_assets(backend.folder),
-        *_picture_files(pictures, links),
-        *build_search_files(search_entries, links),
+        *read_assets(),
+        *_picture_files(pictures, frame.links),
+        *build_search_files(search_entries, frame.links),
     ]
     for page in pages:
-        path = links.files[page.path]
-        writer = PageWriter(open_page(path, links), pictures, chapter_writer)
-        variables = _page_variables(page, writer, navigation, notices)
+        path = frame.links.files[page.path]
         # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
-        files.append(
-            (
-                path,
-                template.render(
-                    variables, title=replace_forbidden(title), revision=replace_forbidden(revision)
-                ).encode(),
-            )
-        )
+        files.append((path, write_page(path, page, pictures, frame, chapter_writer)))
     return make_file_tree((*files, *chapter_writer.files.items()))
+
+
+@dataclass(frozen=True, slots=True)
+class SiteFrame:
+    """What all pages of a site have in common. `version` is empty but in a site that is served: then it tells one state
+    of the project from another, and pages may ask their server for the next.
+    """
+
+    title: str
+    revision: str
+    notices: Sequence[Paragraph]
+    links: SiteLinks
+    navigation: SiteNavigation
+    version: str = ""
+
+
+def make_frame(
+    pages: Sequence[Page], *, title: str, revision: str, notices: Sequence[Paragraph], version: str = ""
+) -> SiteFrame:
+    """Make what the pages of a site have in common: titles, links and navigation."""
+    links = collect_links(pages)
+    navigation = build_navigation(pages, links, _navigation_kinds(_read_backend()))
+    return SiteFrame(title, revision, notices, links, navigation, version)
+
+
+def write_page(
+    path: str, page: Page, pictures: Mapping[str, Picture], frame: SiteFrame, chapter_writer: ChapterWriter
+) -> bytes:
+    """Write one page, which is at this path of the site."""
+    template = _page_template(_read_backend().folder)
+    writer = PageWriter(open_page(path, frame.links), pictures, chapter_writer)
+    variables = _page_variables(page, writer, frame.navigation, frame.notices)
+    return template.render(
+        variables,
+        title=replace_forbidden(frame.title),
+        revision=replace_forbidden(frame.revision),
+        version=frame.version,
+    ).encode()
+
+
+def write_picture(picture_id: str, picture: Picture, links: SiteLinks) -> bytes | None:
+    """Write a picture as a file of its own; None where it could not be drawn."""
+    if picture.svg is None:
+        return None
+    current_page = open_page(drawing.picture_path(picture_id), links)
+    return drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
+
+
+@cache
+def _read_backend() -> backend_manifests.Backend:
+    return backend_manifests.read_shipped_backend("site")
 
 
 def _page_variables(
@@ -117,18 +157,15 @@ def page_environment(folder: Path) -> Environment:
 def _picture_files(pictures: Mapping[str, Picture], links: SiteLinks) -> Iterator[tuple[str, bytes]]:
     """Yield a file for each picture; the page's picture links to it."""
     for picture_id, picture in pictures.items():
-        if picture.svg is not None:
-            path = drawing.picture_path(picture_id)
-            current_page = open_page(path, links)
-            yield (
-                path,
-                drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root)),
-            )
+        data = write_picture(picture_id, picture, links)
+        if data is not None:
+            yield drawing.picture_path(picture_id), data
 
 
 @cache
-def _read_assets(folder: Path) -> tuple[tuple[str, bytes], ...]:
+def read_assets() -> tuple[tuple[str, bytes], ...]:
     """Read the files that pages load: style, script and fonts, and the style of pictures."""
+    folder = _read_backend().folder
     asset_paths = (
         (path.relative_to(folder).as_posix(), path) for path in sorted((folder / "assets").rglob("*")) if path.is_file()
     )

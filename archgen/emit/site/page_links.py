@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
@@ -64,6 +64,11 @@ def collect_links(pages: Iterable[Page]) -> SiteLinks:
         for anchor, name in own_ids.items():
             places.setdefault(anchor, f"{path}#{name}")
     return SiteLinks(pages_by_anchor, places, ids, files)
+
+
+def renew_ids(links: SiteLinks, path: str, page: Page) -> SiteLinks:
+    """Return the links with the ids of a page that was made anew. Places on other pages stay as they were."""
+    return replace(links, ids={**links.ids, path: _assign_ids(page)})
 
 
 def open_page(path: str, links: SiteLinks) -> CurrentPage:

@@ -22,7 +22,7 @@ from archgen.views.tables import architecture_tables, project_growth
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     """Make every page of the site."""
-    page_maker = _PageMaker(lookup, edition)
+    page_maker = PageMaker(lookup, edition)
     functional_pages = [
         page_maker.start_page(),
         *page_maker.group_pages(),
@@ -66,8 +66,8 @@ def _drop_facts(blocks: Iterable[Block], names: set[str]) -> tuple[Block, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class _PageMaker:
-    """Makes the pages; each method returns one page or yields several."""
+class PageMaker:
+    """Makes the pages; each method returns one page or yields several. Paths of pages may still collide."""
 
     lookup: Lookup
     edition: DocumentEdition
@@ -122,11 +122,12 @@ class _PageMaker:
         """Make a page for each shown group, followed by its shown components."""
         for name in self.lookup.shown_groups():
             group = self.architecture.groups[name]
-            yield self._group_page(group)
+            yield self.make_group_page(group)
             for component in self.lookup.shown_components(name):
-                yield self._component_page(group, component)
+                yield self.make_component_page(group, component)
 
-    def _group_page(self, group: Group) -> Page:
+    def make_group_page(self, group: Group) -> Page:
+        """Make the page of a group."""
         blocks = _drop_facts(self.keep_drawn(make_group_blocks(self.lookup, group)), {"Components"})
         section = Section(f"group:{group.id}", group.title, blocks)
         lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
@@ -136,7 +137,8 @@ class _PageMaker:
         """Return a page's lead with the titles of the owners behind it."""
         return " · ".join([lead, *(self.architecture.partners[owner].title for owner in owners)])
 
-    def _component_page(self, group: Group, component: Component) -> Page:
+    def make_component_page(self, group: Group, component: Component) -> Page:
+        """Make the page of a component."""
         sections = []
         if self.edition.level == "implementation":
             blocks = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
@@ -162,9 +164,10 @@ class _PageMaker:
     def node_pages(self) -> Iterator[Page]:
         """Make a page for each shown node."""
         for node in sorted(self.lookup.shown_nodes(), key=lambda each: each.id):
-            yield self._node_page(node)
+            yield self.make_node_page(node)
 
-    def _node_page(self, node: Node) -> Page:
+    def make_node_page(self, node: Node) -> Page:
+        """Make the page of a node."""
         section = Section(
             f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), tuple(self._finding_sections(node.id))
         )
@@ -231,7 +234,7 @@ class _PageMaker:
         )
         growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
-        yield from self._timing_pages()
+        yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
         if self.edition.level == "implementation":
@@ -250,7 +253,7 @@ class _PageMaker:
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
 
-    def _timing_pages(self) -> Iterator[Page]:
+    def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
         graphs = self.edition.drawings
         if self.lookup.timing is not None and self.edition.level == "implementation":
