@@ -20,7 +20,7 @@ def make_page(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page | N
     return page_marks.mark_pages(lookup, (page,))[0] if page else None
 
 
-def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:
+def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # noqa: PLR0911 - one for each kind
     """Return pages of which one may be that of the anchor: as few as can be where there are many of a kind."""
     architecture, lookup = page_maker.architecture, page_maker.lookup
     kind, _, name = anchor.partition(":")
