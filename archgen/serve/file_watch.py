@@ -59,7 +59,7 @@ def take_snapshot(places: WatchedPlaces) -> Snapshot:
 
 def _add_file(snapshot: dict[str, tuple[int, int, int]], path: str) -> None:
     try:
-        status = os.stat(path)
+        status = os.stat(path)  # noqa: PTH116 - a Path for each file takes as long as asking
     except OSError:
         return
     snapshot[path] = (status.st_mtime_ns, status.st_size, status.st_ino)

@@ -33,7 +33,9 @@ from archgen.views.search import make_search_entries
 from archgen.views.shapes import Figure, Page, Section
 
 _IDLE_TIME = 0.4
-"""Seconds without a change after which the whole site is made anew: until then a reader's page comes first."""
+"""Seconds without a change after which the whole site is made anew: until then a reader's page comes first. Where that took
+long the last time, as long again: it would hold up the next change.
+"""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,7 @@ class LiveSite:
         self._shared = _Shared()
         self._index_lock = threading.Lock()
         self._counter = 0
+        self._index_seconds = 0.0
         # Another run counts from one as well, and open pages must notice that it is another one.
         self._run = secrets.token_hex(4)
         self._pictures = LivePictures(self._announce)
@@ -273,12 +276,13 @@ class LiveSite:
                     return
                 state = self._shared.state
                 is_due = self._is_index_due()
-                left = _IDLE_TIME - (time.monotonic() - self._shared.last_change)
+                left = max(_IDLE_TIME, self._index_seconds) - (time.monotonic() - self._shared.last_change)
             if not is_due or state is None:
                 continue
             if left > 0:
                 time.sleep(left)
                 continue
+            start = time.monotonic()
             newer_state = renew_history(state, self._options)
             with self._shared.changed:
                 if self._shared.state is state:
@@ -286,6 +290,7 @@ class LiveSite:
             self._current_index()
             # Archgen's command line collects no garbage, since a run is short; this one is not.
             gc.collect()
+            self._index_seconds = time.monotonic() - start
             self._announce()
 
     def _is_index_due(self) -> bool:
@@ -322,5 +327,3 @@ def _read_live_assets() -> dict[str, bytes]:
     """Read the script and the style that only served pages load."""
     folder = resource_path("backends", "site", "live")
     return {f"live/{file.name}": file.read_bytes() for file in sorted(folder.iterdir()) if file.is_file()}
-
-

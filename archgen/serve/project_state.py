@@ -60,9 +60,7 @@ def renew_history(state: ProjectState, options: OutputOptions) -> ProjectState:
     revision = project_views.choose_revision(state.checked_project, options)
     if (history, revision) == (state.edition.history, state.edition.revision):
         return state
-    return _make_with_history(
-        state.checked_project, options, state.lookup, state.full_analysis, (history, revision)
-    )
+    return _make_with_history(state.checked_project, options, state.lookup, state.full_analysis, (history, revision))
 
 
 def _make_with_history(
@@ -73,8 +71,6 @@ def _make_with_history(
     history_and_revision: tuple[History, str],
 ) -> ProjectState:
     history, revision = history_and_revision
-    drawings = DrawingsOnDemand(
-        lookup, options.level or "implementation", project_growth.make_growth_charts(history)
-    )
+    drawings = DrawingsOnDemand(lookup, options.level or "implementation", project_growth.make_growth_charts(history))
     edition = project_views.make_edition(checked_project, options.level, drawings, history, revision)
     return ProjectState(checked_project, lookup, edition, full_analysis)

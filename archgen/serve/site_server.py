@@ -140,12 +140,12 @@ class _RequestHandler(BaseHTTPRequestHandler):
             return
         try:
             overrides = what_if.read_question(data)
-            # One at a time: each takes a whole processor.
-            with self.server.question_lock:
-                answer = what_if.answer_question(state, overrides)
         except what_if.QuestionError as error:
             self._send_json(HTTPStatus.BAD_REQUEST, {"error": str(error)})
             return
+        # One at a time: each takes a whole processor.
+        with self.server.question_lock:
+            answer = what_if.answer_question(state, overrides)
         self._send_json(HTTPStatus.OK, answer)
 
     def _refuse(self) -> bool:

@@ -13,7 +13,7 @@ from archgen.link.override_values import OverrideError
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.declared_timing import Timing
 from archgen.serve.project_state import ProjectState
-from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.timing_system import Activity
@@ -27,7 +27,7 @@ JsonObject = dict[str, Any]
 
 
 class QuestionError(ValueError):
-    """A question cannot be answered; the message says why, in the words of `--set`."""
+    """What was sent is no question; the message says why."""
 
 
 def read_question(data: bytes) -> tuple[str, ...]:
@@ -48,16 +48,15 @@ def read_question(data: bytes) -> tuple[str, ...]:
 
 def answer_question(state: ProjectState, overrides: Sequence[str]) -> JsonObject:
     """Return the timing as it is and as it would be: the document of `archgen timing --set --format json`, and `rows`,
-    which say what differs in words. Raise `QuestionError` for what cannot be set.
+    which say what differs in words. For what cannot be set, `error` says why.
     """
     present = state.lookup.timing
     if present is None:
-        msg = "the project has no timing"
-        raise QuestionError(msg)
+        return {"error": "the project has no timing"}
     try:
         architecture = apply_overrides(state.checked_project.architecture, overrides)
     except OverrideError as error:
-        raise QuestionError(make_visible(str(error))) from None
+        return {"error": make_visible(str(error))}
     changed = bound_chains(analyse_architecture(architecture), architecture)
     return {
         "version": timing_json.VERSION,
@@ -145,11 +144,11 @@ def list_figures(state: ProjectState, chain_id: str) -> list[JsonObject]:
         figure
         for name in names
         if (activity := timing_lookup.analysis.system.activities.get(name)) is not None
-        for figure in _list_activity_figures(state, timing_lookup.analysis, activity)
+        for figure in _list_activity_figures(state, activity)
     ]
 
 
-def _list_activity_figures(state: ProjectState, analysis: Analysis, activity: Activity) -> Iterator[JsonObject]:
+def _list_activity_figures(state: ProjectState, activity: Activity) -> Iterator[JsonObject]:
     architecture = state.checked_project.architecture
     node = architecture.nodes.get(activity.node)
     if node is None:

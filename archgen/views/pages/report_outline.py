@@ -241,7 +241,7 @@ class _ChapterMaker:
 
     def make_statistics(self) -> list[Section]:
         """Make the appendix of size, progress and growth."""
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
+        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
         return self._make_appendix("progress", "Statistics", *self.edition.statistics, *growth_blocks)
 
     def _make_appendix(self, anchor: str, title: str, *blocks: Block | None) -> list[Section]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import chain
 
 from archgen.views.lookup import Lookup
@@ -40,6 +40,8 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
             return page_maker.rule_pages()
         case "timing" | "chain":
             return page_maker.timing_pages()
+        case "page" if name in {"timing", "chains"}:
+            return page_maker.timing_pages()
         case "component" | "group" | "node" | "topic":
             return ()
         case _:
@@ -47,6 +49,14 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
             # Generators: no further page is made when the one looked for is there.
             return chain(
                 start_page,
-                page_maker.spanning_pages() if kind == "page" else (),
+                _UntimedPageMaker(lookup, page_maker.edition).spanning_pages() if kind == "page" else (),
                 context_pages.make_context_pages(lookup, page_maker.keep_drawn),
             )
+
+
+class _UntimedPageMaker(PageMaker):
+    """Makes pages as its base does, without those on timing: they are the dearest, and stand between the others."""
+
+    def timing_pages(self) -> Iterator[Page]:
+        """Make no page."""
+        yield from ()

@@ -232,7 +232,7 @@ class PageMaker:
             architecture_tables.make_finding_table(self.lookup, self.lookup.findings),
             *(chain_blocks if chain_points else ()),
         )
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
+        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]

@@ -201,6 +201,11 @@
     return field;
   }
 
+  function makeTable(name, head, rows) {
+    const table = element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows));
+    return element("div", { className: "fields", role: "group", ariaLabel: name, tabIndex: 0 }, table);
+  }
+
   function makeCard(figures) {
     const labels = [...new Set(figures.map((figure) => figure.label))];
     const elements = [...new Set(figures.map((figure) => figure.element))];
@@ -218,7 +223,7 @@
       showFields();
     });
     const form = element("form", {},
-      element("div", { className: "fields" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows))),
+      makeTable("Figures", head, rows),
       element("div", { className: "buttons" }, clear, element("span", { className: "muted command" })),
       element("div", { className: "answer", ariaLive: "polite" }));
     form.addEventListener("submit", (event) => event.preventDefault());
@@ -242,16 +247,16 @@
       return;
     }
     const answer = await fetch(base + "live/what-if", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ set }) });
-    const document_ = await answer.json();
+    const answered = await answer.json();
     if (number !== asked) return; // a later question is on its way
     const place = card.querySelector(".answer");
-    if (!answer.ok) {
-      place.replaceChildren(element("p", { className: "wrong", role: "alert", textContent: document_.error }));
+    if (answered.error) {
+      place.replaceChildren(element("p", { className: "wrong", role: "alert", textContent: answered.error }));
       return;
     }
     const quoted = set.map((text) => " --set '" + text.replaceAll("'", "'\\''") + "'").join("");
     card.querySelector(".command").replaceChildren(element("code", { textContent: "archgen timing" + quoted }));
-    const rows = document_.rows.filter((row) => row.differs || (row.kind === "chain" && chain && decodeURIComponent(chain[1]) === row.id));
+    const rows = answered.rows.filter((row) => row.differs || (row.kind === "chain" && chain && decodeURIComponent(chain[1]) === row.id));
     place.replaceChildren(makeAnswer(rows));
   }
 
@@ -264,7 +269,7 @@
     };
     const head = element("tr", {}, ...["Chain or host", "As written", "Tried", "Difference"].map((title) => element("th", { scope: "col", textContent: title })));
     const body = rows.map((row) => element("tr", { className: row.differs ? "" : "same" }, element("th", { scope: "row", textContent: row.title }), cell(row.now), cell(row.then), element("td", { className: "right", textContent: row.differs ? row.difference : "the same" })));
-    return element("div", { className: "fields" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
+    return makeTable("Answer", head, body);
   }
 
   showFields();
