@@ -32,6 +32,7 @@ class Reply:
         self.headers = dict(response.getheaders())
 
     def json(self) -> Any:  # noqa: ANN401 - whatever it is
+        """Return what was sent as JSON."""
         return json.loads(self.data)
 
 

@@ -127,6 +127,7 @@ def _page_variables(
             (replace_forbidden(section.title), current_page.id_for(section.anchor)) for section in page.section.sections
         ],
         "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
+        "waterfall": writer.write_waterfall(page.waterfall) if page.waterfall else "",
         "content": writer.write_content(page.section),
     }
 

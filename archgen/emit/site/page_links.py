@@ -9,7 +9,7 @@ from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
 from archgen.views.shapes import Block, Figure, Page, Section, Table
 
-RESERVED_IDS = ("content", "navigation")
+RESERVED_IDS = ("content", "navigation", "waterfall-hatch")
 """Ids that the page's template uses."""
 
 
@@ -80,7 +80,8 @@ def _assign_ids(page: Page) -> dict[str, str]:
     """Assign each anchor on the page an id of its own, in order of appearance."""
     taken_ids = set(RESERVED_IDS)
     ids = dict[str, str]()
-    card_blocks = (block for card in page.dashboard.cards for block in card.blocks) if page.dashboard else ()
+    card_lists = (part.cards for part in (page.dashboard, page.waterfall) if part)
+    card_blocks = (block for cards in card_lists for card in cards for block in card.blocks)
     for anchor in (*_list_block_anchors(card_blocks), *_list_anchors(page.section)):
         if anchor in ids:
             continue

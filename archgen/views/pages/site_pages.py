@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from archgen.diagnostics.common_wording import join_words
@@ -18,6 +18,7 @@ from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
+from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
@@ -57,7 +58,7 @@ def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
     return tuple(result)
 
 
-def _drop_facts(blocks: Iterable[Block], names: set[str]) -> tuple[Block, ...]:
+def _drop_facts(blocks: Iterable[Block], names: Collection[str]) -> tuple[Block, ...]:
     """Drop the facts that the line below the title, or the way to the page, says already."""
     return tuple(
         Facts(tuple(row for row in block.rows if row[0] not in names)) if isinstance(block, Facts) else block
@@ -271,9 +272,19 @@ class PageMaker:
                 yield Page(path, section.anchor, section.title, "timing", section, crumbs, "Timing")
         yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
         crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
+        results = {f"chain:{result.id}": result for result in self.lookup.timing.chains} if self.lookup.timing else {}
         for section in timing_chapter.make_chain_sections(self.lookup, graphs):
             path = f"chains/{section.anchor.partition(':')[2]}.html"
-            yield Page(path, section.anchor, section.title, "chains", section, crumbs, "Chain of effect")
+            result = results[section.anchor]
+            waterfall = make_waterfall(self.lookup, self.lookup.timing, result) if self.lookup.timing else None
+            # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
+            shown_blocks = _drop_facts(
+                (block for block in section.blocks if not (waterfall and isinstance(block, Figure))),
+                WATERFALL_FACTS if waterfall else (),
+            )
+            shown_section = replace(section, blocks=shown_blocks)
+            lead = "Chain of effect"
+            yield Page(path, section.anchor, section.title, "chains", shown_section, crumbs, lead, waterfall=waterfall)
 
     def _spanning_page(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
         """Make a page for the whole architecture."""

@@ -25,7 +25,9 @@
   function describe(error) {
     const line = element("p", {});
     if (error.place) line.append(element("span", { className: "place", textContent: error.place }), " ");
-    line.append(error.message + (error.help ? "; " + error.help : ""));
+    // Names stand between backticks.
+    const words = (error.message + (error.help ? "; " + error.help : "")).split("`");
+    line.append(...words.map((part, at) => (at % 2 ? element("code", { textContent: part }) : part)));
     const note = element("div", { className: "mistake" }, line);
     if (error.line.trim()) {
       const at = error.column - 1;
@@ -207,7 +209,7 @@
   }
 
   function makeCard(figures) {
-    const labels = [...new Set(figures.map((figure) => figure.label))];
+    const labels = ["Execution time", "Period", "Rate", "Priority", "Host"].filter((label) => figures.some((figure) => figure.label === label));
     const elements = [...new Set(figures.map((figure) => figure.element))];
     const head = element("tr", {}, element("th", { scope: "col", textContent: "Step" }), ...labels.map((label) => element("th", { scope: "col", textContent: label })));
     const rows = elements.map((name) => {
@@ -228,7 +230,7 @@
       element("div", { className: "answer", ariaLive: "polite" }));
     form.addEventListener("submit", (event) => event.preventDefault());
     return element("section", { className: "what-if", ariaLabel: "What if" }, element("h2", { textContent: "What if" }),
-      element("p", { className: "muted", textContent: "Change a figure: nothing is written, and the answer is that of archgen timing --set." }), form);
+      element("p", { className: "muted", textContent: "Change a figure: nothing is written. The answer is that of archgen timing --set." }), form);
   }
 
   let timer = 0, asked = 0;
@@ -267,7 +269,7 @@
       else if (side.margin) made.append(" ", element("span", { className: "muted", textContent: side.margin }));
       return made;
     };
-    const head = element("tr", {}, ...["Chain or host", "As written", "Tried", "Difference"].map((title) => element("th", { scope: "col", textContent: title })));
+    const head = element("tr", {}, ...["Chain or host", "As written", "Tried", "Difference"].map((title, at) => element("th", { scope: "col", className: at ? "right" : "", textContent: title })));
     const body = rows.map((row) => element("tr", { className: row.differs ? "" : "same" }, element("th", { scope: "row", textContent: row.title }), cell(row.now), cell(row.then), element("td", { className: "right", textContent: row.differs ? row.difference : "the same" })));
     return makeTable("Answer", head, body);
   }
