@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from archgen.model.selector_evaluation import Selection
 from archgen.products.trusted_backends import TrustedRevision
+from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.pages.report_outline import DetailLevel
 
 DrawingProgress = Callable[[int, int], None]
@@ -31,3 +32,5 @@ class OutputOptions:
     """Whether documents show how the project grew; only possible where git can tell."""
     trusted_revision: TrustedRevision | None = None
     """Decides which backends of the project itself may run; None allows all of them."""
+    changes: SiteChanges | None = None
+    """What changed since an earlier version, where the site is to show it."""

@@ -18,6 +18,7 @@ from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
+from archgen.views.changes.site_changes import mark_drawings
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
@@ -76,8 +77,11 @@ def make_views(checked_project: CheckedProject, options: OutputOptions) -> Proje
     project_history = read_history(checked_project, options)
     all_drawings = drawing_set.make_drawings(lookup, options.selection, options.level or "implementation")
     all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
+    if options.changes:
+        all_drawings = mark_drawings(all_drawings, options.changes)
     revision = choose_revision(checked_project, options)
     edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)
+    edition = replace(edition, changes=options.changes)
     return ProjectViews(lookup, edition, all_drawings)
 
 

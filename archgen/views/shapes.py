@@ -278,6 +278,8 @@ class Page:
     """Where the time of a chain goes, above the page's section."""
     mark: Literal["open", "missed"] | None = None
     """What the navigation marks: something here is open, or a deadline is missed."""
+    is_changed: bool = False
+    """Whether this differs from the version that the site is compared with; the navigation marks that, too."""
 
 
 def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type

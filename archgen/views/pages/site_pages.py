@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node
 from archgen.views import inline_text
+from archgen.views.changes.site_changes import add_changes
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
@@ -37,7 +38,8 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
     all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
-    return page_marks.mark_pages(lookup, all_pages)
+    marked_pages = page_marks.mark_pages(lookup, all_pages)
+    return add_changes(marked_pages, edition.changes, edition.drawings) if edition.changes else marked_pages
 
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
