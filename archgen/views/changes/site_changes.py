@@ -4,19 +4,20 @@ both versions of what changed side by side.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import get_args
+from typing import Literal, get_args
 
 from archgen.compare import Change, Comparison
+from archgen.compare.text_differences import find_differences
 from archgen.views import inline_text
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument
 from archgen.views.changes.comparison_outline import write_comparison_outline
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Box, ElementChange, Graph
-from archgen.views.shapes import Block, Column, Facts, Inlines, Page, Section, Table, Text
+from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Page, Section, Table, Text
 
 CHANGES_ANCHOR = "page:changes"
 _PAGE_KINDS = frozenset(
@@ -99,32 +100,51 @@ def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
     return "renamed" if own_kinds & {"renamed", "moved"} else "changed"
 
 
-def add_changes(
-    pages: Iterable[Page], site_changes: SiteChanges, drawing_ids: Mapping[str, Drawing]
-) -> tuple[Page, ...]:
+def add_changes(pages: Iterable[Page], site_changes: SiteChanges, drawings: Mapping[str, Drawing]) -> tuple[Page, ...]:
     """Return the pages with marks and with both versions of what changed, and behind the first one the page of changes."""
     first_page, *other_pages = (_mark_page(page, site_changes) for page in pages)
-    return (first_page, _make_changes_page(site_changes, first_page, drawing_ids), *other_pages)
+    anchors = {page.anchor for page in other_pages}
+    return (first_page, _make_changes_page(site_changes, first_page, drawings, anchors), *other_pages)
 
 
-def _make_changes_page(site_changes: SiteChanges, first_page: Page, drawings: Mapping[str, Drawing]) -> Page:
+def _make_changes_page(
+    site_changes: SiteChanges, first_page: Page, drawings: Mapping[str, Drawing], anchors: Collection[str]
+) -> Page:
     outline = write_comparison_outline(site_changes.document)
+    ids = {anchor.partition(":")[2]: anchor for anchor in sorted(anchors) if anchor.partition(":")[0] in _PAGE_KINDS}
     sections = tuple(
-        section
+        _link_section(section, ids)
         for section in outline.sections
         if section.anchor != "changes:pictures" or any(graph.id in drawings for graph in site_changes.document.graphs)
     )
     blocks: tuple[Block, ...] = (*outline.notices, Facts(outline.facts))
     section = Section(CHANGES_ANCHOR, "Changes", blocks, sections)
-    return Page(
-        "changes.html",
-        CHANGES_ANCHOR,
-        "Changes",
-        "spanning",
+    crumbs = (("Overview", first_page.anchor),)
+    return Page("changes.html", CHANGES_ANCHOR, "Changes", "spanning", section, crumbs, outline.subtitle)
+
+
+def _link_section(section: Section, ids: Mapping[str, str]) -> Section:
+    """Link the ids of elements that have a page; a port's id leads to its component."""
+
+    def link(runs: Inlines) -> Inlines:
+        return tuple(
+            replace(run, ref=ids.get(run.text) or ids.get(run.text.rpartition(".")[0])) if run.code else run
+            for run in runs
+        )
+
+    return replace(
         section,
-        (("Overview", first_page.anchor),),
-        outline.subtitle,
+        blocks=tuple(_link_block(block, link) for block in section.blocks),
+        sections=tuple(_link_section(inner, ids) for inner in section.sections),
     )
+
+
+def _link_block(block: Block, link: Callable[[Inlines], Inlines]) -> Block:
+    if isinstance(block, Bullets):
+        return replace(block, items=tuple(map(link, block.items)))
+    if isinstance(block, Table):
+        return replace(block, rows=tuple(tuple(map(link, row)) for row in block.rows))
+    return block
 
 
 def _mark_page(page: Page, site_changes: SiteChanges) -> Page:
@@ -183,7 +203,7 @@ def _list_rows(change: Change, anchor: str) -> Iterator[tuple[Inlines, ...]]:
     name = "" if is_own else f"{change.element_kind} {change.element_id.rpartition('.')[2]}"
     if change.key is not None:
         what = " · ".join(filter(None, (name, change.key.replace(".", " · "))))
-        yield inline_text.to_inlines(what), _show_value(change.before), _show_value(change.after)
+        yield inline_text.to_inlines(what), *_show_values(change.before, change.after)
     elif change.kind in {"renamed", "moved"}:
         old, new = Text(change.old_id or "", code=True), Text(change.element_id, code=True)
         yield inline_text.to_inlines(" ".join(filter(None, (name, change.kind)))), (old,), (new,)
@@ -194,6 +214,31 @@ def _list_rows(change: Change, anchor: str) -> Iterator[tuple[Inlines, ...]]:
         yield inline_text.to_inlines(name), before, after
     for part in change.parts:
         yield from _list_rows(part, anchor)
+
+
+def _show_values(before: object, after: object) -> tuple[Inlines, Inlines]:
+    """Show two values side by side, with what differs between two texts marked."""
+    if not isinstance(before, str) or not isinstance(after, str):
+        return _show_value(before), _show_value(after)
+    old_words, new_words = before.split(), after.split()
+    differences = tuple(find_differences(old_words, new_words))
+    return (
+        _mark_words(old_words, ((start, end) for start, end, _, _ in differences), "removed"),
+        _mark_words(new_words, ((start, end) for _, _, start, end in differences), "added"),
+    )
+
+
+def _mark_words(
+    words: Sequence[str], stretches: Iterable[tuple[int, int]], mark: Literal["added", "removed"]
+) -> Inlines:
+    """Return words as a text in which some stretches are marked."""
+    runs, position = list[Text](), 0
+    for start, end in stretches:
+        runs += [Text(" ".join(words[position:start])), Text(" ".join(words[start:end]), change=mark)]
+        position = end
+    runs.append(Text(" ".join(words[position:])))
+    present_runs = [run for run in runs if run.text]
+    return tuple(run for at, each in enumerate(present_runs) for run in ((Text(" "), each) if at else (each,)))
 
 
 def _show_value(value: object) -> Inlines:
