@@ -11,6 +11,7 @@ VERBS = {
     "build": "Make everything: report, site, diagrams, packed file.",
     "report": "Write the Word report.",
     "site": "Write the static web site.",
+    "serve": "Show the site while its files are edited.",
     "diagram": "Draw the diagrams.",
     "pack": "Write one validated YAML file that holds the whole project.",
     "generate": "Make a workspace by a backend of the project.",

@@ -135,6 +135,21 @@ def explain_write_errors() -> Iterator[None]:
         raise click.ClickException(f"{error.strerror or error}: {error.filename or ''}".rstrip(": ")) from None
 
 
+@contextmanager
+def explain_missing_versions() -> Iterator[None]:
+    """Turn versions that cannot be found into wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.git import GitError, NoRepositoryError
+    from archgen.project import ProjectNotFoundError
+
+    try:
+        yield
+    except NoRepositoryError as error:
+        raise click.UsageError(make_visible(f"{error}, or name two folders or files to compare")) from None
+    except (GitError, ProjectNotFoundError) as error:
+        raise click.UsageError(make_visible(str(error))) from None
+
+
 def read_input(path: Path, max_bytes: int) -> bytes:
     """Read a file, or the standard input for `-`. At most one byte more than `max_bytes`, so the caller sees what is
     too long.

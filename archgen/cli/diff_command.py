@@ -24,17 +24,10 @@ def _read_versions(
     before: str | None, after: str | None, project: Path | None
 ) -> tuple[ProjectVersion, ProjectVersion]:
     """Read both versions. What cannot be found is wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.git import GitError, NoRepositoryError
     from archgen.products.compared_versions import read_versions
-    from archgen.project import ProjectNotFoundError
 
-    try:
+    with command_support.explain_missing_versions():
         return read_versions(before, after, project)
-    except NoRepositoryError as error:
-        raise click.UsageError(make_visible(f"{error}, or name two folders or files to compare")) from None
-    except (GitError, ProjectNotFoundError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _select_changes(

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 @shared_options.select_option
 @shared_options.level_option
 @shared_options.revision_option
+@click.option(
+    "--since",
+    metavar="REV",
+    help="Show what changed since a version (as `archgen diff` takes it): a page, marks, both versions side by side.",
+)
 @shared_options.history_option
 @shared_options.component_pictures_option
 @shared_options.keep_going_option
@@ -29,6 +34,7 @@ def command(  # noqa: PLR0913 - one for each option
     select: str | None,
     level: DetailLevel | None,
     revision: str | None,
+    since: str | None,
     history: bool,
     component_pictures: bool | None,
     keep_going: bool,
@@ -38,6 +44,12 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products.output_options import OutputOptions
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    changes = None
+    if since is not None:
+        from archgen.products.comparison_documents import compare_since
+
+        with command_support.explain_missing_versions():
+            changes = compare_since(since, project, checked_project)
     output_options = OutputOptions(
         command_support.select_or_exit(checked_project, select),
         select or "",
@@ -47,6 +59,7 @@ def command(  # noqa: PLR0913 - one for each option
         command_support.print_warning,
         history,
         component_pictures=component_pictures,
+        changes=changes,
     )
     target = output or checked_project.output_folder / "site"
     with command_support.explain_write_errors():

@@ -19,7 +19,7 @@ Opcode = tuple[int, int, int, int]
 def describe_text_difference(before: str, after: str) -> str:
     """Return what differs between two texts as quoted pairs of old and new words: `… in metres` → `… in millimetres`."""
     old_words, new_words = before.replace("`", "'").split(), after.replace("`", "'").split()
-    opcodes = list(_find_differences(old_words, new_words))
+    opcodes = list(find_differences(old_words, new_words))
     pairs = [
         f"`{_quote_words(old_words, old_start, old_end)}` → `{_quote_words(new_words, new_start, new_end)}`"
         for old_start, old_end, new_start, new_end in opcodes[:_MAX_DIFFERENCES]
@@ -34,7 +34,7 @@ def cut_text(text: str) -> str:
     return _quote_words(words, 0, len(words))
 
 
-def _find_differences(old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Opcode]:
+def find_differences(old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Opcode]:
     """Yield where two texts differ; differences with hardly a word in between are one."""
     # Imported here: most comparisons change no long text.
     from difflib import SequenceMatcher

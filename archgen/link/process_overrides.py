@@ -13,13 +13,13 @@ from archgen.link import override_values
 from archgen.link.override_values import OverrideError
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS
-from archgen.model.deployment import Host
+from archgen.model.deployment import Container, Host
 from archgen.model.node import Node
 
 _ORDERS = {"nodes": EXECUTOR_ORDERS, "containers": EXECUTOR_ORDERS, "hosts": HOST_ORDERS, "resources": RESOURCE_ORDERS}
 _KEYS: Mapping[str, tuple[str, ...]] = {
-    "nodes": ("threads", "scheduling", "reentrant", "callback_groups"),
-    "containers": ("threads", "scheduling"),
+    "nodes": ("threads", "scheduling", "reentrant", "callback_groups", "host"),
+    "containers": ("threads", "scheduling", "host"),
     "hosts": ("cores", "scheduling"),
     "resources": ("scheduling",),
 }
@@ -83,6 +83,9 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
         is_core = not part or override_values.parse_count(part) is not None
         value = text if text in _ORDERS[section] and is_core else None
         expected = ", ".join(_ORDERS[section]) + (", by host or by the number of a core" if section == "hosts" else "")
+    elif key == "host":
+        value = text if text in architecture.hosts else None
+        expected = "a host" + (f"; {guess}" if (guess := did_you_mean(text, architecture.hosts)) else "")
     elif key == "reentrant":
         value, expected = {"true": True, "false": False}.get(text), "true or false"
     else:
@@ -97,7 +100,7 @@ def _find_members(components: tuple[str, ...], names: list[str]) -> tuple[str, .
 
 
 def _refuse_in_container(architecture: Architecture, override: ProcessOverride) -> None:
-    if override.section == "nodes" and override.key in {"threads", "scheduling"}:
+    if override.section == "nodes" and override.key in {"threads", "scheduling", "host"}:
         container = architecture.nodes[override.element_id].container
         if container:
             msg = f"`{override.element_id}` runs in the container `{container}`: set `containers.{container}.{override.key}`"
@@ -113,6 +116,13 @@ def apply_process_override(architecture: Architecture, override: ProcessOverride
         changes = _change_orders(element, override)
     elif isinstance(element, Node) and override.key == "callback_groups":
         changes = _change_groups(element, override)
+    elif isinstance(element, Container) and override.key == "host":
+        # A node without a host of its own has its container's.
+        nodes = {
+            node.id: replace(node, host=override.value) if node.container == element.id else node
+            for node in architecture.nodes.values()
+        }
+        architecture = replace(architecture, nodes=nodes)
     elif override.key == "reentrant" and override.value:
         changes["callback_groups"] = {}
     changed_section: dict[str, Any] = {override.section: {**elements, override.element_id: replace(element, **changes)}}

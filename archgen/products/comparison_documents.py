@@ -15,8 +15,12 @@ from archgen.views.changes.comparison_document import ComparisonDocument, descri
 from archgen.views.changes.reading_errors import ReadingErrors
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from archgen.emit.picture import Picture
+    from archgen.pipeline import CheckedProject
     from archgen.products.output_options import OutputOptions
+    from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.graph_shapes import Graph
 
 
@@ -114,3 +118,20 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
         raise file_tree.OutputError(msg)
     # There is no page to link to: every link of the picture is dropped.
     return files.standalone_svg(picture.svg, lambda _anchor: None)
+
+
+def compare_since(revision: str, path: Path | None, checked_project: CheckedProject) -> SiteChanges:
+    """Compare a project with an earlier version of itself, for its site. `path` is the project, as for `check_project`.
+
+    Raise `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    from archgen.pipeline import VersionCache
+    from archgen.products import compared_versions
+    from archgen.views.changes.site_changes import SiteChanges
+    from archgen.views.graphs import changes as pictures
+
+    new_version = ProjectVersion(WORKING_TREE_NAME, checked_project)
+    old_version = compared_versions.read_earlier_version(revision, path, VersionCache(), new_version)
+    comparison = compared_versions.compare_named_versions(old_version, new_version)
+    document = describe_versions(comparison, old_version, new_version, pictures.draw_changes(comparison))
+    return SiteChanges(comparison, document, old_version.name)

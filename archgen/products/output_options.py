@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from archgen.model.selector_evaluation import Selection
 from archgen.products.trusted_backends import TrustedRevision
+from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.pages.report_outline import DetailLevel
 
 DrawingProgress = Callable[[int, int], None]
@@ -33,3 +34,5 @@ class OutputOptions:
     """Decides which backends of the project itself may run; None allows all of them."""
     component_pictures: bool | None = None
     """Whether the site has a picture of each component; None: up to `product_inputs.MAX_PICTURED_COMPONENTS` of them."""
+    changes: SiteChanges | None = None
+    """What changed since an earlier version, where the site is to show it."""

@@ -19,9 +19,10 @@ from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
+from archgen.views.changes.site_changes import mark_drawings
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
-from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.tables import project_growth, statistics_tables
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
@@ -79,28 +80,43 @@ def make_views(
     lookup = replace(
         make_scoped_lookup(checked_project, options),
         timing=analyse_with_chains(checked_project.architecture),
-        repository=_locate_repository(checked_project),
+        repository=locate_repository(checked_project),
     )
     project_history = read_history(checked_project, options)
     all_drawings = drawing_set.make_drawings(
         lookup, options.selection, options.level or "implementation", draws_components=draws_components
     )
     all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
-    edition = DocumentEdition(
-        revision=choose_revision(checked_project, options),
-        level=options.level or "implementation",
+    if options.changes:
+        all_drawings = mark_drawings(all_drawings, options.changes)
+    revision = choose_revision(checked_project, options)
+    edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)
+    edition = replace(edition, changes=options.changes)
+    return ProjectViews(lookup, edition, all_drawings)
+
+
+def make_edition(
+    checked_project: CheckedProject,
+    level: DetailLevel | None,
+    drawings: Mapping[str, Drawing],
+    project_history: History,
+    revision: str,
+) -> DocumentEdition:
+    """Say what documents contain beside the architecture."""
+    return DocumentEdition(
+        revision=revision,
+        level=level or "implementation",
         chapter_names=checked_project.chapters.order,
         project_chapters=checked_project.chapters.texts,
-        drawings=all_drawings,
+        drawings=drawings,
         statistics=statistics_tables.make_statistics_tables(checked_project.architecture),
         history=project_history,
         rule_pages=_format_rule_pages(checked_project),
         has_errors=checked_project.has_errors,
     )
-    return ProjectViews(lookup, edition, all_drawings)
 
 
-def _locate_repository(checked_project: CheckedProject) -> SourceRepository | None:
+def locate_repository(checked_project: CheckedProject) -> SourceRepository | None:
     """Return where the project's files are on the web, with the folder that git tells where none is written."""
     repository = checked_project.architecture.repository
     if repository is None or repository.folder is not None:

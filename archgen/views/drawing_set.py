@@ -51,4 +51,9 @@ def _is_implementation_drawing(drawing: Drawing) -> bool:
     """Whether a drawing shows nodes, hosts or timing, which the functional level leaves out."""
     if isinstance(drawing, Graph):
         return drawing.kind in {"ros", "hosts", "implementation", "timing", "group-timing"}
-    return drawing.id == "load" or drawing.id.startswith("load/")
+    return is_implementation_id(drawing.id)
+
+
+def is_implementation_id(drawing_id: str) -> bool:
+    """Whether a drawing of this id, if there is one, shows what the functional level leaves out."""
+    return drawing_id.partition("/")[0] in {"ros", "hosts", "implementation", "timing", "load"}

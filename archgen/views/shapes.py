@@ -218,6 +218,47 @@ class Dashboard:
 
 
 @dataclass(frozen=True, slots=True)
+class WaterfallPiece:
+    """A stretch of a bar, from one share of the axis to another. A cut one is longer than it is drawn."""
+
+    kind: Literal["sampling", "response", "link", "unknown"]
+    start: float
+    end: float
+    tip: str = ""
+    is_cut: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WaterfallStep:
+    """A step: who takes the time, his owner and place below, and the pieces with their words."""
+
+    title: Text
+    note: Inlines
+    pieces: tuple[WaterfallPiece, ...]
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Waterfall:
+    """Where a time goes: all of it on a true scale against its limit, then step by step on an axis that may be cut.
+
+    Positions are shares of an axis. `limits` are those of the limit on both axes, None where it is beyond.
+    """
+
+    lead: Inlines
+    total: tuple[WaterfallPiece, ...]
+    labels: tuple[tuple[float, str], ...]
+    """Words below the whole, each at its position."""
+    limits: tuple[float | None, float | None]
+    limit_text: str
+    ticks: tuple[tuple[float, str], ...]
+    steps: tuple[WaterfallStep, ...]
+    remark: str
+    figures: tuple[KeyFigure, ...]
+    cards: tuple[DashboardCard, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Page:
     """A page of the site.
 
@@ -241,8 +282,12 @@ class Page:
     """What stands above the page's section, at a glance; the pages that it links to say the same at length."""
     matrix: Matrix | None = None
     """A matrix above the page's section."""
+    waterfall: Waterfall | None = None
+    """Where the time of a chain goes, above the page's section."""
     mark: Literal["open", "missed"] | None = None
     """What the navigation marks: something here is open, or a deadline is missed."""
+    is_changed: bool = False
+    """Whether this differs from the version that the site is compared with; the navigation marks that, too."""
 
 
 def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type

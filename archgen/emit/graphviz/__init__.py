@@ -45,12 +45,13 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     ready_workers: Sequence[DrawingWorker] = (),
+    keeps_workers: bool = False,
 ) -> dict[str, Picture]:
     """Draw graphs and charts in some formats. Return the pictures by the graphs' ids.
 
     `resolve_link` returns the address for a ref, or None where its target is not part of the output. `cache` is a
-    folder that archgen may fill; `ready_workers` comes from `start_early_workers`. Raise MissingGraphviz where nothing
-    can be drawn and not all pictures are cached.
+    folder that archgen may fill; `ready_workers` comes from `start_early_workers`, or (`keeps_workers`) goes on for the
+    next call. Raise MissingGraphviz where nothing can be drawn and not all pictures are cached.
     """
     cache = cache if cache and _is_usable(cache) else None
     wanted_formats = tuple(form for form in PICTURE_FORMATS if form in formats)
@@ -73,7 +74,11 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
                     store.store_picture(cache, keys[missing[index]], picture, wanted_formats)
 
         drawn = _draw_tasks(
-            tasks, cache, workers or os.cpu_count() or 1, DrawingObserver(progress, keep_picture), ready_workers
+            tasks,
+            cache,
+            workers or os.cpu_count() or 1,
+            DrawingObserver(progress, keep_picture, keeps_workers),
+            ready_workers,
         )
         pictures.update(zip(missing, drawn, strict=True))
         if cache:
@@ -117,10 +122,10 @@ def _draw_tasks(
 ) -> tuple[Picture, ...]:
     if cache:
         return draw_all(tasks, cache, workers=workers, observer=observer, ready_workers=ready_workers)
-    # Even without a cache the workers need a folder for fontconfig. Early workers exist only with a cache: none to pass
-    # on.
+    # Even without a cache the workers need a folder for fontconfig. Early workers exist only with a cache; those that
+    # are kept have a folder of their own.
     with tempfile.TemporaryDirectory(prefix="archgen-fonts-") as folder:
-        return draw_all(tasks, Path(folder), workers=workers, observer=observer)
+        return draw_all(tasks, Path(folder), workers=workers, observer=observer, ready_workers=ready_workers)
 
 
 def _link_addresses(drawing: Drawing, resolve_link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:

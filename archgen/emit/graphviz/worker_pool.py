@@ -43,6 +43,8 @@ class DrawingObserver:
 
     on_progress: ProgressCallback | None = None
     on_drawn: Callable[[int, Picture], None] = lambda _at, _picture: None
+    keeps_workers: bool = False
+    """Whether the processes go on when all is drawn, for the next run."""
 
 
 _WORKER_CODE = "import sys; sys.path.append({root!r}); from archgen.emit.graphviz.drawing_worker import main; main()"
@@ -95,8 +97,8 @@ def draw_tasks(  # noqa: PLR0913 - what to draw, and how, each by its name
 ) -> tuple[Picture, ...]:
     """Draw all tasks, the largest first. Return the pictures in the order of the tasks.
 
-    Raise MissingGraphviz where no worker can draw. Workers in `ready_workers` are used and stopped; more are started as
-    needed.
+    Raise MissingGraphviz where no worker can draw. Workers in `ready_workers` are used and, unless the observer keeps
+    them, stopped; more are started as needed.
     """
     # Threads, since each only waits for its process; `ready` workers beyond the number of tasks are stopped by who made
     # them.
@@ -147,7 +149,7 @@ class _DrawingRun:
             self._waiting.put((at, task))
 
     def draw_waiting(self, worker: DrawingWorker) -> None:
-        """Draw waiting tasks until there are none, or nothing can be drawn at all. Then stop the worker."""
+        """Draw waiting tasks until there are none, or nothing can be drawn at all. Then stop the worker, unless it is kept."""
         try:
             while not self.missing_library:
                 at, task = self._waiting.get_nowait()
@@ -155,7 +157,8 @@ class _DrawingRun:
         except queue.Empty:
             pass
         finally:
-            worker.stop_process()
+            if not self._observer.keeps_workers:
+                worker.stop_process()
 
     def _finish_task(self, index: int, picture: Picture) -> None:
         self._observer.on_drawn(index, picture)

@@ -5,6 +5,7 @@ elsewhere.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,7 +27,7 @@ from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.matrix_files import build_matrix_files
 from archgen.emit.site.matrix_html import write_matrix
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
-from archgen.emit.site.page_policy import PAGE_POLICY
+from archgen.emit.site.page_policy import LIVE_PAGE_POLICY, PAGE_POLICY
 from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
 from archgen.views.explorer.map_shapes import ExplorerMap
@@ -57,36 +58,78 @@ def build_site(  # noqa: PLR0913 - what a site is made of
 
     Links in the pictures must be `#` and the anchor that they lead to.
     """
-    backend = backend_manifests.read_shipped_backend("site")
-    links = collect_links(pages)
-    navigation = build_navigation(pages, links, _navigation_kinds(backend))
     chapter_writer = ChapterWriter(chapter_files)
-    template = _page_template(backend.folder)
-    map_files = build_explorer_files(explorer_map, links) if explorer_map else {}
+    frame = make_frame(pages, title=title, revision=revision, notices=notices)
+    map_files = build_explorer_files(explorer_map, frame.links) if explorer_map else {}
+    frame = replace(frame, map_parts=tuple(map_files))
     files = [
-        *_read_assets(backend.folder),
-        *_picture_files(pictures, links),
-        *build_search_files(search_entries, links),
+        *read_assets(),
+        *_picture_files(pictures, frame.links),
+        *build_search_files(search_entries, frame.links),
         *map_files.items(),
     ]
     for page in pages:
-        path = links.files[page.path]
-        writer = PageWriter(open_page(path, links), pictures, chapter_writer)
-        variables = _page_variables(page, writer, navigation, notices)
-        if map_files:
-            variables |= _explorer_variables(page, writer, map_files)
+        path = frame.links.files[page.path]
         if page.matrix:
-            files += build_matrix_files(page.matrix, writer.current_page)
+            files += build_matrix_files(page.matrix, open_page(path, frame.links))
         # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
-        files.append(
-            (
-                path,
-                template.render(
-                    variables, title=replace_forbidden(title), revision=replace_forbidden(revision)
-                ).encode(),
-            )
-        )
+        files.append((path, write_page(path, page, pictures, frame, chapter_writer)))
     return make_file_tree((*files, *chapter_writer.files.items()))
+
+
+@dataclass(frozen=True, slots=True)
+class SiteFrame:
+    """What all pages of a site have in common. `version` is empty but in a site that is served: then it tells one state
+    of the project from another, and pages may ask their server for the next.
+    """
+
+    title: str
+    revision: str
+    notices: Sequence[Paragraph]
+    links: SiteLinks
+    navigation: SiteNavigation
+    map_parts: tuple[str, ...] = ()
+    """The paths of the scripts with what the explorer shows."""
+    version: str = ""
+
+
+def make_frame(
+    pages: Sequence[Page], *, title: str, revision: str, notices: Sequence[Paragraph], version: str = ""
+) -> SiteFrame:
+    """Make what the pages of a site have in common: titles, links and navigation."""
+    links = collect_links(pages)
+    navigation = build_navigation(pages, links, _navigation_kinds(_read_backend()))
+    return SiteFrame(title, revision, notices, links, navigation, version=version)
+
+
+def write_page(
+    path: str, page: Page, pictures: Mapping[str, Picture], frame: SiteFrame, chapter_writer: ChapterWriter
+) -> bytes:
+    """Write one page, which is at this path of the site."""
+    template = _page_template(_read_backend().folder)
+    writer = PageWriter(open_page(path, frame.links), pictures, chapter_writer)
+    variables = _page_variables(page, writer, frame.navigation, frame.notices)
+    variables |= _explorer_variables(page, writer, frame.map_parts)
+    return template.render(
+        variables,
+        title=replace_forbidden(frame.title),
+        revision=replace_forbidden(frame.revision),
+        version=frame.version,
+        policy=LIVE_PAGE_POLICY if frame.version else PAGE_POLICY,
+    ).encode()
+
+
+def write_picture(picture_id: str, picture: Picture, links: SiteLinks) -> bytes | None:
+    """Write a picture as a file of its own; None where it could not be drawn."""
+    if picture.svg is None:
+        return None
+    current_page = open_page(drawing.picture_path(picture_id), links)
+    return drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
+
+
+@cache
+def _read_backend() -> backend_manifests.Backend:
+    return backend_manifests.read_shipped_backend("site")
 
 
 def _page_variables(
@@ -95,7 +138,6 @@ def _page_variables(
     """Return the variables of a page's template."""
     current_page = writer.current_page
     return {
-        "policy": PAGE_POLICY,
         "heading": replace_forbidden(page.title),
         "lead": replace_forbidden(page.lead),
         "place": writer.write_inlines((page.place,)) if page.place else "",
@@ -110,25 +152,27 @@ def _page_variables(
         ],
         "matrix": write_matrix(page.matrix, current_page) if page.matrix else "",
         "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
+        "waterfall": writer.write_waterfall(page.waterfall) if page.waterfall else "",
         "content": writer.write_content(page.section),
-        "explorer_style": "",
-        "explorer_begin": "",
-        "explorer_scripts": (),
-        "explorer_link": "",
     }
 
 
-def _explorer_variables(page: Page, writer: PageWriter, map_files: dict[str, bytes]) -> dict[str, object]:
+def _explorer_variables(page: Page, writer: PageWriter, map_parts: Sequence[str]) -> dict[str, object]:
     """Return what the explorer adds to a page: its scripts to its own, a link to those of elements on the map."""
     root = writer.current_page.root
+    style = begin_script = link = ""
+    scripts: tuple[str, ...] = ()
     if page.anchor != EXPLORER_ANCHOR:
         address = find_explorer_address(page, writer.current_page.links)
-        return {"explorer_link": root + address if address else ""}
-    begin_script, scripts = list_explorer_scripts(map_files)
+        link = root + address if address else ""
+    elif map_parts:
+        style = root + EXPLORER_STYLE
+        begin_script, scripts = list_explorer_scripts(map_parts)
     return {
-        "explorer_style": root + EXPLORER_STYLE,
+        "explorer_style": style,
         "explorer_begin": root + begin_script,
         "explorer_scripts": [root + script for script in scripts],
+        "explorer_link": link,
     }
 
 
@@ -158,18 +202,15 @@ def page_environment(folder: Path) -> Environment:
 def _picture_files(pictures: Mapping[str, Picture], links: SiteLinks) -> Iterator[tuple[str, bytes]]:
     """Yield a file for each picture; the page's picture links to it."""
     for picture_id, picture in pictures.items():
-        if picture.svg is not None:
-            path = drawing.picture_path(picture_id)
-            current_page = open_page(path, links)
-            yield (
-                path,
-                drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root)),
-            )
+        data = write_picture(picture_id, picture, links)
+        if data is not None:
+            yield drawing.picture_path(picture_id), data
 
 
 @cache
-def _read_assets(folder: Path) -> tuple[tuple[str, bytes], ...]:
+def read_assets() -> tuple[tuple[str, bytes], ...]:
     """Read the files that pages load: style, script and fonts, and the style of pictures."""
+    folder = _read_backend().folder
     asset_paths = (
         (path.relative_to(folder).as_posix(), path) for path in sorted((folder / "assets").rglob("*")) if path.is_file()
     )

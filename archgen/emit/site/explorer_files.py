@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
@@ -60,9 +60,9 @@ def build_explorer_files(explorer_map: ExplorerMap, links: SiteLinks) -> dict[st
     return files
 
 
-def list_explorer_scripts(data_files: dict[str, bytes]) -> tuple[str, tuple[str, ...]]:
+def list_explorer_scripts(map_parts: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     """Return the path of the script that begins, and of those that run when the page is read."""
-    return _BEGIN_SCRIPT, (*data_files, *(f"assets/explorer/{name}.js" for name in _PAGE_SCRIPTS))
+    return _BEGIN_SCRIPT, (*map_parts, *(f"assets/explorer/{name}.js" for name in _PAGE_SCRIPTS))
 
 
 def find_explorer_address(page: Page, links: SiteLinks) -> str | None:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from archgen.emit.picture import Picture
-from archgen.emit.site import page_pictures, status_marks
+from archgen.emit.site import page_pictures, status_marks, waterfall_html
 from archgen.emit.site.chapter_html import ChapterWriter
 from archgen.emit.site.html_text import escape_breakable, escape_html, web_address, write_signs
 from archgen.emit.site.page_links import CurrentPage
@@ -29,6 +29,7 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    Waterfall,
 )
 
 _SPOKEN_PREFIX = {"note": "Note: ", "warning": "Warning: ", "error": "Error: "}
@@ -57,6 +58,10 @@ class PageWriter:
         figures = "\n".join([f"<li>{self._write_key_figure(figure)}</li>" for figure in dashboard.figures])
         cards = "\n".join([self._write_card(card) for card in dashboard.cards])
         return f'<ul class="figures">\n{figures}\n</ul>\n<div class="cards">\n{cards}\n</div>'
+
+    def write_waterfall(self, waterfall: Waterfall) -> str:
+        """Write where the time of a chain goes."""
+        return waterfall_html.write_waterfall(waterfall, self.write_inlines, self._write_key_figure, self._write_card)
 
     def _write_key_figure(self, figure: KeyFigure) -> str:
         """Write a figure with its reason, as one link; as plain text where its page is not part of the site."""

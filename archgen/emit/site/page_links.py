@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
 from archgen.views.shapes import Block, Figure, Page, Section, Table
 
-RESERVED_IDS = ("content", "navigation")
+RESERVED_IDS = ("content", "navigation", "waterfall-hatch")
 """Ids that the page's template uses."""
 
 
@@ -66,6 +66,11 @@ def collect_links(pages: Iterable[Page]) -> SiteLinks:
     return SiteLinks(pages_by_anchor, places, ids, files)
 
 
+def renew_ids(links: SiteLinks, path: str, page: Page) -> SiteLinks:
+    """Return the links with the ids of a page that was made anew. Places on other pages stay as they were."""
+    return replace(links, ids={**links.ids, path: _assign_ids(page)})
+
+
 def open_page(path: str, links: SiteLinks) -> CurrentPage:
     """Return the position from which a page's links are written."""
     return CurrentPage(path, "../" * path.count("/"), links)
@@ -75,7 +80,8 @@ def _assign_ids(page: Page) -> dict[str, str]:
     """Assign each anchor on the page an id of its own, in order of appearance."""
     taken_ids = set(RESERVED_IDS)
     ids = dict[str, str]()
-    card_blocks = (block for card in page.dashboard.cards for block in card.blocks) if page.dashboard else ()
+    card_lists = (part.cards for part in (page.dashboard, page.waterfall) if part)
+    card_blocks = (block for cards in card_lists for card in cards for block in card.blocks)
     for anchor in (*_list_block_anchors(card_blocks), *_list_anchors(page.section)):
         if anchor in ids:
             continue

@@ -19,3 +19,6 @@ PAGE_POLICY = "; ".join(_DIRECTIVES)
 
 Neither a script nor a style in the page itself counts, so that no text of a project can ever become one.
 """
+
+LIVE_PAGE_POLICY = PAGE_POLICY.replace("connect-src 'none'", "connect-src 'self'")
+"""The policy of a page that is served: it asks its own server for news, and nobody else."""

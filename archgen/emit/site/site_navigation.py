@@ -108,13 +108,12 @@ class SiteNavigation:
         return self.cached_entries[key]
 
     def _write_new_entry(self, page: Page, ancestry: tuple[str, ...], root: str) -> str:
-        mark = status_marks.write_mark(page.mark) if page.mark else ""
+        mark = _write_marks(page)
         child_counts = self._count_children(page.anchor)
         count = f' <span class="count" aria-hidden="true">{child_counts}</span>' if child_counts else ""
         visible_children = self._visible_pages(page.anchor, ancestry) if page.anchor == ancestry[-1] else ()
         items = NEWLINE.join(
-            f"<li>{self._write_link(child, root, status_marks.write_mark(child.mark) if child.mark else '')}</li>"
-            for child in visible_children
+            f"<li>{self._write_link(child, root, _write_marks(child))}</li>" for child in visible_children
         )
         inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
         return f"<li>{self._write_link(page, root, f'{mark}{count}')}{inner}</li>"
@@ -129,6 +128,12 @@ class SiteNavigation:
         path = self.links.pages[page.anchor]
         title = self.home_title if path == self.start else page.title
         return f'<a href="{root}{path}">{escape_breakable(title)}{suffix}</a>'
+
+
+def _write_marks(page: Page) -> str:
+    """Write the marks of an entry: how it stands, and whether it has changed."""
+    mark = status_marks.write_mark(page.mark) if page.mark else ""
+    return mark + status_marks.write_mark("changed") if page.is_changed else mark
 
 
 def _count_by_kind(pages: Sequence[Page]) -> str:

@@ -10,6 +10,7 @@ from archgen.model.component import Component, Group
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.project_history import History
 from archgen.views import inline_text
+from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
@@ -36,6 +37,8 @@ class DocumentEdition:
     """The pages of the rules that found something, as CommonMark without their titles, by name."""
     has_errors: bool = False
     """The model has errors; documents show what is sound, and say so."""
+    changes: SiteChanges | None = None
+    """What changed since an earlier version, where the site is to show it."""
 
 
 def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
@@ -241,7 +244,7 @@ class _ChapterMaker:
 
     def make_statistics(self) -> list[Section]:
         """Make the appendix of size, progress and growth."""
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
+        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
         return self._make_appendix("progress", "Statistics", *self.edition.statistics, *growth_blocks)
 
     def _make_appendix(self, anchor: str, title: str, *blocks: Block | None) -> list[Section]:

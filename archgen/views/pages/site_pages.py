@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from archgen.diagnostics.common_wording import join_words
@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.model.node import Node
 from archgen.views import inline_text
+from archgen.views.changes.site_changes import add_changes
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
@@ -28,11 +29,12 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
+from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     """Make every page of the site."""
-    page_maker = _PageMaker(lookup, edition)
+    page_maker = PageMaker(lookup, edition)
     functional_pages = [
         page_maker.start_page(),
         *page_maker.group_pages(),
@@ -51,7 +53,10 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
     all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
-    return page_places.place_pages(lookup, page_marks.mark_pages(lookup, all_pages))
+    marked_pages = page_marks.mark_pages(lookup, all_pages)
+    if edition.changes:
+        marked_pages = add_changes(marked_pages, edition.changes, edition.drawings)
+    return page_places.place_pages(lookup, marked_pages)
 
 
 def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
@@ -72,7 +77,7 @@ def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
     return tuple(result)
 
 
-def _drop_facts(blocks: Iterable[Block], names: set[str]) -> tuple[Block, ...]:
+def _drop_facts(blocks: Iterable[Block], names: Collection[str]) -> tuple[Block, ...]:
     """Drop the facts that the line below the title, or the way to the page, says already."""
     return tuple(
         Facts(tuple(row for row in block.rows if row[0] not in names)) if isinstance(block, Facts) else block
@@ -81,8 +86,8 @@ def _drop_facts(blocks: Iterable[Block], names: set[str]) -> tuple[Block, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class _PageMaker:
-    """Makes the pages; each method returns one page or yields several."""
+class PageMaker:
+    """Makes the pages; each method returns one page or yields several. Paths of pages may still collide."""
 
     lookup: Lookup
     edition: DocumentEdition
@@ -142,11 +147,12 @@ class _PageMaker:
         """Make a page for each shown group, followed by its shown components."""
         for name in self.lookup.shown_groups():
             group = self.architecture.groups[name]
-            yield self._group_page(group)
+            yield self.make_group_page(group)
             for component in self.lookup.shown_components(name):
-                yield self._component_page(group, component)
+                yield self.make_component_page(group, component)
 
-    def _group_page(self, group: Group) -> Page:
+    def make_group_page(self, group: Group) -> Page:
+        """Make the page of a group."""
         blocks = _drop_facts(self.keep_drawn(make_group_blocks(self.lookup, group)), {"Components"})
         section = Section(f"group:{group.id}", group.title, blocks)
         lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
@@ -156,7 +162,8 @@ class _PageMaker:
         """Return a page's lead with the titles of the owners behind it."""
         return " · ".join([lead, *(self.architecture.partners[owner].title for owner in owners)])
 
-    def _component_page(self, group: Group, component: Component) -> Page:
+    def make_component_page(self, group: Group, component: Component) -> Page:
+        """Make the page of a component."""
         sections = []
         if self.edition.level == "implementation":
             blocks = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
@@ -182,9 +189,10 @@ class _PageMaker:
     def node_pages(self) -> Iterator[Page]:
         """Make a page for each shown node."""
         for node in sorted(self.lookup.shown_nodes(), key=lambda each: each.id):
-            yield self._node_page(node)
+            yield self.make_node_page(node)
 
-    def _node_page(self, node: Node) -> Page:
+    def make_node_page(self, node: Node) -> Page:
+        """Make the page of a node."""
         section = Section(
             f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), tuple(self._finding_sections(node.id))
         )
@@ -253,9 +261,9 @@ class _PageMaker:
             architecture_tables.make_finding_table(self.lookup, self.lookup.findings),
             *(chain_blocks if chain_points else ()),
         )
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, tuple(self.edition.drawings))
+        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
-        yield from self._timing_pages()
+        yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
         if self.edition.level == "implementation":
@@ -274,7 +282,7 @@ class _PageMaker:
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
 
-    def _timing_pages(self) -> Iterator[Page]:
+    def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
         graphs = self.edition.drawings
         if self.lookup.timing is not None and self.edition.level == "implementation":
@@ -292,9 +300,19 @@ class _PageMaker:
                 yield Page(path, section.anchor, section.title, "timing", section, crumbs, "Timing")
         yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
         crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
+        results = {f"chain:{result.id}": result for result in self.lookup.timing.chains} if self.lookup.timing else {}
         for section in timing_chapter.make_chain_sections(self.lookup, graphs):
             path = f"chains/{section.anchor.partition(':')[2]}.html"
-            yield Page(path, section.anchor, section.title, "chains", section, crumbs, "Chain of effect")
+            result = results[section.anchor]
+            waterfall = make_waterfall(self.lookup, self.lookup.timing, result) if self.lookup.timing else None
+            # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
+            shown_blocks = _drop_facts(
+                (block for block in section.blocks if not (waterfall and isinstance(block, Figure))),
+                WATERFALL_FACTS if waterfall else (),
+            )
+            shown_section = replace(section, blocks=shown_blocks)
+            lead = "Chain of effect"
+            yield Page(path, section.anchor, section.title, "chains", shown_section, crumbs, lead, waterfall=waterfall)
 
     def _spanning_page(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
         """Make a page for the whole architecture."""

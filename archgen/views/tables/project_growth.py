@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container
 from fractions import Fraction
 
 from archgen.diagnostics.common_wording import floor_percent, shorten_hash
@@ -51,7 +51,7 @@ def make_growth_charts(history: History) -> tuple[Chart, ...]:
     )
 
 
-def make_growth_blocks(history: History, drawing_ids: Sequence[str]) -> tuple[Block, ...]:
+def make_growth_blocks(history: History, drawing_ids: Container[str]) -> tuple[Block, ...]:
     """Return the blocks of the chapter on statistics: charts that were drawn, and tables.
 
     `drawing_ids` are the ids of all drawings of the document.

@@ -30,8 +30,8 @@
 
   // --- the tree: show where the reader is -----------------------------------------------------------------------
   const tree = document.getElementById("navigation");
-  const current = tree.querySelector("[aria-current]");
   function reveal() {
+    const current = tree.querySelector("[aria-current]");
     if (current) tree.scrollTop = current.offsetTop - tree.clientHeight / 3;
   }
   tree.addEventListener("toggle", reveal);
@@ -117,13 +117,17 @@
   }
 
   const obey = new Map();
-  // Cards are short, and in the order that matters.
-  [...document.querySelectorAll(".table table")].filter((table) => !table.closest(".card")).forEach((table, at) => {
-    const rows = [...table.tBodies[0].rows];
-    const suffix = at ? at + 1 : "";
-    if (rows.length > 2) obey.set("sort" + suffix, sortable(table, rows, "sort" + suffix));
-    if (rows.length > 9) obey.set("q" + suffix, filterable(table, rows, "q" + suffix));
-  });
+  function equipTables() {
+    obey.clear();
+    // Cards are short, and in the order that matters.
+    [...document.querySelectorAll(".table table")].filter((table) => !table.closest(".card")).forEach((table, at) => {
+      const rows = [...table.tBodies[0].rows];
+      const suffix = at ? at + 1 : "";
+      if (rows.length > 2) obey.set("sort" + suffix, sortable(table, rows, "sort" + suffix));
+      if (rows.length > 9) obey.set("q" + suffix, filterable(table, rows, "q" + suffix));
+    });
+  }
+  equipTables();
   // On each showing of the page, also one that the browser kept whole or whose fields it filled in by itself.
   function obeyAddress() {
     const wanted = new URLSearchParams(location.search);
@@ -171,7 +175,11 @@
       target.tabIndex = fits ? -1 : 0;
     }
   });
-  for (const box of document.querySelectorAll(".scroll")) fitting.observe(box);
+  function watchBoxes() {
+    fitting.disconnect();
+    for (const box of document.querySelectorAll(".scroll")) fitting.observe(box);
+  }
+  watchBoxes();
 
   // --- places that lead nowhere are copied ------------------------------------------------------------------------
   function copy(words) {
@@ -199,8 +207,7 @@
 
   // --- pictures: the whole window, with wheel, drag and keys ----------------------------------------------------
   function look(svg, caption) {
-    const view = svg.cloneNode(true);
-    const box = svg.viewBox.baseVal;
+    let view = svg.cloneNode(true);
     const stage = element("div", { className: "stage", tabIndex: 0 }, view);
     stage.setAttribute("role", "group");
     stage.ariaLabel = caption + ". Plus and minus zoom, arrow keys move.";
@@ -263,26 +270,55 @@
       else return;
       event.preventDefault();
     });
+    // The picture may be drawn anew while somebody looks at it: the same part stays in sight.
+    function renew() {
+      const figure = [...document.querySelectorAll("figure.picture")].find((each) => captionOf(each) === caption);
+      const next = figure?.querySelector(".canvas svg");
+      if (!next) return;
+      const fresh = next.cloneNode(true);
+      fresh.style.width = next.width.baseVal.value + "px";
+      fresh.style.height = next.height.baseVal.value + "px";
+      view.replaceWith(fresh);
+      [view, svg] = [fresh, next];
+      place();
+    }
+    document.addEventListener("archgen:content", renew);
     close.addEventListener("click", () => dialog.close());
-    dialog.addEventListener("close", () => dialog.remove());
+    dialog.addEventListener("close", () => {
+      document.removeEventListener("archgen:content", renew);
+      dialog.remove();
+    });
     document.body.append(dialog);
     dialog.showModal();
     fit();
     stage.focus();
   }
 
-  for (const figure of document.querySelectorAll("figure.picture")) {
-    const svg = figure.querySelector(".canvas svg");
-    if (!svg) continue;
-    const caption = figure.querySelector("figcaption span").textContent;
-    const open = figure.querySelector("a.whole");
-    const control = element("button", { type: "button", className: "closer", ariaLabel: "Look closer: " + caption });
-    control.textContent = "Look closer";
-    control.addEventListener("click", () => look(svg, caption));
-    open.before(control, " ");
-    figure.classList.add("zooms");
-    figure.querySelector(".canvas").addEventListener("click", (event) => {
-      if (!event.target.closest("a")) look(svg, caption);
-    });
+  const captionOf = (figure) => figure.querySelector("figcaption span")?.textContent;
+
+  function equipPictures() {
+    for (const figure of document.querySelectorAll("figure.picture")) {
+      const svg = figure.querySelector(".canvas svg");
+      if (!svg) continue;
+      const caption = captionOf(figure);
+      const open = figure.querySelector("a.whole");
+      const control = element("button", { type: "button", className: "closer", ariaLabel: "Look closer: " + caption });
+      control.textContent = "Look closer";
+      control.addEventListener("click", () => look(svg, caption));
+      open.before(control, " ");
+      figure.classList.add("zooms");
+      figure.querySelector(".canvas").addEventListener("click", (event) => {
+        if (!event.target.closest("a")) look(svg, caption);
+      });
+    }
   }
+  equipPictures();
+
+  // Under `archgen serve` the content of a page is exchanged while somebody reads it.
+  document.addEventListener("archgen:content", () => {
+    equipTables();
+    obeyAddress();
+    watchBoxes();
+    equipPictures();
+  });
 })();

@@ -57,7 +57,7 @@ def test_a_large_map_comes_in_files_of_which_none_holds_up_the_page() -> None:
     assert max(map(len, files.values())) < 400_000
     names = [row[1] for data in files.values() for table, made in read_calls(data.decode()) if table == "components" for row in made]  # fmt: skip
     assert names == [row[1] for row in rows]
-    begin_script, scripts = list_explorer_scripts(files)
+    begin_script, scripts = list_explorer_scripts(tuple(files))
     assert begin_script not in scripts
     assert scripts[: len(files)] == tuple(files)
     assert scripts[-1] == "assets/explorer/main.js"

@@ -30,6 +30,9 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    Waterfall,
+    WaterfallPiece,
+    WaterfallStep,
 )
 
 Draw = Callable[[str, dict[str, str]], Picture]
@@ -380,3 +383,33 @@ def test_a_site_of_a_real_size_takes_less_than_a_second(made: Callable[[], FileT
     took = time.process_time() - began
     assert len([path for path in tree.files if path.endswith(".html")]) == 351
     assert took < 1, f"{took:.2f} s"
+
+
+def test_a_waterfall_is_written_with_positions_in_percent_and_all_text_escaped() -> None:
+    piece = WaterfallPiece("sampling", 0.0, 0.5, "waits <b>", is_cut=True)
+    unknown = WaterfallPiece("unknown", 0.5, 1.0)
+    step = WaterfallStep(Text("<s>"), (Text("P & Q"),), (piece, unknown), "waits <i>")
+    card = DashboardCard("To do", (Bullets(((Text("this"),),)),), 12)
+    waterfall = Waterfall(
+        (Text("<lead>"),),
+        (piece, unknown),
+        ((0.0, "0"), (0.5, "5 s")),
+        (1.0, 0.25),
+        "deadline <10 s>",
+        ((0.0, "0"), (0.5, "5 s")),
+        (step,),
+        "short",
+        (KeyFigure("At <b>", "5 s", "", (), ""),),
+        (card,),
+    )
+    section = Section("page:index", "Start", ())
+    page = Page("index.html", "page:index", "Start", "overview", section, waterfall=waterfall)
+    tree = build_site([page], {}, title="T", revision="", notices=(), chapter_files=lambda _path: None)
+    html = dict(tree.files)["index.html"].decode()
+    for text in ("&lt;lead&gt;", "deadline &lt;10 s&gt;", "At &lt;b&gt;", "&lt;s&gt;", "P &amp; Q", "waits &lt;i&gt;"):
+        assert text in html
+    assert '<rect class="sampling" x="0%" width="50%" y="4" height="16"><title>waits &lt;b&gt;</title></rect>' in html
+    assert html.count('class="cut"') == 4
+    assert html.count('id="waterfall-hatch"') == 1
+    assert 'class="limit" x="25%"' in html
+    assert "style=" not in html.partition("<main")[2]

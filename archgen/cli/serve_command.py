@@ -1,0 +1,103 @@
+"""`archgen serve`: show the site while its files are edited."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.serve.live_site import LiveSite
+    from archgen.serve.site_server import SiteServer
+    from archgen.views.pages.report_outline import DetailLevel
+
+DEFAULT_PORT = 8470
+
+
+@click.command("serve")
+@shared_options.project_argument
+@click.option("--host", default="127.0.0.1", show_default=True, metavar="ADDRESS", help="The address to listen at.")
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=DEFAULT_PORT,
+    show_default=True,
+    help="The port to listen at; 0 takes one that is free.",
+)
+@click.option("--open", "opens", is_flag=True, help="Open the start page in the browser.")
+@shared_options.level_option
+def command(*, project: Path | None, host: str, port: int, opens: bool, level: DetailLevel | None) -> None:
+    """Show the site of PROJECT in the browser, and each saved file at once.
+
+    Nothing is written. Errors stand on the page until they are mended. Only this machine can see it unless --host says
+    otherwise. Ctrl-C ends it.
+    """
+    from archgen.products.output_options import OutputOptions
+    from archgen.project import ProjectNotFoundError
+    from archgen.serve.live_site import LiveSite
+
+    options = OutputOptions(level=level, warn=command_support.print_warning)
+    try:
+        live_site = LiveSite(project, options)
+    except ProjectNotFoundError as error:
+        raise click.UsageError(str(error)) from None
+    server = _open_port(live_site, host, port)
+    try:
+        _serve(live_site, server, opens=opens)
+    except KeyboardInterrupt:
+        click.echo("\nstopped", err=True)
+
+
+def _open_port(live_site: LiveSite, host: str, port: int) -> SiteServer:
+    """Take the port. Raise ClickException where that cannot be."""
+    import errno
+
+    from archgen.serve.site_server import SiteServer
+
+    try:
+        return SiteServer(live_site, host, port)
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            msg = f"port {port} of {host} is taken; `--port 0` takes a free one"
+        else:
+            msg = f"cannot listen at {host}, port {port}: {error.strerror or error}"
+        raise click.ClickException(msg) from None
+
+
+def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
+    """Serve until somebody interrupts."""
+    import webbrowser
+
+    from archgen.serve.file_watch import watch_files
+
+    serving = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.2}, daemon=True)
+    try:
+        live_site.start()
+        serving.start()
+        _print_state(live_site)
+        click.echo(f"serving {live_site.title} at {server.url}  (Ctrl-C ends it)")
+        if opens:
+            threading.Thread(target=webbrowser.open, args=(server.url,), daemon=True).start()
+
+        def show_change() -> None:
+            live_site.refresh()
+            _print_state(live_site)
+
+        watch_files(live_site.list_watched_places, show_change, threading.Event())
+    finally:
+        live_site.stop()
+        if serving.is_alive():
+            server.shutdown()
+        server.server_close()
+
+
+def _print_state(live_site: LiveSite) -> None:
+    """Print what is wrong in the files, or that nothing is, to the error stream."""
+    from archgen.diagnostics.diagnostic import Severity
+
+    if live_site.checked_project is not None:
+        command_support.print_findings_above(live_site.checked_project, lowest_severity=Severity.ERROR)

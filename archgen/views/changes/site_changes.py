@@ -1,0 +1,297 @@
+"""What changed since an earlier version, as the site shows it: a page of its own, marks on pages, lists and pictures, and
+both versions of what changed side by side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal, get_args
+
+from archgen.compare import Change, Comparison
+from archgen.compare.text_differences import find_differences
+from archgen.views import inline_text
+from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
+from archgen.views.changes.comparison_document import ComparisonDocument
+from archgen.views.changes.comparison_outline import write_comparison_outline
+from archgen.views.chart_shapes import Drawing
+from archgen.views.graph_shapes import Box, ElementChange, Graph
+from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Page, Section, Table, Text
+
+CHANGES_ANCHOR = "page:changes"
+_PAGE_KINDS = frozenset(
+    {
+        "component",
+        "group",
+        "node",
+        "partner",
+        "requirement",
+        "use_case",
+        "host",
+        "container",
+        "type",
+        "message",
+        "chain",
+    }
+)
+"""Kinds of elements with a page of their own: its anchor is `KIND:ID`."""
+_PORT_KINDS = frozenset({"input", "output"})
+_MARKED_PICTURES = frozenset({"overview", "components", "group", "component", "implementation", "ros", "view"})
+_LISTING_KINDS = frozenset({"spanning", "groups"})
+"""Kinds of pages whose tables list elements."""
+_CHANGE_WORDS: Mapping[ElementChange, str] = {"added": "new", "changed": "changed", "renamed": "renamed"}
+
+
+# Without slots: `cached_property` stores its values in the object's dictionary.
+@dataclass(frozen=True)
+class SiteChanges:
+    """A comparison with an earlier version, and the document that tells it. `since` is what people call that version."""
+
+    comparison: Comparison
+    document: ComparisonDocument
+    since: str
+
+    @cached_property
+    def changes_by_page(self) -> Mapping[str, tuple[Change, ...]]:
+        """The changes of each page's element and its ports, by the page's anchor; removed elements have no page."""
+        changes_by_page: dict[str, list[Change]] = {}
+        for change in self.comparison.changes:
+            anchor = _find_page(change)
+            if anchor:
+                changes_by_page.setdefault(anchor, []).append(change)
+        return {anchor: tuple(changes) for anchor, changes in changes_by_page.items()}
+
+    @cached_property
+    def kinds(self) -> Mapping[str, ElementChange]:
+        """How each element that has a page changed, by the page's anchor."""
+        return {anchor: _judge_changes(anchor, changes) for anchor, changes in self.changes_by_page.items()}
+
+    @cached_property
+    def changed_groups(self) -> frozenset[str]:
+        """The anchors of the groups that changed, or in which something did."""
+        names = (anchor.partition(":")[2].partition(".")[0] for anchor in self.kinds if anchor.startswith("component:"))
+        removed = (
+            change.element_id.partition(".")[0]
+            for change in self.comparison.changes
+            if change.element_kind == "component" and change.kind == "removed"
+        )
+        own = (anchor for anchor in self.kinds if anchor.startswith("group:"))
+        return frozenset((*own, *(f"group:{name}" for name in (*names, *removed))))
+
+
+def _find_page(change: Change) -> str:
+    """Return the anchor of the page that shows what changed, empty where there is none."""
+    if change.element_kind in _PORT_KINDS:
+        return f"component:{change.element_id.rpartition('.')[0]}"
+    is_gone = change.kind == "removed"
+    return f"{change.element_kind}:{change.element_id}" if change.element_kind in _PAGE_KINDS and not is_gone else ""
+
+
+def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
+    """Say how an element changed as a whole: what happens to its ports changes it."""
+    own_kinds = {
+        change.kind
+        for change in changes
+        if change.key is None and f"{change.element_kind}:{change.element_id}" == anchor
+    }
+    if "added" in own_kinds:
+        return "added"
+    return "renamed" if own_kinds & {"renamed", "moved"} else "changed"
+
+
+def add_changes(pages: Iterable[Page], site_changes: SiteChanges, drawings: Mapping[str, Drawing]) -> tuple[Page, ...]:
+    """Return the pages with marks and with both versions of what changed, and behind the first one the page of changes."""
+    first_page, *other_pages = (_mark_page(page, site_changes) for page in pages)
+    anchors = {page.anchor for page in other_pages}
+    return (first_page, _make_changes_page(site_changes, first_page, drawings, anchors), *other_pages)
+
+
+def _make_changes_page(
+    site_changes: SiteChanges, first_page: Page, drawings: Mapping[str, Drawing], anchors: Collection[str]
+) -> Page:
+    outline = write_comparison_outline(site_changes.document)
+    ids = {anchor.partition(":")[2]: anchor for anchor in sorted(anchors) if anchor.partition(":")[0] in _PAGE_KINDS}
+    sections = tuple(
+        _link_section(section, ids)
+        for section in outline.sections
+        if section.anchor != "changes:pictures" or any(graph.id in drawings for graph in site_changes.document.graphs)
+    )
+    blocks: tuple[Block, ...] = (*outline.notices, Facts(outline.facts))
+    section = Section(CHANGES_ANCHOR, "Changes", blocks, sections)
+    crumbs = (("Overview", first_page.anchor),)
+    return Page("changes.html", CHANGES_ANCHOR, "Changes", "spanning", section, crumbs, outline.subtitle)
+
+
+def _link_section(section: Section, ids: Mapping[str, str]) -> Section:
+    """Link the ids of elements that have a page; a port's id leads to its component."""
+
+    def link(runs: Inlines) -> Inlines:
+        return tuple(
+            replace(run, ref=ids.get(run.text) or ids.get(run.text.rpartition(".")[0])) if run.code else run
+            for run in runs
+        )
+
+    return replace(
+        section,
+        blocks=tuple(_link_block(block, link) for block in section.blocks),
+        sections=tuple(_link_section(inner, ids) for inner in section.sections),
+    )
+
+
+def _link_block(block: Block, link: Callable[[Inlines], Inlines]) -> Block:
+    if isinstance(block, Bullets):
+        return replace(block, items=tuple(map(link, block.items)))
+    if isinstance(block, Table):
+        return replace(block, rows=tuple(tuple(map(link, row)) for row in block.rows))
+    return block
+
+
+def _mark_page(page: Page, site_changes: SiteChanges) -> Page:
+    """Mark a page whose element changed, and the elements that its tables list."""
+    section = page.section
+    if page.kind in _LISTING_KINDS:
+        section = _mark_lists(section, site_changes.kinds)
+    kind = site_changes.kinds.get(page.anchor)
+    if kind is not None:
+        table = _compare_versions(page.anchor, site_changes)
+        section = replace(section, blocks=(*((table,) if table else ()), *section.blocks))
+        page = replace(page, verdict=(*page.verdict, *_make_chip(kind, site_changes.since)))
+    is_changed = page.is_changed or kind is not None or page.anchor in site_changes.changed_groups
+    return replace(page, section=section, is_changed=is_changed)
+
+
+def _make_chip(kind: ElementChange, since: str = "") -> Inlines:
+    words = _CHANGE_WORDS.get(kind, "changed")
+    return (
+        Text(f"{words} · since {since}" if since else words, status="changed", ref=CHANGES_ANCHOR if since else None),
+    )
+
+
+def _mark_lists(section: Section, kinds: Mapping[str, ElementChange]) -> Section:
+    """Put a chip behind the name of each changed element that a table lists."""
+    return replace(
+        section,
+        blocks=tuple(_mark_table(block, kinds) if isinstance(block, Table) else block for block in section.blocks),
+        sections=tuple(_mark_lists(inner, kinds) for inner in section.sections),
+    )
+
+
+def _mark_table(table: Table, kinds: Mapping[str, ElementChange]) -> Table:
+    rows = tuple(
+        ((*row[0], Text(" "), *_make_chip(kind)), *row[1:])
+        if row[0] and (kind := kinds.get(row[0][0].ref or "")) is not None
+        else row
+        for row in table.rows
+    )
+    return replace(table, rows=rows)
+
+
+def _compare_versions(anchor: str, site_changes: SiteChanges) -> Table | None:
+    """Return what changed of an element, both versions side by side; None for one that is new as a whole."""
+    rows = tuple(row for change in site_changes.changes_by_page[anchor] for row in _list_rows(change, anchor))
+    if not rows:
+        return None
+    columns = (Column("What", 1.2), Column(f"Before ({site_changes.since})", 2), Column("Now", 2))
+    return Table(f"table:since/{anchor}", f"Changed since {site_changes.since}", columns, rows)
+
+
+def _list_rows(change: Change, anchor: str) -> Iterator[tuple[Inlines, ...]]:
+    """Yield the row of a change; what came or went has one side."""
+    is_own = f"{change.element_kind}:{change.element_id}" == anchor
+    # A port by its own name: the page says whose it is.
+    name = "" if is_own else f"{change.element_kind} {change.element_id.rpartition('.')[2]}"
+    if change.key is not None:
+        what = " · ".join(filter(None, (name, change.key.replace(".", " · "))))
+        yield inline_text.to_inlines(what), *_show_values(change.before, change.after)
+    elif change.kind in {"renamed", "moved"}:
+        old, new = Text(change.old_id or "", code=True), Text(change.element_id, code=True)
+        yield inline_text.to_inlines(" ".join(filter(None, (name, change.kind)))), (old,), (new,)
+    elif not is_own:
+        sign = Text(CHANGE_SIGNS[change.kind], strong=True, change=choose_mark(change.kind))
+        sentence = (sign, Text(" "), *text_runs(change.text))
+        before, after = (sentence, ()) if change.kind == "removed" else ((), sentence)
+        yield inline_text.to_inlines(name), before, after
+    for part in change.parts:
+        yield from _list_rows(part, anchor)
+
+
+def _show_values(before: object, after: object) -> tuple[Inlines, Inlines]:
+    """Show two values side by side, with what differs between two texts marked."""
+    if not isinstance(before, str) or not isinstance(after, str):
+        return _show_value(before), _show_value(after)
+    old_words, new_words = before.split(), after.split()
+    differences = tuple(find_differences(old_words, new_words))
+    return (
+        _mark_words(old_words, ((start, end) for start, end, _, _ in differences), "removed"),
+        _mark_words(new_words, ((start, end) for _, _, start, end in differences), "added"),
+    )
+
+
+def _mark_words(
+    words: Sequence[str], stretches: Iterable[tuple[int, int]], mark: Literal["added", "removed"]
+) -> Inlines:
+    """Return words as a text in which some stretches are marked."""
+    runs, position = list[Text](), 0
+    for start, end in stretches:
+        runs += [Text(" ".join(words[position:start])), Text(" ".join(words[start:end]), change=mark)]
+        position = end
+    runs.append(Text(" ".join(words[position:])))
+    present_runs = [run for run in runs if run.text]
+    return tuple(run for at, each in enumerate(present_runs) for run in ((Text(" "), each) if at else (each,)))
+
+
+def _show_value(value: object) -> Inlines:
+    """Show a value as plain words, each entry of a list or mapping on a line of its own."""
+    if value is None:
+        return (Text("not written", muted=True),)
+    lines = list(_list_lines(value))
+    return tuple(Text(line, line_break=at > 0) for at, line in enumerate(lines)) or (Text("empty", muted=True),)
+
+
+def _list_lines(value: object, depth: int = 0) -> Iterator[str]:
+    """Yield the lines of a value in normal form."""
+    indent = "\N{NO-BREAK SPACE}" * 2 * depth
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            inner = list(_list_lines(item, depth + 1))
+            is_short = not isinstance(item, (Mapping, list, tuple)) and len(inner) == 1
+            yield f"{indent}{key}: {inner[0].strip()}" if is_short else f"{indent}{key}:"
+            yield from () if is_short else inner
+    elif isinstance(value, (list, tuple)):
+        for item in value:
+            yield from _list_lines(item, depth)
+    elif isinstance(value, bool):
+        yield f"{indent}{'yes' if value else 'no'}"
+    else:
+        yield from (f"{indent}{line}" for line in str(value).splitlines())
+
+
+def mark_drawings(drawings: Mapping[str, Drawing], site_changes: SiteChanges) -> dict[str, Drawing]:
+    """Return drawings in which what is new or changed stands out as in the pictures of a comparison, and those pictures."""
+    kinds: Mapping[str, ElementChange] = {
+        **dict.fromkeys(site_changes.changed_groups, "changed"),
+        **site_changes.kinds,
+    }
+    marked = {
+        name: _mark_graph(drawing, kinds)
+        if isinstance(drawing, Graph) and drawing.kind in _MARKED_PICTURES
+        else drawing
+        for name, drawing in drawings.items()
+    }
+    return marked | {graph.id: graph for graph in site_changes.document.graphs}
+
+
+def _mark_graph(graph: Graph, kinds: Mapping[str, ElementChange]) -> Graph:
+    if not any(box.ref in kinds for box in graph.boxes if box.ref):
+        return graph
+    boxes = tuple(_mark_box(box, kinds) for box in graph.boxes)
+    changes = {box.change for box in boxes}
+    legend = (*graph.legend, *(f"change:{kind}" for kind in get_args(ElementChange) if kind in changes))
+    return replace(graph, boxes=boxes, legend=legend)
+
+
+def _mark_box(box: Box, kinds: Mapping[str, ElementChange]) -> Box:
+    kind = kinds.get(box.ref) if box.ref else None
+    # A sign before the title, so that nothing depends on colour.
+    return replace(box, change=kind, title=f"{CHANGE_SIGNS[kind]} {box.title}") if kind else box

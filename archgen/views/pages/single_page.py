@@ -1,0 +1,62 @@
+"""One page of the site by itself, for a reader who waits for it: without all others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+
+from archgen.views.lookup import Lookup
+from archgen.views.pages import context_pages, page_marks, page_places
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.pages.site_pages import PageMaker
+from archgen.views.shapes import Page
+
+
+def make_page(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page | None:
+    """Make the page of an anchor as `make_pages` does, but for its path, which takes all pages to know; None where there
+    is none.
+    """
+    page = next((page for page in _list_candidates(PageMaker(lookup, edition), anchor) if page.anchor == anchor), None)
+    return page_places.place_pages(lookup, page_marks.mark_pages(lookup, (page,)))[0] if page else None
+
+
+def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # noqa: PLR0911 - one for each kind
+    """Return pages of which one may be that of the anchor: as few as can be where there are many of a kind."""
+    architecture, lookup = page_maker.architecture, page_maker.lookup
+    kind, _, name = anchor.partition(":")
+    match kind:
+        case "component" if name in architecture.components:
+            component = architecture.components[name]
+            return (page_maker.make_component_page(architecture.groups[component.group], component),)
+        case "group" if name in architecture.groups:
+            return (page_maker.make_group_page(architecture.groups[name]),)
+        case "node" if name in architecture.nodes and page_maker.edition.level == "implementation":
+            return (page_maker.make_node_page(architecture.nodes[name]),)
+        case "topic" if page_maker.edition.level == "implementation":
+            return context_pages.make_topic_pages(lookup)
+        case "chapter":
+            return page_maker.chapter_pages()
+        case "rule":
+            return page_maker.rule_pages()
+        case "timing" | "chain":
+            return page_maker.timing_pages()
+        case "page" if name in {"timing", "chains"}:
+            return page_maker.timing_pages()
+        case "component" | "group" | "node" | "topic":
+            return ()
+        case _:
+            start_page = (page_maker.start_page(),) if anchor == "page:index" else ()
+            # Generators: no further page is made when the one looked for is there.
+            return chain(
+                start_page,
+                _UntimedPageMaker(lookup, page_maker.edition).spanning_pages() if kind == "page" else (),
+                context_pages.make_context_pages(lookup, page_maker.keep_drawn),
+            )
+
+
+class _UntimedPageMaker(PageMaker):
+    """Makes pages as its base does, without those on timing: they are the dearest, and stand between the others."""
+
+    def timing_pages(self) -> Iterator[Page]:
+        """Make no page."""
+        yield from ()

@@ -1,0 +1,301 @@
+"""Where the time of a chain goes: the known part on a true scale to the deadline, step by step, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Literal
+
+from archgen.timing.analysis import ChainResult, ChainTerm
+from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.views import element_references, inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import (
+    Bullets,
+    DashboardCard,
+    Inlines,
+    KeyFigure,
+    Text,
+    Waterfall,
+    WaterfallPiece,
+    WaterfallStep,
+)
+from archgen.views.timing import chain_charts, chain_status, element_timing, timing_tables, value_format
+from archgen.views.timing.timing_lookup import TimingLookup
+
+PieceKind = Literal["sampling", "response", "link", "unknown"]
+WATERFALL_FACTS = (
+    "Verdict",
+    "Why",
+    "What to do",
+    "Reaction time and data age, at the latest",
+    "At the earliest",
+    "Requirements",
+    "Assumptions",
+)
+"""The facts of `element_timing.make_chain_blocks` that a waterfall says as well."""
+_KINDS: tuple[tuple[PieceKind, str], ...] = (("sampling", "waits"), ("response", "responds"), ("link", "link"))
+_CUT_SHARE = Fraction(1, 2)
+"""A piece that is longer than this share of all is drawn short: else the others could not be told apart."""
+_CUT_LENGTH = 0.1
+_UNKNOWN_LENGTH = 0.12
+_TICKS = 6
+"""About so many figures along the axis."""
+
+
+@dataclass(frozen=True, slots=True)
+class _CutAxis:
+    """Turns times (ns) into shares of an axis, on which one stretch is drawn short."""
+
+    total: Fraction
+    cut: tuple[Fraction, Fraction] | None
+    room: float
+    """The share of the axis that the known time takes."""
+
+    def place(self, time: Fraction) -> float:
+        """Return the share of the axis at a time."""
+        if self.cut is None:
+            return self.room * float(time / self.total) if self.total else 0.0
+        start, end = self.cut
+        scale = (self.room - _CUT_LENGTH) / float(self.total - (end - start))
+        if time <= start:
+            return scale * float(time)
+        if time <= end:
+            return scale * float(start) + _CUT_LENGTH * float((time - start) / (end - start))
+        return scale * float(time - (end - start)) + _CUT_LENGTH
+
+
+def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Waterfall | None:
+    """Show where the time of a chain goes; None for one without steps."""
+    if not result.terms:
+        return None
+    advice = advise_on_chain(timing_lookup.analysis, result)
+    lead = advice.lateness if advice else chain_charts.describe_chain_verdict(result, timing_lookup)
+    total, deadline = _sum_known(result.terms), result.deadline.value if result.deadline else None
+    axis = _make_axis(result.terms, total)
+    step_limit = axis.place(deadline) if deadline is not None and deadline <= total else None
+    whole = max(total, deadline or Fraction(0)) or Fraction(1)
+    return Waterfall(
+        inline_text.message_to_inlines(lead),
+        tuple(_make_total(result, total, whole)),
+        tuple(_make_labels(result, total, whole)),
+        (float(deadline / whole) if deadline is not None else None, step_limit),
+        f"deadline {_format(deadline)}" if deadline is not None else "",
+        tuple(_make_ticks(axis)),
+        tuple(_make_steps(lookup, timing_lookup, result.terms, axis)),
+        _describe_cut(axis),
+        tuple(_make_figures(lookup, result)),
+        tuple(_make_cards(lookup, timing_lookup, result)),
+    )
+
+
+def _describe_cut(axis: _CutAxis) -> str:
+    """Say what is drawn short; nothing where all is on one scale."""
+    if axis.cut is None:
+        return ""
+    start, end = axis.cut
+    length = _format(end - start)
+    return (
+        f"The {length} from {_format(start)} on are drawn short." if start else f"The first {length} are drawn short."
+    )
+
+
+def _sum_known(terms: Sequence[ChainTerm]) -> Fraction:
+    return sum(map(chain_charts.sum_known_parts, terms), Fraction(0))
+
+
+def _format(time: Fraction) -> str:
+    return chain_status.round_duration(time) if time else "0"
+
+
+def _list_parts(term: ChainTerm) -> Iterator[tuple[PieceKind, str, TimingValue]]:
+    """Yield the parts of a step in the order of time: over the link, waiting, at work."""
+    by_kind = {"sampling": term.sampling, "response": term.response, "link": term.link}
+    yield from ((kind, word, by_kind[kind]) for kind, word in (_KINDS[2], _KINDS[0], _KINDS[1]))
+
+
+def _make_axis(terms: Sequence[ChainTerm], total: Fraction) -> _CutAxis:
+    """Choose the axis: room for what is unknown at its end, and the longest piece cut if it dwarfs all others."""
+    is_partial = any(value.value is None for term in terms for _, _, value in _list_parts(term))
+    room = 1 - _UNKNOWN_LENGTH if is_partial else 1.0
+    longest = max(_list_stretches(terms), key=lambda stretch: stretch[1] - stretch[0], default=None)
+    if longest is None or not _CUT_SHARE * total < longest[1] - longest[0] < total:
+        return _CutAxis(total, None, room)
+    return _CutAxis(total, longest, room)
+
+
+def _list_stretches(terms: Sequence[ChainTerm]) -> Iterator[tuple[Fraction, Fraction]]:
+    """Yield start and end of each known part, in ns."""
+    time = Fraction(0)
+    for term in terms:
+        for _, _, value in _list_parts(term):
+            if value.value:
+                yield time, time + value.value
+                time += value.value
+
+
+def _make_total(result: ChainResult, total: Fraction, whole: Fraction) -> Iterator[WaterfallPiece]:
+    """Yield the known parts by kind, and what is left for what nobody knows."""
+    position = Fraction(0)
+    for kind, word in _KINDS:
+        length = sum((getattr(term, kind).value or Fraction(0) for term in result.terms), Fraction(0))
+        if length:
+            end = position + length
+            yield WaterfallPiece(kind, float(position / whole), float(end / whole), f"{word} {_format(length)}")
+            position = end
+    if not result.bound.complete and position < whole:
+        yield WaterfallPiece("unknown", float(total / whole), 1.0, "unknown")
+
+
+def _make_labels(result: ChainResult, total: Fraction, whole: Fraction) -> Iterator[tuple[float, str]]:
+    yield 0.0, "0"
+    yield float(total / whole), f"{_format(total)}{'' if result.bound.complete else ' known'}"
+
+
+def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
+    """Yield round times along the axis; none inside of what is drawn short."""
+    yield 0.0, "0"
+    start, end = axis.cut or (Fraction(0), Fraction(0))
+    step = _choose_step(axis.total - (end - start))
+    if not step:
+        return
+    # Behind the cut first: there is the room.
+    times = [end] if axis.cut else []
+    multiple = step
+    while multiple < axis.total:
+        if not start <= multiple <= end:
+            times.append(multiple)
+        multiple = (multiple // step + 1) * step if multiple < start or multiple > end else (end // step + 1) * step
+    last_place = 0.0
+    for time in sorted(times):
+        place = axis.place(time)
+        if place - last_place > 0.06 and place < 0.97:  # noqa: PLR2004 - shares that keep two figures apart
+            yield place, _format(time)
+            last_place = place
+
+
+def _choose_step(length: Fraction) -> Fraction:
+    """Return a round time (1, 2 or 5 times a power of ten) that fits about `_TICKS` times into a length."""
+    if length <= 0:
+        return Fraction(0)
+    step = Fraction(1)
+    while step * _TICKS * 10 < length:
+        step *= 10
+    return next((step * factor for factor in (1, 2, 5, 10) if step * factor * _TICKS >= length), step * 10)
+
+
+def _make_steps(
+    lookup: Lookup, timing_lookup: TimingLookup, terms: Sequence[ChainTerm], axis: _CutAxis
+) -> Iterator[WaterfallStep]:
+    time = Fraction(0)
+    for term in terms:
+        pieces: list[WaterfallPiece] = []
+        for kind, word, value in _list_parts(term):
+            tip = f"{word} {value_format.display_duration(value)}"
+            if value.value:
+                start, time = time, time + value.value
+                is_cut = axis.cut == (start, time)
+                pieces.append(WaterfallPiece(kind, axis.place(start), axis.place(time), tip, is_cut))
+            elif value.value is None:
+                # It has no length: what follows it is drawn too early, and the hatching says so.
+                start_share = pieces[-1].end if pieces else axis.place(time)
+                end_share = min(1.0, start_share + _UNKNOWN_LENGTH)
+                pieces.append(WaterfallPiece("unknown", start_share, end_share, f"{word} for how long, nobody knows"))
+        yield WaterfallStep(
+            timing_tables.activity_link(timing_lookup, term.activity)[0],
+            _describe_place(lookup, timing_lookup, term),
+            tuple(pieces),
+            _describe_step(term),
+        )
+
+
+def _describe_step(term: ChainTerm) -> str:
+    """Describe the parts of a step and why: `waits <= 30 s, responds 150 ms · samples the world every 30 s`."""
+    phrases = [
+        f"{word} {value_format.display_duration(value)}"
+        for _, word, value in _list_parts(term)
+        if value.value or value.value is None
+    ]
+    return " · ".join(filter(None, (", ".join(phrases) or "adds no time", term.why)))
+
+
+def _describe_place(lookup: Lookup, timing_lookup: TimingLookup, term: ChainTerm) -> Inlines:
+    """Name the owner of a step and its host."""
+    owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
+    activity = timing_lookup.analysis.system.activities.get(term.activity)
+    host = inline_text.host_link(lookup.architecture, activity.host) if activity and activity.host else ()
+    return inline_text.join_inlines(tuple(part for part in (owners, host) if part))
+
+
+def _list_owners(lookup: Lookup, timing_lookup: TimingLookup, activity_id: str) -> tuple[str, ...]:
+    """Return who owns what an activity belongs to: its node, else its component."""
+    activity = timing_lookup.analysis.system.activities.get(activity_id)
+    node = lookup.architecture.nodes.get(activity.node) if activity else None
+    if node is None:
+        return ()
+    names = tuple(
+        dict.fromkeys(
+            owner
+            for component in node.implements
+            if component in lookup.architecture.components
+            for owner in lookup.architecture.components[component].owners
+        )
+    )
+    return node.owners or names
+
+
+def _make_figures(lookup: Lookup, result: ChainResult) -> Iterator[KeyFigure]:
+    """Yield the figures of a chain at a glance."""
+    yield KeyFigure("At the latest", value_format.display_duration(result.bound), "", (), "")
+    if result.deadline is not None:
+        yield KeyFigure("Deadline", value_format.display_duration(result.deadline), "", (), "")
+    margin = chain_status.describe_margin(result)
+    if margin:
+        yield KeyFigure("Margin", margin, "", (), "")
+    if result.best.value is not None:
+        yield KeyFigure("At the earliest", value_format.display_lower_bound(result.best), "", (), "")
+    requirements = lookup.architecture.chains[result.id].requirements
+    if requirements:
+        links = inline_text.join_inlines(
+            inline_text.requirement_link(lookup.architecture, name)[:1] for name in requirements
+        )
+        yield KeyFigure("Requirements", str(len(requirements)), "", links, "")
+
+
+def _make_cards(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Iterator[DashboardCard]:
+    """Yield what to do, and what is taken for granted."""
+    steps = tuple(_list_steps(lookup, timing_lookup, result))
+    assumptions = tuple(
+        inline_text.message_to_inlines(word)
+        for word in dict.fromkeys(element_timing.list_assumptions(timing_lookup, result))
+    )
+    if steps:
+        yield DashboardCard("What to do", (Bullets(steps, ordered=True),), 8 if assumptions else 12, kind="to-do")
+    if assumptions:
+        yield DashboardCard("Taken for granted", (Bullets(assumptions),), 4 if steps else 12)
+
+
+def _list_steps(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Inlines]:
+    """Yield what would mend a chain that is not sure to be in time, each with owner and place."""
+    advice = advise_on_chain(timing_lookup.analysis, result)
+    if advice is None:
+        return
+    missing_terms = [term for term in result.terms if term.activity in result.bound.missing]
+    largest_term = max(result.terms, key=chain_charts.sum_known_parts)
+    if advice.first_step:
+        subject = missing_terms[0] if missing_terms else largest_term
+        yield _join_step(lookup, timing_lookup, advice.first_step, subject)
+    yield _join_step(lookup, timing_lookup, advice.largest_parts, largest_term)
+
+
+def _join_step(lookup: Lookup, timing_lookup: TimingLookup, text: str, term: ChainTerm) -> Inlines:
+    owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
+    place = element_references.place_run(lookup, term.at)
+    parts = [part for part in (owners, (replace(place, muted=True),) if place else ()) if part]
+    ending = inline_text.join_inlines(parts)
+    return (
+        *inline_text.message_to_inlines(text),
+        *((Text("", line_break=True), Text("Owner ", muted=True), *ending) if owners else ending),
+    )

@@ -1,0 +1,155 @@
+"""What changed since an earlier version, on the pages of the site."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from archgen.cli import main
+from tests import repositories
+
+OLD = """\
+archgen: 1
+project: {title: Robot}
+partners: {p: {title: Partner}}
+groups:
+  g:
+    title: Group
+    components:
+      eye: {owner: p, functionality: Looks at five things., outputs: {o: Seen, extra: Also}, tags: [a, b]}
+      brain: {functionality: Thinks., inputs: {i: eye.o}}
+      old_arm: {functionality: Moves with some force and care., outputs: {push: Push}}
+      gone: {functionality: Never was., outputs: {x: Nothing}}
+  h:
+    title: Other
+    components:
+      still: {functionality: Stays.}
+nodes: {eye: {implements: g.eye, timing: {period: 100 ms, wcet: 5 ms}}}
+"""
+NEW = (
+    OLD.replace("five", "six <b>")
+    .replace("tags: [a, b]", "tags: [a, c]")
+    .replace(", extra: Also", "")
+    .replace("old_arm:", "arm:")
+    .replace(
+        "      gone: {functionality: Never was., outputs: {x: Nothing}}\n", "      horn: {functionality: Honks.}\n"
+    )
+    .replace("wcet: 5 ms", "wcet: 7 ms")
+)
+
+
+def make_site(folder: Path, *words: str) -> Result:
+    root = repositories.repository(folder / "robot", {"archgen.yaml": OLD})
+    (root / "archgen.yaml").write_text(NEW)
+    return CliRunner().invoke(main, ["site", str(root), "-o", str(folder / "site"), *words])
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("since")
+    result = make_site(folder, "--since", "HEAD")
+    assert result.exit_code == 0, result.output
+    return folder / "site"
+
+
+def read(site: Path, name: str) -> str:
+    return (site / name).read_text()
+
+
+def text_of(html: str) -> str:
+    return " ".join(re.sub(r"<[^>]+>", " ", html).split())
+
+
+def test_the_page_of_changes_tells_them_and_links_them(site: Path) -> None:
+    html = read(site, "changes.html")
+    assert "What changed: HEAD (" in html
+    assert "→ the working tree" in html
+    text = text_of(html.partition("<main")[2])
+    for words in ("g.arm", "renamed", "g.horn", "is added", "g.gone", "is removed", "g.eye"):
+        assert words in text
+    assert '<a href="components/g.horn.html"><code>g.' in html
+    assert "<b>" not in html
+    assert "figures/changes/components.svg" in html
+
+
+def test_a_changed_element_has_a_chip_and_both_versions_side_by_side(site: Path) -> None:
+    html = read(site, "components/g.eye.html")
+    assert text_of(re.findall(r'<div class="title">.*?</div>', html)[0]) == "Eye changed since HEAD"
+    table = re.findall(r"<caption>Changed since HEAD</caption>.*?</table>", html, re.DOTALL)[0]
+    rows = [text_of(row) for row in re.findall(r"<tr>(.*?)</tr>", table)]
+    assert rows[0] == "What Before (HEAD) Now"
+    assert "functionality Looks at five things. Looks at six &lt;b&gt; things." in rows
+    assert 'Looks at <span class="removed">five</span> things.' in table
+    assert 'Looks at <span class="added">six &lt;b&gt;</span> things.' in table
+    assert "tags a b a c" in rows
+    assert any(row.startswith("output extra \N{MINUS SIGN} ") for row in rows)
+    assert "Changed since" not in read(site, "components/h.still.html")
+
+
+def test_new_and_renamed_elements_say_so(site: Path) -> None:
+    horn = read(site, "components/g.horn.html")
+    assert "new" in text_of(re.findall(r'<div class="title">.*?</div>', horn)[0])
+    assert "Changed since" not in horn
+    arm = read(site, "components/g.arm.html")
+    assert "renamed" in text_of(re.findall(r'<div class="title">.*?</div>', arm)[0])
+    assert "renamed g.old_arm g.arm" in text_of(re.findall(r"<caption>Changed since.*?</table>", arm, re.DOTALL)[0])
+
+
+def test_the_tree_and_the_lists_mark_what_changed(site: Path) -> None:
+    tree = re.findall(r"<nav id=.navigation.*?</nav>", read(site, "groups/g.html"), re.DOTALL)[0]
+    marked = [
+        text_of(entry).partition(" (")[0] for entry in re.findall(r"<a [^>]*>.*?</a>", tree) if "mark changed" in entry
+    ]
+    assert marked[0].startswith("Group")
+    assert {"Eye", "Arm", "Horn"} <= set(marked)
+    assert not {"Other", "Still", "Brain"} & set(marked)
+    rows = [text_of(row) for row in re.findall(r"<tr>(.*?)</tr>", read(site, "components.html"))]
+    assert any(row.startswith("Eye changed") for row in rows)
+    assert any(row.startswith("Horn new") for row in rows)
+    assert any(row.startswith("Brain Thinks") for row in rows)
+
+
+def test_pictures_mark_what_changed_as_those_of_a_comparison_do(site: Path) -> None:
+    overview = read(site, "figures/overview.svg")
+    assert "~ Group" in overview
+    assert "~ Other" not in overview
+    assert "~ changed" in overview
+    group = read(site, "figures/groups/g.svg")
+    assert "+ Horn" in group
+    assert "~ Eye" in group
+    assert "→ Arm" in group
+
+
+def test_without_since_nothing_of_it_is_there(tmp_path: Path) -> None:
+    assert make_site(tmp_path).exit_code == 0
+    assert not (tmp_path / "site" / "changes.html").exists()
+    for name in ("index.html", "components/g.eye.html", "components.html", "figures/overview.svg"):
+        html = read(tmp_path / "site", name)
+        assert "changed" not in html
+        assert "Changes" not in html
+
+
+def test_a_version_is_named_as_diff_takes_it_with_the_same_words_for_mistakes(tmp_path: Path) -> None:
+    result = make_site(tmp_path, "--since", "nonsense")
+    root = tmp_path / "robot"
+    wrong = CliRunner().invoke(main, ["diff", "nonsense", "-C", str(root)])
+    assert (result.exit_code, wrong.exit_code) == (2, 2)
+    assert result.output.splitlines()[-1] == wrong.output.splitlines()[-1]
+    assert not (tmp_path / "site").exists()
+    (tmp_path / "old.yaml").write_text(OLD)
+    folder_result = CliRunner().invoke(
+        main, ["site", str(root), "--since", str(tmp_path / "old.yaml"), "-o", str(tmp_path / "site")]
+    )
+    assert folder_result.exit_code == 0
+    assert "Horn" in read(tmp_path / "site", "changes.html")
+
+
+def test_a_project_that_did_not_change_says_so(tmp_path: Path) -> None:
+    root = repositories.repository(tmp_path / "robot", {"archgen.yaml": OLD})
+    result = CliRunner().invoke(main, ["site", str(root), "--since", "HEAD", "-o", str(tmp_path / "site")])
+    assert result.exit_code == 0
+    assert "No change of the architecture." in text_of(read(tmp_path / "site", "changes.html"))
+    assert "mark changed" not in read(tmp_path / "site", "index.html")
