@@ -119,9 +119,9 @@ class StepDelays:
         if reader.mode == "match" and arc.role == "data":
             sample_age = self._matched_age(reader, arc)
         elif self.arrivals.waits_for_all(reader):
-            known_gaps = [
-                value for value in (gap, self.arrivals.other_triggers_gap(reader, arc)) if is_known_bound(value)
-            ]
+            # Where another source of the input completes the set, what this one sent last is used again.
+            gaps = (gap,) if self.arrivals.shares_input(arc) else (gap, self.arrivals.other_triggers_gap(reader, arc))
+            known_gaps = [value for value in gaps if is_known_bound(value)]
             sample_age = min(known_gaps, key=lambda value: value.value or Fraction(0)) if known_gaps else gap
             if any(other_arc.role == "request" for other_arc in self.analysis.system.arcs_into.get(reader.id, ())):
                 sample_age = sum_bounds(
