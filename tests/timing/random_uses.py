@@ -77,8 +77,6 @@ class _Maker:
         values = {**self.work(period), **self.place(name)}
         if kind == "periodic":
             jitter = self.dice.choice((0, 0, 0, period // 4, period))
-            if jitter and values["callback_group"] is None:
-                values["callback_group"] = name  # reentrant jobs that come together may overtake one another
             self.activities.append(Activity(name, name, None, "periodic", period=period, jitter=jitter, **values))
             if earlier and self.chance(0.4):
                 read = self.arc(self.dice.choice(earlier), name)
@@ -86,7 +84,6 @@ class _Maker:
                 storing = {read.input: StoringCallback(self.dice.choice((0, 0, 1)))}
                 self.activities[-1] = replace(self.activities[-1], storing=storing)
             return
-        values["callback_group"] = name
         sources = self.dice.sample(earlier, {"event": 1}.get(kind, 2))
         if self.chance(0.15):
             values["throttle"] = self.dice.choice((5, 20, 50))

@@ -69,6 +69,17 @@ def bound_chain(
     return _build_result(network, regions, asked_chain, chain_points)
 
 
+def find_chain_slack(network: CostNetwork, architecture: Architecture, asked_chain: Chain) -> Fraction | None:
+    """Return what the bound of a chain leaves of its deadline, in ns, and look for no other figure; None where either is open."""
+    if asked_chain.deadline is None or asked_chain.unresolved:
+        return None
+    chain_points = chain_regions.resolve_points(network.steps.analysis.system, architecture, asked_chain.through)
+    extreme_path = _find_extreme_path(network, chain_regions.lay_out_chain(network, chain_points), "bound")
+    if extreme_path is None or extreme_path.value.value is None or not is_known_bound(extreme_path.value):
+        return None
+    return asked_chain.deadline.value - extreme_path.value.value
+
+
 def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainResult]:
     """Bound all chains of an architecture, in order of appearance."""
     network = CostNetwork.of_analysis(analysis)

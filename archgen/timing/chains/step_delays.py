@@ -13,6 +13,7 @@ from fractions import Fraction
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
+from archgen.timing.chains.delay_texts import write_gap, write_overtaking, write_storing, write_thinning
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
@@ -61,11 +62,11 @@ class StepDelays:
         activity = self.analysis.system.activities[name]
         if activity.behaviour == "periodic":
             gap = self.arrivals.activation_gap(name)
-            return StepDelay(gap, f"samples the world{_gap_text(gap)}", _span_of_keys(activity, "period", "rate"))
+            return StepDelay(gap, f"samples the world{write_gap(gap)}", _span_of_keys(activity, "period", "rate"))
         if activity.behaviour in {"event", "on_demand"}:
             # An event that `every` or `throttle` lets wait is a stimulus all the same: it waits for others to come.
             thinning_wait = self.arrivals.thinning_wait(activity)
-            return StepDelay(thinning_wait, f"its event is the stimulus{_thinning_text(activity)}", activity.at)
+            return StepDelay(thinning_wait, f"its event is the stimulus{write_thinning(activity)}", activity.at)
         return _undefined_delay(activity)
 
     def sampling_wait(self, arc: Arc) -> TimingValue:
@@ -92,17 +93,17 @@ class StepDelays:
             )
             return StepDelay(
                 value,
-                f"triggered by {arc.topic}{waiting_text}{_thinning_text(reader)}{_overtaking_text(self.overtaking_wait(arc))}",
+                f"triggered by {arc.topic}{waiting_text}{write_thinning(reader)}{write_overtaking(self.overtaking_wait(arc))}",
                 _span_of_keys(reader, "trigger"),
             )
         if reader.behaviour is None or reader.behaviour == "once":
             return _undefined_delay(reader)
         verb_text = "takes the answer of" if arc.role == "answer" else "reads"
         gap_text, storing_text = (
-            _gap_text(self.arrivals.activation_gap(reader.id)),
-            _storing_text(self.storing_wait(arc)),
+            write_gap(self.arrivals.activation_gap(reader.id)),
+            write_storing(self.storing_wait(arc)),
         )
-        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}{_overtaking_text(self.overtaking_wait(arc))}"
+        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}{write_overtaking(self.overtaking_wait(arc))}"
         return StepDelay(value, why, _span_of_keys(reader, "period", "rate"))
 
     def holding_age(self, arc: Arc) -> TimingValue:
@@ -119,9 +120,9 @@ class StepDelays:
         if reader.mode == "match" and arc.role == "data":
             sample_age = self._matched_age(reader, arc)
         elif self.arrivals.waits_for_all(reader):
-            known_gaps = [
-                value for value in (gap, self.arrivals.other_triggers_gap(reader, arc)) if is_known_bound(value)
-            ]
+            # Where another source of the input completes the set, what this one sent last is used again.
+            gaps = (gap,) if self.arrivals.shares_input(arc) else (gap, self.arrivals.other_triggers_gap(reader, arc))
+            known_gaps = [value for value in gaps if is_known_bound(value)]
             sample_age = min(known_gaps, key=lambda value: value.value or Fraction(0)) if known_gaps else gap
             if any(other_arc.role == "request" for other_arc in self.analysis.system.arcs_into.get(reader.id, ())):
                 sample_age = sum_bounds(
@@ -282,39 +283,6 @@ def _unsure_use(reader: Activity) -> TimingValue:
     """Return the wait for a use that nothing promises: each message may be among those that are dropped and forgotten."""
     text = f"{NO_USE_NOTE}: {reader.id} forgets what it drops (`dropped: forgotten`), and any of its triggers may be dropped"
     return TimingValue(None, assumptions=("diverged", text))
-
-
-def _gap_text(gap: TimingValue) -> str:
-    """Return the words for a reader's gap, where it is a bound."""
-    return (
-        f" every {figure_wording.format_duration(gap.value)} at the latest"
-        if gap.value is not None and is_known_bound(gap)
-        else ""
-    )
-
-
-def _overtaking_text(wait: TimingValue) -> str:
-    """Return the words for the time for which an older message may stand in a newer one's place."""
-    if not wait.value or not is_known_bound(wait):
-        return ""
-    return f", which an older one may replace for {figure_wording.format_duration(wait.value)}"
-
-
-def _storing_text(wait: TimingValue) -> str:
-    """Return the words for the time that a message may wait to be stored."""
-    if wait.value is None or not wait.value:
-        return ""
-    return f", which may wait {figure_wording.format_duration(wait.value)} to be stored"
-
-
-def _thinning_text(activity: Activity) -> str:
-    """Return the words for what lets a trigger wait."""
-    phrases = [f"fires only once for {activity.every} triggers"] if activity.every > 1 else []
-    if activity.throttle:
-        phrases.append("keeps a smallest gap")
-    if activity.jitter:
-        phrases.append("starts late by its jitter")
-    return f"; {', '.join(phrases)}" if phrases else ""
 
 
 def _span_of_keys(activity: Activity, *keys: str) -> Span:

@@ -45,6 +45,14 @@ class TriggerArrivals:
         reader = self.analysis.system.activities[arc.target]
         return len(firing_arcs) == 1 and not any(key in outside_inputs for key in reader.triggers)
 
+    def shares_input(self, arc: Arc) -> bool:
+        """Whether messages of others come to the input of an arc as well."""
+        arcs_into = self.analysis.system.arcs_into.get(arc.target, ())
+        return any(
+            other_arc is not arc and other_arc.role == "data" and other_arc.input == arc.input
+            for other_arc in arcs_into
+        ) or arc.input in self.analysis.system.external_inputs.get(arc.target, ())
+
     def activation_gap(self, name: str) -> TimingValue:
         """Return the largest gap between two activations."""
         pace = self.analysis.paces.get(name)

@@ -176,6 +176,14 @@ def longest_busy_period(demand: DemandFunction, budget: SearchBudget, lower_boun
     return _find_fixed_point(0, demand, budget.start_search(), start=lower_bound)
 
 
+def longest_wait_for_turn(demand: DemandFunction, budget: SearchBudget, lower_bound: int = 0) -> int:
+    """Return the same for what takes no time itself: it waits on where something else comes as the last work ends.
+
+    So the windows are closed: it is as if it took the smallest part of a tick.
+    """
+    return _find_fixed_point(1, demand, budget.start_search(), start=lower_bound) - 1
+
+
 class WorstActivation(NamedTuple):
     """The activation of a busy period that takes longest: the `ordinal`-th, which comes and ends so long after the start."""
 
@@ -211,7 +219,12 @@ def find_worst_activation(
         # Must never be above the true end, or the search would step over the least fixed point. If this job ends before
         # the next one comes, its end is the end of the busy period; else it ends after `next_arrival`.
         earliest_finish = busy_period if next_arrival is None else min(busy_period, next_arrival + 1)
-        finish = _find_fixed_point(work_done, interference, spend, start=max(finish, earliest_finish))
+        start = max(finish, earliest_finish)
+        finish = (
+            _find_fixed_point(work_done, interference, spend, start=start)
+            if work.cost
+            else _find_fixed_point(1, interference, spend, start=start) - 1  # as in `longest_wait_for_turn`
+        )
         if finish - arrival > worst.finish - worst.arrival:
             worst = WorstActivation(count, arrival, finish)
         if next_arrival is None or finish <= next_arrival:

@@ -22,6 +22,7 @@ from archgen.timing.load.busy_windows import (
     SearchBudget,
     add_demands,
     longest_busy_period,
+    longest_wait_for_turn,
     subtract_demand,
     worst_response,
 )
@@ -88,6 +89,7 @@ class CoreSolver:
         self.find_model = find_model
         self.budget = budget
         self.bounds: dict[Priority, LevelBound] = {}
+        self._waits_for_turn: dict[Priority, int | None] = {}
 
     def solve(self) -> CoreResponses:
         """Find the busy periods level by level, then the responses and the delays of ways in the order of triggers."""
@@ -111,7 +113,7 @@ class CoreSolver:
                 continue
             ways: list[EntryWay] = []
             for way in self.core.ways_to[name]:
-                candidates = [whole_delay, self._period_of_steps(way.steps)]
+                candidates = [whole_delay, self._period_of_level(name, self._level_of_steps(way.steps))]
                 if response.value is not None:
                     before = delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
                     candidates.append(None if before is None else before + response.value)
@@ -144,9 +146,11 @@ class CoreSolver:
         """Return how long a message that an activity only stores may wait until an activation that does not read it."""
         if self.core.queue is not None and self.core.queue.stores_in_time:
             return WorstResponse(0, "fifo")
-        busy_period, cause, demand = self.bounds[self.core.thread_of[name].lowest_priority]
+        level = self.core.thread_of[name].lowest_priority
+        _, cause, demand = self.bounds[level]
+        busy_period = self.find_wait_for_turn(level)
         if busy_period is None:
-            return WorstResponse(None, "host", cause)
+            return WorstResponse(None, "host", cause if cause != UnknownCause() else DIVERGED_CAUSE)
         origin = Origin("activity", name)
         if not self._enters(name) or self._is_idle(name) or not demand.level.volumes.get(origin):
             return WorstResponse(busy_period, "host")
@@ -189,14 +193,15 @@ class CoreSolver:
         if activity.wcet is None:
             return WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), bound.cause)))
         tier = self._tier_of(thread)
-        if bound.busy_period is None:
-            return WorstResponse(None, tier, bound.cause)
+        busy_period = self._period_of_level(name, level)
+        if bound.busy_period is None or busy_period is None:
+            return WorstResponse(None, tier, DIVERGED_CAUSE if bound.cause == UnknownCause() else bound.cause)
         start_work = sum(self.core.system.activities[each].wcet or 0 for each in thread.unit if self._is_idle(each))
         if start_work:
-            extended_period = self._extend_busy_period(bound, start_work)
+            extended_period = self._extend_busy_period(name, bound, start_work)
             return WorstResponse(extended_period, tier, DIVERGED_CAUSE if extended_period is None else UnknownCause())
-        if level is None or len(thread.unit) > 1 or not thread.in_order:
-            return WorstResponse(bound.busy_period, tier)
+        if level is None or len(thread.unit) > 1 or not thread.in_order or not activity.wcet:
+            return WorstResponse(busy_period, tier)
         return WorstResponse(self._response_by_activation(name, bound), tier)
 
     def _tier_of(self, thread: ThreadWork) -> ResponseTier:
@@ -204,11 +209,12 @@ class CoreSolver:
             return "executor" if len(self.core.threads) == 1 and len(thread.unit) > 1 else "host"
         return "priorities" if len(thread.unit) == 1 else "executor"
 
-    def _extend_busy_period(self, bound: LevelBound, start_work: int) -> int | None:
+    def _extend_busy_period(self, name: str, bound: LevelBound, start_work: int) -> int | None:
         """Return the busy period with work that is done once, at the start, on top."""
         demand = add_demands(bound.demand.demand_function(), DemandFunction(lambda _: start_work))
+        search = longest_busy_period if self.core.system.activities[name].wcet else longest_wait_for_turn
         try:
-            return longest_busy_period(demand, self.budget, bound.busy_period or 0)
+            return search(demand, self.budget, bound.busy_period or 0)
         except DivergedError:
             return None
 
@@ -221,7 +227,7 @@ class CoreSolver:
         ways = self.core.ways_to[name]
         if any(way.entry.kind == "activity" and not self._enters(str(way.entry.key)) for way in ways):
             return busy_period  # behind a gate: how its events follow one another is not known here
-        if not self.core.system.activities[name].wcet or not self._all_at_level(ways, name):
+        if not self._all_at_level(ways, name):
             return busy_period
         streams = tuple(
             stream
@@ -271,9 +277,25 @@ class CoreSolver:
         """Return the level of the least urgent of some steps."""
         return min((self.core.thread_of[step].lowest_priority for step in steps), key=urgency_of)
 
-    def _period_of_steps(self, steps: Iterable[str]) -> int | None:
-        """Return the busy period of the level at which all of a run's steps count."""
-        return self.bounds[self._level_of_steps(steps)].busy_period
+    def _period_of_level(self, name: str, level: Priority) -> int | None:
+        """Return the longest time that an activity, with all that leads to it, may take at a level."""
+        return (
+            self.bounds[level].busy_period if self.core.system.activities[name].wcet else self.find_wait_for_turn(level)
+        )
+
+    def find_wait_for_turn(self, level: Priority) -> int | None:
+        """Return the busy period of a level for what takes no time, None where there is none."""
+        if level not in self._waits_for_turn:
+            busy_period, _, demand = self.bounds[level]
+            try:
+                self._waits_for_turn[level] = (
+                    None
+                    if busy_period is None
+                    else longest_wait_for_turn(demand.demand_function(), self.budget, busy_period)
+                )
+            except DivergedError:
+                self._waits_for_turn[level] = None
+        return self._waits_for_turn[level]
 
 
 def _settles_at_full_load(demand: CascadeDemand) -> bool:

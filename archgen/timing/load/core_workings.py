@@ -6,7 +6,7 @@ Each function offers the ways in which the analysis may have found a figure; the
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -82,7 +82,7 @@ class InnerCoreWorkings:
             if streams:
                 lead = min(way.best_before for way in ways)
                 yield from self._by_activation(name, streams, bound, lead, ())
-        yield self._whole_period(bound, ())
+        yield self._whole_period(name, thread.lowest_priority, ())
         if len(ways) == 1:
             yield from (shorten_working(each, ways[0].best_before) for each in self._list_run_delays(name, ways[0]))
 
@@ -102,7 +102,7 @@ class InnerCoreWorkings:
                 streams = self._activation_streams((way,), bound)
                 if streams:
                     yield from self._by_activation(name, streams, bound, 0, way.steps)
-            yield self._whole_period(bound, way.steps)
+            yield self._whole_period(name, level, way.steps)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield the time to the step before, and the response of the last one."""
@@ -147,9 +147,15 @@ class InnerCoreWorkings:
         terms = group_terms([own_term, *self._list_terms(bound, finish, name)])
         yield FigureWorking(max(finish - arrival - lead, 0), finish, terms, count, arrival, lead, steps)
 
-    def _whole_period(self, bound: LevelBound, steps: tuple[str, ...]) -> FigureWorking:
-        window = bound.busy_period or 0
-        return FigureWorking(window, window, group_terms(self._list_terms(bound, window)), steps=steps)
+    def _whole_period(
+        self, name: str, level: Priority, steps: tuple[str, ...], *, is_hold: bool = False
+    ) -> FigureWorking:
+        """Return the busy period of a level, for what takes no time with what comes at its very end."""
+        closing_tick = int(is_hold or not self.solver.core.system.activities[name].wcet)
+        bound = self.solver.bounds[level]
+        window = (self.solver.find_wait_for_turn(level) if closing_tick else bound.busy_period) or 0
+        terms = group_terms(self._list_terms(bound, window + closing_tick))
+        return FigureWorking(window, window, terms, steps=steps, is_hold=is_hold)
 
     def _add_start(self, bound: LevelBound, start_costs: tuple[tuple[str, int], ...]) -> FigureWorking:
         start_work = sum(cost for _, cost in start_costs)
@@ -160,14 +166,15 @@ class InnerCoreWorkings:
 
     def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
         """Yield what may hold up the storing of an activity's inputs for so long."""
-        bound = self.solver.bounds[self.solver.core.thread_of[name].lowest_priority]
+        level = self.solver.core.thread_of[name].lowest_priority
+        bound = self.solver.bounds[level]
         origin = Origin("activity", name)
         streams = self._streams_of(bound, origin)
         if name in self.solver.core.inner_triggers.entry_ids and streams:
             own_jobs = {origin: self.formulas.count_held_jobs(streams, hold)}
             terms = group_terms(self._list_terms(bound, hold, own_counts=own_jobs))
             yield FigureWorking(hold, hold, terms, is_hold=True)
-        yield replace(self._whole_period(bound, ()), is_hold=True)
+        yield self._whole_period(name, level, (), is_hold=True)
 
     def _list_terms(
         self,

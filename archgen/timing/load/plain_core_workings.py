@@ -14,6 +14,7 @@ from archgen.timing.load.busy_windows import (
     add_demands,
     find_worst_activation,
     longest_busy_period,
+    longest_wait_for_turn,
 )
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.thread_work import EventModels, ThreadWork, build_thread, lower_crowded_threads
@@ -46,15 +47,23 @@ def list_plain_workings(
     if len(thread.unit) == 1 and is_alone and own_works[name].streams and thread.in_order:
         count, arrival, finish = find_worst_activation(own_works[name], load, budget)
         own_term = WorkTerm(((name, own_works[name].cost),), EventCount(count, str(count)), "its own")
-        terms = [own_term, *_count_threads(formulas, others, finish)]
+        # What takes no time waits for what comes at the very end as well: a tick more has it.
+        closing_tick = 0 if own_works[name].cost else 1
+        terms = [own_term, *_count_threads(formulas, others, finish + closing_tick)]
         yield FigureWorking(finish - arrival, finish, group_terms(terms), count, arrival)
         return
     # What works only at the start has no events, but takes its own time.
     start_costs = [(each, work.cost) for each, work in own_works.items() if not work.streams and work.cost]
     start_work = sum(cost for _, cost in start_costs)
     demand = add_demands(load, GrowingLoad(thread.works).demand_function())
-    window = longest_busy_period(add_demands(demand, DemandFunction(lambda _: start_work)), budget, start_work)
-    terms = [*_count_threads(formulas, (thread, *others), window), WorkTerm(tuple(start_costs), ONCE, "at the start")]
+    whole_demand = add_demands(demand, DemandFunction(lambda _: start_work))
+    closing_tick = int(thread.takes_no_time)
+    search = longest_wait_for_turn if closing_tick else longest_busy_period
+    window = search(whole_demand, budget, start_work)
+    terms = [
+        *_count_threads(formulas, (thread, *others), window + closing_tick),
+        WorkTerm(tuple(start_costs), ONCE, "at the start"),
+    ]
     yield FigureWorking(window, window, group_terms(terms))
 
 

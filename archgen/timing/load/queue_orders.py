@@ -115,8 +115,10 @@ def bound_edf(
     for arrival in list_arrivals(busy_period, jumps):
         own_work = task.cost * max(task.count_until(arrival), 1)
         limits = [(each, None if lead is None else arrival + lead) for each, lead in leads]
-        if preemptive:
+        if preemptive and task.cost:
             end = find_end(own_work, limits, spend)
+        elif preemptive:  # what takes no time ends when it begins
+            end = find_start(own_work, limits, spend)
         else:
             later = [each.cost for each, limit in limits if limit is not None and limit < 0]
             end = find_start(own_work - task.cost + max(later, default=0), limits, spend) + task.cost

@@ -16,7 +16,13 @@ from typing import NamedTuple
 
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
-from archgen.timing.load.busy_windows import DemandFunction, DivergedError, SearchBudget, longest_busy_period
+from archgen.timing.load.busy_windows import (
+    DemandFunction,
+    DivergedError,
+    SearchBudget,
+    longest_busy_period,
+    longest_wait_for_turn,
+)
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, work_utilisation
@@ -134,11 +140,12 @@ def _bound_by_arrivals(
     rivals = find_rivals(state, (name,), resource_id)
     if isinstance(rivals, UnknownCause):
         return rivals
-    start = state.system.activities[name].uses[resource_id].worst + rivals.blocking
+    own_use = state.system.activities[name].uses[resource_id].worst
+    start = own_use + rivals.blocking
     if rivals.share >= 1:
         return DIVERGED_CAUSE
     demand = DemandFunction(lambda window: start + rivals.work_within(window), 2 * len(rivals.competitors))
-    return longest_busy_period(demand, budget, start)
+    return (longest_busy_period if own_use else longest_wait_for_turn)(demand, budget, start)
 
 
 class Rivals(NamedTuple):

@@ -20,6 +20,7 @@ from archgen.timing.load.busy_windows import (
     SearchBudget,
     add_demands,
     longest_busy_period,
+    longest_wait_for_turn,
     subtract_demand,
     worst_response,
 )
@@ -150,8 +151,8 @@ def _solve_one_core(
             # time.
             once_cost = sum(work.cost for work in thread.works if not work.streams)
             response = (
-                _bound_any_order(all_threads, budget, once_cost)
-                if once_cost and any_order_response.value is not None
+                _bound_any_order(all_threads, budget, once_cost, waits_on=thread.takes_no_time)
+                if (once_cost or thread.takes_no_time) and any_order_response.value is not None
                 else any_order_response
             )
             yield thread, response._replace(tier="executor") if is_only else response
@@ -164,11 +165,15 @@ def _solve_one_core(
         yield thread, previous_response
 
 
-def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0) -> WorstResponse:
+def _bound_any_order(
+    threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0, *, waits_on: bool = False
+) -> WorstResponse:
     """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top.
 
-    What is alone on a core works in the order in which it is activated.
+    What is alone on a core works in the order in which it is activated. What takes no time waits on (`waits_on`) where
+    one busy period follows another at once.
     """
+    search = longest_wait_for_turn if waits_on else longest_busy_period
     if sum_fractions(thread.share for thread in threads) >= 1:
         return WorstResponse(None, "host", OVERLOAD_CAUSE)
     causes = [thread.cause for thread in threads if thread.cause]
@@ -179,12 +184,8 @@ def _bound_any_order(threads: Sequence[ThreadWork], budget: SearchBudget, once_c
         if len(works) == 1 and works[0].streams and threads[0].in_order:
             return WorstResponse(worst_response(works[0], NO_DEMAND, budget), "host")
         load = GrowingLoad(works)
-        return WorstResponse(
-            longest_busy_period(
-                add_demands(load.demand_function(), DemandFunction(lambda _: once_cost)), budget, once_cost
-            ),
-            "host",
-        )
+        demand = add_demands(load.demand_function(), DemandFunction(lambda _: once_cost))
+        return WorstResponse(search(demand, budget, once_cost), "host")
     except DivergedError:
         return WorstResponse(None, "host", DIVERGED_CAUSE)
 
@@ -215,6 +216,8 @@ def _bound_by_priority(
         if len(thread.works) == 1 and thread.in_order:
             interference = subtract_demand(ranked.demand_of_first(count), GrowingLoad(thread.works).demand_function())
             busy_period = worst_response(thread.works[0], interference, budget, busy_period)
+        elif thread.takes_no_time:
+            busy_period = longest_wait_for_turn(ranked.demand_of_first(count), budget, busy_period)
         return WorstResponse(busy_period, tier)
     except DivergedError:
         return WorstResponse(None, tier, DIVERGED_CAUSE)

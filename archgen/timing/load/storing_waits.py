@@ -17,7 +17,7 @@ from archgen.timing.load.busy_windows import (
     DivergedError,
     GrowingLoad,
     SearchBudget,
-    longest_busy_period,
+    longest_wait_for_turn,
 )
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.thread_work import (
@@ -53,9 +53,9 @@ def hold_beside_others(
     find_time_beside: Callable[[int], int], own_cost: int, own_streams: EventStreams, spend: Callable[[int], None]
 ) -> int:
     """Return the same for a thread on several cores, of which others take so much time in a window."""
-    window = 1
-    while (work := find_time_beside(window) + own_cost * max_arrivals(own_streams, window)) > window:
-        window = work
+    window = 1  # what is stored takes no time, as a rule: it waits on where something comes as the last work ends
+    while (work := find_time_beside(window) + own_cost * max_arrivals(own_streams, window)) >= window:
+        window = work + 1
     return longest_busy_window(
         lambda window: find_time_beside(window) + own_cost * max(max_arrivals(own_streams, window + 1) - 1, 0),
         window,
@@ -116,7 +116,7 @@ def _find_core_wait(
     own_work = thread.works[thread.unit.index(name)]
     demand = GrowingLoad(works).demand_function()
     try:
-        busy_period = longest_busy_period(demand, budget)
+        busy_period = longest_wait_for_turn(demand, budget)
         return WorstResponse(
             hold_before_activation(demand, own_work.cost, own_work.streams, busy_period, budget), "host"
         )

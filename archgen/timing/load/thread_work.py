@@ -70,6 +70,11 @@ class ThreadWork:
     in_order: bool = True
     """Whether the activations of its only activity begin in the order in which they come, one after the other."""
 
+    @property
+    def takes_no_time(self) -> bool:
+        """Whether something that works in it has an execution time of 0."""
+        return any(not work.cost and work.streams for work in self.works)
+
 
 def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
     """Build a unit's thread from the work of its members."""

@@ -26,6 +26,7 @@ from archgen.timing.load.busy_windows import (
     GrowingLoad,
     SearchBudget,
     longest_busy_period,
+    longest_wait_for_turn,
     worst_response,
 )
 from archgen.timing.load.event_models import PropagationState
@@ -215,7 +216,8 @@ def _search(
         lambda window: once_cost + own_demand.within(window) + interference.within(window),
         own_demand.term_count + interference.term_count,
     )
-    return longest_busy_period(total, budget)
+    takes_no_time = any(not work.cost for work in works)
+    return longest_wait_for_turn(total, budget) if takes_no_time else longest_busy_period(total, budget)
 
 
 def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> _Interference:

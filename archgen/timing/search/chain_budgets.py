@@ -119,7 +119,7 @@ class _BudgetSearch:
     def find_figure_budgets(self) -> Iterator[FigureBudget]:
         """Yield the largest execution time of each element, and the longest period of each in the chain."""
         periods = _list_figures(find_own_period(self.trials.architecture, activity) for activity in self.elements)
-        for figure in (*self.own_times, *periods, *self.other_times):
+        for figure in (*self.own_times, *periods, *self._list_concerned()):
             try:
                 budget = self._find_figure_budget(figure)
             except TriesSpentError:
@@ -128,6 +128,32 @@ class _BudgetSearch:
             # Beside the chain only those count that can make it late.
             if not budget.is_free or figure not in self.other_times:
                 yield budget
+
+    def _list_concerned(self) -> list[TriedFigure]:
+        """Return the execution times beside the chain, without those that are in nobody's way however long they are.
+
+        Most are: many are looked at together. Where all of them at their limits leave the chain in time, each does.
+        """
+        concerned: list[TriedFigure] = []
+        groups = [self.other_times]
+        while groups:
+            group = groups.pop(0)
+            try:
+                is_free = len(group) > 1 and _is_left(
+                    self._slack_with(tuple(figure.change_to(self._find_limit(figure)) for figure in group))
+                )
+            except TriesSpentError:
+                is_free = False
+            if len(group) <= 1:
+                concerned += group
+            elif not is_free:
+                middle = len(group) // 2
+                groups[:0] = [group[:middle], group[middle:]]
+        return concerned
+
+    def _find_limit(self, figure: TriedFigure) -> int:
+        """Return the largest step at which a figure is tried: the whole deadline."""
+        return max(int(self.deadline // figure.tick), figure.written_step + 1)
 
     def find_host_budgets(self) -> Iterator[tuple[str, FactorBudget]]:
         """Yield by what all execution times on each host of the chain may grow."""
@@ -169,7 +195,7 @@ class _BudgetSearch:
         return architecture.nodes[figure.activity.node].owners or (component.owners if component else ())
 
     def _find_figure_budget(self, figure: TriedFigure) -> FigureBudget:
-        limit = max(int(self.deadline // figure.tick), figure.written_step + 1)
+        limit = self._find_limit(figure)
         rate = self.trials.analysis.paces[figure.activity.id].rate.value
         # What computes until it is to begin anew, or longer, never comes to an end: that needs no look.
         full_step = (
@@ -182,7 +208,7 @@ class _BudgetSearch:
         if figure in self.other_times:
             # Most neighbours are in nobody's way: a single look shows it.
             limit_slack = self._slack_with((figure.change_to(limit),))
-            if limit_slack is not None and limit_slack >= 0:
+            if _is_left(limit_slack):
                 return FigureBudget(figure.activity.id, figure.key, figure.written, None, is_free=True)
         step, is_free = self._find_step(
             find_slack, figure.written_step, figure.least_step, limit, Fraction(figure.tick)
@@ -225,6 +251,10 @@ class _BudgetSearch:
 
     def _slack_with(self, changes: Changes) -> Fraction | None:
         return self.trials.find_slack(self.result.id, changes)
+
+
+def _is_left(slack: Fraction | None) -> bool:
+    return slack is not None and slack >= 0
 
 
 def _list_figures(figures: Iterable[TriedFigure | None]) -> list[TriedFigure]:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult, ChainVerdict
-from archgen.timing.chains.chain_bounds import bound_chain
+from archgen.timing.chains.chain_bounds import bound_chain, find_chain_slack
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.run_analysis import analyse_for_chains
 
@@ -62,6 +62,7 @@ class ChangeTrials:
             (): (architecture, CostNetwork.of_analysis(analysis))
         }
         self._results: dict[tuple[Changes, str], ChainResult] = {}
+        self._slacks: dict[tuple[Changes, str], Fraction | None] = {}
 
     def bound_chain(self, chain_id: str, changes: Changes = ()) -> ChainResult:
         """Return what a chain takes with some changes. Raise TriesSpentError where no try is left for it."""
@@ -75,12 +76,14 @@ class ChangeTrials:
 
     def find_slack(self, chain_id: str, changes: Changes) -> Fraction | None:
         """Return what some changes leave of a chain's deadline, in ns; None where nothing proves that it is kept."""
-        try:
-            result = self.bound_chain(chain_id, changes)
-        except SenselessChangeError:
-            return None
-        slack = result.slack
-        return None if slack is None or (slack >= 0 and result.verdict != "met") else slack
+        if (changes, chain_id) not in self._slacks:
+            try:
+                changed_architecture, network = self._analyse(changes)
+            except SenselessChangeError:
+                return None
+            asked_chain = changed_architecture.chains[chain_id]
+            self._slacks[changes, chain_id] = find_chain_slack(network, changed_architecture, asked_chain)
+        return self._slacks[changes, chain_id]
 
     def harms_others(self, chain_id: str, changes: Changes) -> bool:
         """Whether some changes make the verdict on any other chain worse."""

@@ -18,7 +18,7 @@ def find_largest_step(
     """
     side, repeats = 0, 0
     while high - low > 1:
-        middle = _choose_step(low, high, low_slack, high_slack if repeats < 2 else None)  # noqa: PLR2004
+        middle = _choose_step(low, high, low_slack, high_slack if repeats < 1 else None)
         slack = slack_at(middle)
         new_side = 1 if _is_left(slack) else -1
         # A secant that always moves the same end comes closer in ever smaller steps: then a half does more.

@@ -1,0 +1,229 @@
+"""One step of a propagation at a time: the event model of an activity, or the responses of what a resource runs."""
+
+from collections.abc import Callable
+
+from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
+from archgen.timing.load.core_responses import CoreResponses, solve_inner_core
+from archgen.timing.load.event_models import activation_model, arriving_model
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.inner_triggers import FiringArc
+from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.propagation_steps import PropagationSteps
+from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.shared_core_responses import solve_shared_cores
+from archgen.timing.load.thread_work import WorstResponse
+from archgen.timing.load.waiting_threads import find_waiting_responses
+from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_host_limits
+from archgen.timing.system.core_placement import (
+    ProcessingResource,
+)
+
+
+class StepUpdates(PropagationSteps):
+    """Finds the figures of single steps anew."""
+
+    def _update_step(self, step: str) -> bool:
+        """Find the figures of one step anew, and return whether they changed."""
+        if step in self.whole_hosts:
+            return self._update_whole_host(step)
+        if step in self.joined_resources:
+            return self._update_joined_resources(step)
+        if step in self.inner_triggers:
+            return self._update_inner_core(step)
+        return self._update_plain_resource(step) if step in self.resources else self._update_activity(step)
+
+    def _update_plain_resource(self, step: str) -> bool:
+        """Find the responses of a resource on which nothing fires anything else, and return whether any changed."""
+        state = self.state
+        old_ends = dict(state.work_ends)
+        new_responses = {
+            name: self._limit_response(name, _name_tier(self.resources[step], response))
+            for name, response in self._find_responses(step).items()
+        }
+        changed = old_ends != state.work_ends or any(
+            _has_changed(state.responses.get(name), response) for name, response in new_responses.items()
+        )
+        state.responses.update(new_responses)
+        return changed
+
+    def _update_activity(self, step: str) -> bool:
+        """Find the event model of an activity, its response too where it has a core of its own."""
+        state = self.state
+        event_model = activation_model(state, step)
+        is_same_model = step in state.responses and _is_unchanged(state.event_models.get(step), event_model)
+        is_waiting = step not in self.resources_of and bool(state.system.activities[step].uses)
+        if is_same_model and not is_waiting:
+            return False
+        state.event_models[step] = event_model
+        if is_waiting:
+            return self._update_dedicated_user(step) or not is_same_model
+        # On no resource: a core of its own, so that its response rests on nothing but its own events.
+        if step not in self.resources_of:
+            state.responses[step] = find_dedicated_response(
+                state.system, step, state.event_models, self.budget_of[step]
+            )
+        return True
+
+    def _update_joined_resources(self, step: str) -> bool:
+        """Find the bounds of joined resources, and return whether they changed."""
+
+        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+            if entry_arc is None:
+                return self.state.event_models[str(origin.key)]
+            return arriving_model(self.state, entry_arc.arc)
+
+        bounds = self.joined_resources[step].find_bounds(find_model, self.state.event_models, self.budget_of[step])
+        changed = bounds != self.joined_bounds.get(step)
+        self.joined_bounds[step] = bounds
+        return changed
+
+    def _limit_response(self, name: str, response: WorstResponse) -> WorstResponse:
+        """Return a response, or the bound of all resources that are joined with its core, whichever is less."""
+        bounds = [self.joined_bounds.get(step, {}).get(name) for step in self.joined_steps_of.get(name, ())]
+        bound = min((each for each in bounds if each is not None), default=None)
+        if bound is None or response.tier == "declared" or (response.value is not None and response.value <= bound):
+            return response
+        return WorstResponse(bound, response.tier)
+
+    def _update_dedicated_user(self, step: str) -> bool:
+        """Find the response of what has a core of its own and waits for resources, and return whether it changed."""
+        own_core = ProcessingResource(step, None, 1, ((step,),), waits=True)
+        response = find_waiting_responses(self.state, own_core, self.waiting_ids, self.budget_of[step])[step]
+        response = self._limit_response(step, response)
+        changed = _has_changed(self.state.responses.get(step), response)
+        self.state.responses[step] = response
+        return changed
+
+    def _find_responses(self, step: str) -> dict[str, WorstResponse]:
+        """Find the responses of a resource on which nothing fires anything else."""
+        state, resource, budget = self.state, self.resources[step], self.budget_of[step]
+        if resource.waits:
+            return find_waiting_responses(state, resource, self.waiting_ids, budget)
+        models = self._models_of(step) if step in self.roaming_ids else state.event_models
+        queue, stale_ids = self.queues.get(step), self._stale_activities(step)
+        # In a queue each response rests on all that waits there.
+        effort = AnalysisEffort(budget, stale_ids if queue is None else None)
+        responses = find_responses(state.system, resource, models, effort)
+        if queue is not None:
+            busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+            bounds = queue.bound_responses(models.__getitem__, busy_period, budget)
+            responses = {name: response.limit_to(bounds.get(name), queue.order) for name, response in responses.items()}
+        return limit_responses(CoreResponses(responses, {}, {}), self._limits_of(step)).response_of
+
+    def _limits_of(self, step: str) -> dict[str, HostLimit]:
+        """Return what bounds the activities of a resource on its host as a whole."""
+        return self.host_limits.get(f"whole {self.resources[step].host}", {})
+
+    def _model_finder(
+        self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
+    ) -> Callable[[Origin, FiringArc | None], EventStreams | UnknownCause]:
+        """Return a look-up of event models of what enters a core, which notes those of arcs (by identity)."""
+
+        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+            if entry_arc is None:
+                name = str(origin.key)
+                is_roaming = step in self.inner_cores and name in self.roaming_ids.get(step, ())
+                return self._model_of_roaming(name) if is_roaming else self.state.event_models[name]
+            key = id(entry_arc.arc)
+            if key not in entering_models:
+                entering_models[key] = arriving_model(self.state, entry_arc.arc)
+            return entering_models[key]
+
+        return find_model
+
+    def _update_whole_host(self, step: str) -> bool:
+        """Find how long a host taken as one core is busy, and return whether anything changed."""
+        find_model = self._model_finder(step, {})
+        core_responses = solve_inner_core(self.whole_hosts[step], find_model, self.budget_of[step])
+        limits = list_host_limits(core_responses)
+        changed = self.host_limits.get(step) != limits
+        self.host_limits[step] = limits
+        self.state.host_ways_to.update({name: core_responses.ways_to[name] for name in limits})
+        return changed
+
+    def _update_inner_core(self, step: str) -> bool:
+        """Find the responses of a core on which activities fire one another, and return whether anything changed."""
+        state, limits, budget = self.state, self._limits_of(step), self.budget_of[step]
+        entering_models: dict[int, EventStreams | UnknownCause] = {}
+        find_model = self._model_finder(step, entering_models)
+        new_responses, new_ways, new_waits = (
+            limit_responses(solve_inner_core(self.inner_cores[step], find_model, budget), limits)
+            if step in self.inner_cores
+            else solve_shared_cores(
+                self.shared_cores[step], find_model, ({**state.responses, **state.work_ends}, limits), budget
+            )
+        )
+        old_ends = dict(self.state.single_ends)
+        if step in self.single_cores:
+            self._limit_to_single_cores(step, new_responses, new_ways)
+        new_responses = {
+            name: self._limit_response(name, _name_tier(self.resources[step], response))
+            for name, response in new_responses.items()
+        }
+        changed = old_ends != self.state.single_ends or any(
+            not _is_unchanged(state.entering_models.get(key), entering_models[key]) for key in entering_models
+        )
+        state.entering_models.update(entering_models)
+        changed = changed or any(
+            _has_changed(state.responses.get(name), response) or state.ways_to.get(name) != new_ways[name]
+            for name, response in new_responses.items()
+        )
+        state.responses.update(new_responses)
+        state.ways_to.update(new_ways)
+        state.storing_waits.update(new_waits)
+        return changed
+
+    def _limit_to_single_cores(
+        self, step: str, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]
+    ) -> None:
+        """Limit the responses on several cores to what each of these cores alone would let them be."""
+        state = self.state
+        bounds = self.single_cores[step].limit(
+            state.event_models, {**state.responses, **responses, **state.work_ends}, self.budget_of[step]
+        )
+        for name in self.resources[step].members:
+            self.state.single_ends.pop(name, None)
+        self.state.single_ends.update(bounds)
+        for name, bound in bounds.items():
+            response = responses[name]
+            if response.value is not None and bound < response.value and response.tier != "declared":
+                responses[name] = response._replace(value=bound)
+                ways_to[name] = tuple(
+                    way._replace(delay=min(way.delay, bound)) if len(way.steps) == 1 and way.delay is not None else way
+                    for way in ways_to[name]
+                )
+
+    def _stale_activities(self, step: str) -> frozenset[str] | None:
+        """Return what has another event model than when a resource was last looked at; None the first time."""
+        resource, event_models = self.resources[step], self._models_of(step)
+        current_models = {
+            name: event_models[name] for unit in (*resource.units, *resource.foreign_units) for name in unit
+        }
+        previous_models = self.seen_models.get(step)
+        # Compared by identity below: `_update_step` stores an event model only where it differs from the old one.
+        self.seen_models[step] = current_models
+        return (
+            None
+            if previous_models is None
+            else frozenset(name for name in current_models if current_models[name] is not previous_models[name])
+        )
+
+
+def _name_tier(resource: ProcessingResource, response: WorstResponse) -> WorstResponse:
+    """Name the tier of a thread that has one of several cores to itself."""
+    if not resource.undisturbed or resource.waits or response.tier not in {"host", "priorities", "executor"}:
+        return response
+    return response._replace(tier="executor" if len(resource.units[0]) > 1 else "cores")
+
+
+def _has_changed(old: WorstResponse | None, new: WorstResponse) -> bool:
+    """Whether a response changed. Causes are compared without regard to order (see `is_same_cause`)."""
+    if old is None or old.value != new.value or old.tier != new.tier:
+        return True
+    return old.cause is not new.cause and not is_same_cause(old.cause, new.cause)
+
+
+def _is_unchanged(old: EventStreams | UnknownCause | None, new: EventStreams | UnknownCause) -> bool:
+    """Whether an event model is the same as before."""
+    return is_same_cause(old, new) if isinstance(old, UnknownCause) and isinstance(new, UnknownCause) else old == new
