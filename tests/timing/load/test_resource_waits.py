@@ -115,7 +115,7 @@ def _seen(of: TimingSystem) -> dict[str, float]:
 
 
 def test_many_users_of_a_resource_are_joined_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each with each would be 40 x 40 x 40 times: a file of 100 kB would take hours."""
+    """Each with each would be 40 x 40 x 40 times: a file of 100 kB would take half an hour."""
     link_counts: list[int] = []
 
     def count_links(neighbours: dict[str, list[str]], _: object) -> list[list[str]]:
