@@ -122,8 +122,8 @@ def report_mixed_trigger(trigger_body: MappingNode, element_id: str, diagnostics
             diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
 
 
-def report_repetition(mapping: MappingNode, key: str, element_id: str, diagnostics: list[Diagnostic]) -> bool:
-    """Report the first entry of a list that is written a second time; whether there is one."""
+def report_repetition(mapping: MappingNode, key: str, element_id: str, diagnostics: list[Diagnostic]) -> None:
+    """Report the first entry of a list that is written a second time."""
     first_spans: dict[str, Span] = {}
     for scalar in mapping_values.get_scalars(mapping, key):
         if scalar.text in first_spans:
@@ -131,9 +131,8 @@ def report_repetition(mapping: MappingNode, key: str, element_id: str, diagnosti
             label = Label(first_spans[scalar.text], "first written here")
             message = f"`{key}` names `{scalar.text}` twice"
             diagnostics.append(_diagnose_senseless(message, scalar.span, help_line, element_id, label))
-            return True
+            return
         first_spans[scalar.text] = scalar.span
-    return False
 
 
 def report_lonely_within(trigger_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> None:

@@ -87,6 +87,5 @@ def _read_resource_time(
 def read_cores(body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> tuple[int, ...] | None:
     """Read a set of cores, in ascending order; None where none is written."""
     sanity_checks.report_empty_list(body, "cores", "core", element_id, diagnostics)
-    sanity_checks.report_repetition(body, "cores", element_id, diagnostics)
     numbers = {scalar.value for scalar in mapping_values.get_scalars(body, "cores") if type(scalar.value) is int}
     return tuple(sorted(numbers)) or None

@@ -9,9 +9,11 @@ import pytest
 
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation import simulate_system
+from archgen.timing.load import joined_resources
 from archgen.timing.run_analysis import analyse_system
 from archgen.timing.system.timing_system import Activity, Arc, Executor, ResourceUse, SharedResource, TimingSystem
 from tests.simulation.systems import arc, event, system, timed
+from tests.timing.sketches import analyse_sketch
 
 
 def test_two_threads_that_alternate_a_core_and_a_gpu() -> None:
@@ -110,3 +112,17 @@ def _waits(of: TimingSystem, name: str) -> Fraction | None:
 def _seen(of: TimingSystem) -> dict[str, float]:
     seen = simulate_system(of, 1, 8).activities
     return {name: float((one.worst_response or 0) / 10**6) for name, one in seen.items()}
+
+
+def test_many_users_of_a_resource_are_joined_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each with each would be 40 x 40 x 40 times: a file of 100 kB would take half an hour."""
+    link_counts: list[int] = []
+
+    def count_links(neighbours: dict[str, list[str]], _: object) -> list[list[str]]:
+        link_counts.append(sum(map(len, neighbours.values())))
+        return []
+
+    monkeypatch.setattr(joined_resources, "find_strong_components", count_links)
+    nodes = {f"n{number} @pc": "period: 100 ms, wcet: 1 ms, uses: {gpu: 1 ms}" for number in range(40)}
+    analyse_sketch(nodes, "", "hosts: {pc: {cores: 4}}\nresources: {gpu: {host: pc, scheduling: fifo}}")
+    assert 0 < max(link_counts) < 10 * 40 * 40
