@@ -128,10 +128,8 @@ def _picture_files(pictures: Mapping[str, Picture], links: SiteLinks) -> Iterato
         if picture.svg is not None:
             path = drawing.picture_path(picture_id)
             current_page = open_page(path, links)
-            yield (
-                path,
-                drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root)),
-            )
+            svg = drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
+            yield path, drawing.write_signs(svg.decode()).encode()
 
 
 @cache
