@@ -12,7 +12,7 @@ from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.partner_exchanges import gather_exchanges
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages import partner_pages
-from archgen.views.shapes import Inlines, Page, Table
+from archgen.views.shapes import Inlines, Page, Paragraph, Table
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
 ROBOT = """\
@@ -94,6 +94,16 @@ def test_each_interface_has_a_page_with_its_terms(tmp_path: Path) -> None:
     assert page.crumbs[-1] == ("North and South", "pair:north:south")
     assert page.lead == "Interface · North gives, South takes"
     assert any(isinstance(block, Table) and block.anchor.startswith("table:promises/") for block in page.section.blocks)
+
+
+def test_above_a_limit_interfaces_have_no_pages_and_that_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(partner_pages, "MAX_INTERFACE_PAGES", 2)
+    pages = make_pages(look_up(tmp_path))
+    assert not any(anchor.startswith("interface:") for anchor in pages)
+    notes = [read(b.inlines) for b in pages["pair:north:south"].section.blocks if isinstance(b, Paragraph)]
+    assert "archgen interfaces --between north south" in notes[1]
 
 
 def test_a_partner_sees_with_whom_it_has_interfaces(tmp_path: Path) -> None:

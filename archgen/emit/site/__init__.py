@@ -124,7 +124,8 @@ def write_picture(picture_id: str, picture: Picture, links: SiteLinks) -> bytes 
     if picture.svg is None:
         return None
     current_page = open_page(drawing.picture_path(picture_id), links)
-    return drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
+    svg = drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
+    return drawing.write_signs(svg.decode()).encode()
 
 
 @cache

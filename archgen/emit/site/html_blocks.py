@@ -187,7 +187,7 @@ class PageWriter:
         return f"<{tag}>\n{items}\n</{tag}>"
 
     def _write_figure(self, figure: Figure) -> str:
-        caption, alt = escape_html(figure.caption), escape_html(figure.alt or figure.caption)
+        caption, alt = (escape_html(write_signs(text)) for text in (figure.caption, figure.alt or figure.caption))
         picture = self.pictures.get(figure.graph)
         if picture is None or picture.svg is None:
             return (

@@ -9,8 +9,13 @@ from archgen.emit.safe_names import make_safe_path
 from archgen.emit.site.html_text import escape_html, replace_forbidden
 from archgen.emit.site.page_links import CurrentPage
 from archgen.emit.terminal.list_formats import format_csv
-from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow, count_cells
+from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow, count_cells, fold_matrix
 
+MAX_DRAWN_ROWS = 150
+"""The rows that a script or a picture still draws, groups folded: of so many squared a page is made within a second."""
+MAX_DRAWN_CELLS = 40_000
+_MAX_CSV_ROWS = 300
+"""Above, a CSV lists the filled cells: nearly all others are empty, and their commas alone would be megabytes."""
 _CELL = 22
 """The length of a cell in a picture, in px."""
 _LABEL_WIDTH = 7
@@ -25,11 +30,24 @@ def matrix_path(matrix: Matrix, ending: str) -> str:
     return make_safe_path(f"matrix/{matrix.id}.{ending}")
 
 
+def is_drawable(matrix: Matrix) -> bool:
+    """Whether a matrix is small enough, with its groups folded, for a script that works it."""
+    shown = fold_matrix(matrix) if matrix.is_square and matrix.groups else matrix
+    return len(shown.rows) <= MAX_DRAWN_ROWS and len(shown.rows) * len(shown.column_entries) <= MAX_DRAWN_CELLS
+
+
+def list_file_endings(matrix: Matrix) -> tuple[str, ...]:
+    """Return the endings of the files to download: the picture only where it can be drawn."""
+    return ("csv", "svg") if is_drawable(matrix) else ("csv",)
+
+
 def build_matrix_files(matrix: Matrix, current_page: CurrentPage) -> Iterator[tuple[str, bytes]]:
-    """Yield the data for the page's script, and the whole matrix as CSV and as SVG."""
-    yield matrix_path(matrix, "js"), _write_data(matrix, current_page)
+    """Yield the matrix as CSV and, where it can be drawn, as SVG and as the data for the page's script."""
     yield matrix_path(matrix, "csv"), _write_csv(matrix)
-    yield matrix_path(matrix, "svg"), _write_svg(matrix)
+    if is_drawable(matrix):
+        yield matrix_path(matrix, "js"), _write_data(matrix, current_page)
+        is_small = len(matrix.rows) <= MAX_DRAWN_ROWS or not matrix.is_square
+        yield matrix_path(matrix, "svg"), _write_svg(matrix if is_small else fold_matrix(matrix))
 
 
 def _write_data(matrix: Matrix, current_page: CurrentPage) -> bytes:
@@ -66,9 +84,15 @@ def _list_entries(entries: Sequence[MatrixEntry], current_page: CurrentPage) -> 
 
 
 def _write_csv(matrix: Matrix) -> bytes:
-    """Write the counts, those of one row on a line; empty where there is nothing."""
+    """Write the counts, those of one row on a line; of a large matrix each filled cell on a line."""
     cells = count_cells(matrix)
     columns = matrix.column_entries
+    if len(matrix.rows) > _MAX_CSV_ROWS:
+        lines = [
+            [matrix.rows[row].title, columns[column].title, str(len(flows))]
+            for (row, column), flows in sorted(cells.items())
+        ]
+        return format_csv(["row", "column", f"{matrix.flow_word}s"], lines).encode()
     rows = [
         [entry.title, *(str(len(cells.get((row, column), ())) or "") for column in range(len(columns)))]
         for row, entry in enumerate(matrix.rows)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from archgen.emit.site.html_text import escape_breakable, escape_html
-from archgen.emit.site.matrix_files import matrix_path
+from archgen.emit.site.matrix_files import is_drawable, list_file_endings, matrix_path
 from archgen.emit.site.page_links import CurrentPage
 from archgen.views.inline_text import count_noun
 from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow, count_cells, fold_matrix
@@ -26,13 +26,20 @@ def write_matrix(matrix: Matrix, current_page: CurrentPage) -> str:
     table = _write_table(shown, cells, current_page) if is_readable else _write_refusal(shown)
     files = "".join(
         f'<a class="button" href="{current_page.root}{matrix_path(matrix, ending)}" download>{ending.upper()}</a> '
-        for ending in ("csv", "svg")
+        for ending in list_file_endings(matrix)
     )
     return (
         f'<section class="matrix-view" aria-label="{escape_html(matrix.title)}">\n'
         f'<div class="matrix-tools"><p class="matrix-summary">{escape_html(_describe(shown, cells))}</p>{files}</div>\n{_write_related(matrix, current_page)}'
         f'<div class="matrix-frame">\n<div class="matrix-box" role="group" tabindex="0" aria-label="{escape_html(matrix.title)}">\n{table}\n</div>\n'
-        f"{_write_side(matrix)}\n</div>\n</section>\n"
+        f"{_write_side(matrix)}\n</div>\n</section>"
+        f"{_write_scripts(matrix, current_page) if is_drawable(matrix) else ''}"
+    )
+
+
+def _write_scripts(matrix: Matrix, current_page: CurrentPage) -> str:
+    return (
+        "\n"
         f'<script src="{current_page.root}{matrix_path(matrix, "js")}" defer></script>\n'
         f'<script src="{current_page.root}assets/matrix.js" defer></script>'
     )
@@ -115,7 +122,9 @@ def _write_cell(
 
 def _write_refusal(matrix: Matrix) -> str:
     count = count_noun(len(matrix.rows), matrix.row_word)
-    return f'<p class="notice note">{count} are too many for a table without a script. The whole matrix is in the files above.</p>'
+    return (
+        f'<p class="notice note">{count} are too many for a table without a script. The whole is in the CSV above.</p>'
+    )
 
 
 def _write_side(matrix: Matrix) -> str:

@@ -40,7 +40,7 @@ def inline_svg(svg: bytes, resolve_href: HrefResolver, name: str) -> str:
     Ids are removed: several pictures may be on one page, and nothing refers to them.
     """
     text = _COMMENT.sub("", _HEAD.sub("", svg.decode("utf-8"), count=1))
-    text = _write_signs(_resolve_links(_ID.sub(r"<\1", text), resolve_href))
+    text = write_signs(_resolve_links(_ID.sub(r"<\1", text), resolve_href))
     return _SVG.sub(
         lambda found: f'<svg{_keep_attributes(found[1])} role="group" aria-label="{name}">', text, count=1
     ).strip()
@@ -49,13 +49,13 @@ def inline_svg(svg: bytes, resolve_href: HrefResolver, name: str) -> str:
 def standalone_svg(svg: bytes, resolve_href: HrefResolver, style: str = "") -> bytes:
     """Return a picture as a file of its own: as drawn, with its links and, where one is given, a style."""
     text = _HEAD.sub('<?xml version="1.0" encoding="UTF-8"?>\n', svg.decode("utf-8"), count=1)
-    text = _write_signs(_resolve_links(_COMMENT.sub("", text), resolve_href))
+    text = _resolve_links(_COMMENT.sub("", text), resolve_href)
     if not style:
         return text.encode()
     return _ROOT.sub(lambda found: f"{found.group()}\n<style>{style}</style>", text, count=1).encode()
 
 
-def _write_signs(text: str) -> str:
+def write_signs(text: str) -> str:
     """Write the signs of comparisons in a picture's texts as pages do: they take less room than what was laid out."""
     return text.replace("&lt;= ", "≤ ").replace("&gt;= ", "≥ ")
 

@@ -196,11 +196,12 @@ def make_requirement_matrix(lookup: Lookup) -> Matrix:
     requirements = architecture_tables.shown_requirements(lookup)
     servers = {r.id: lookup.components_for_requirement.get(r.id, ()) for r in requirements}
     requirements = sorted(requirements, key=lambda each: bool(servers[each.id]))
+    serving_ids = {component.id for served in servers.values() for component in served}
     component_ids = [
         component.id
         for group in lookup.shown_groups()
         for component in lookup.shown_components(group)
-        if any(component in served for served in servers.values())
+        if component.id in serving_ids
     ]
     places = {name: place for place, name in enumerate(component_ids)}
     group_places = {

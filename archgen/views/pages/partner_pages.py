@@ -35,6 +35,8 @@ from archgen.views.shapes import (
     drop_empty_columns,
 )
 
+MAX_INTERFACE_PAGES = 2_000
+"""With more interfaces than these a site has pages for pairs only: it would be ten times as large."""
 _OVERVIEW_TITLE = "Who owes whom"
 _OVERVIEW_CRUMB = (_OVERVIEW_TITLE, "page:partners")
 _PROMISE_NOTE = (
@@ -51,9 +53,10 @@ def make_partner_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Pag
     for partner in lookup.architecture.partners.values():
         own_exchanges = [exchange for exchange in exchanges if partner.id in exchange.pair]
         yield _partner_page(lookup, partner, own_exchanges, keep_drawn)
+    has_interface_pages = sum(len(exchange.interfaces) for exchange in exchanges) <= MAX_INTERFACE_PAGES
     for exchange in exchanges:
-        yield _pair_page(lookup, exchange)
-        for terms in exchange.interfaces:
+        yield _pair_page(lookup, exchange, has_interface_pages=has_interface_pages)
+        for terms in exchange.interfaces if has_interface_pages else ():
             yield _interface_page(lookup, exchange, terms)
 
 
@@ -125,12 +128,18 @@ def _open_cell(exchange: PartnerExchange) -> Inlines:
     return (Text(str(count), sort_number=str(count), status="open"),) if count else (Text("none", status="met"),)
 
 
-def _pair_page(lookup: Lookup, exchange: PartnerExchange) -> Page:
+def _pair_page(lookup: Lookup, exchange: PartnerExchange, *, has_interface_pages: bool) -> Page:
     """Make the page of two partners: figures, what is open, then what each gives, promised beside derived."""
     title = pair_title(lookup, exchange.pair)
     sections = tuple(_list_direction_sections(lookup, exchange))
     note = Paragraph(inline_text.to_inlines(_PROMISE_NOTE))
-    section = Section(pair_reference(exchange.pair), title, (note,), sections)
+    command = Text(f"archgen interfaces --between {exchange.pair[0]} {exchange.pair[1]}", code=True)
+    hint = (
+        f"With more than {MAX_INTERFACE_PAGES:,} interfaces these have no pages of their own. All their terms are what "
+    )
+    hint_block = Paragraph(inline_text.to_inlines(hint, command, " writes."), "note")
+    blocks = (note,) if has_interface_pages else (note, hint_block)
+    section = Section(pair_reference(exchange.pair), title, blocks, sections)
     path = f"partners/{make_page_slug(exchange.pair[0])}/{make_page_slug(exchange.pair[1])}.html"
     dashboard = Dashboard(tuple(_list_figures(lookup, exchange)), (_point_card(lookup, exchange),))
     return Page(

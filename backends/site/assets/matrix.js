@@ -131,6 +131,7 @@
   function draw(focusOn) {
     hideCard();
     gather();
+    note.textContent = "";
     if (down.length > MOST_ROWS) {
       open.clear();
       gather();

@@ -62,6 +62,15 @@ def test_a_matrix_that_is_too_large_for_a_table_says_so() -> None:
     assert "80 components are too many for a table without a script" in html
 
 
+def test_what_no_script_can_draw_is_a_list_of_its_filled_cells() -> None:
+    rows = tuple(MatrixEntry(f"c{at}", "") for at in range(400))
+    matrix = Matrix("components", "Components", rows, (MatrixFlow(399, 1, "x"), MatrixFlow(0, 399, "x")))
+    files = build(matrix).files
+    assert files["matrix/components.csv"].decode().splitlines() == ["row,column,flows", "c0,c399,1", "c399,c1,1"]
+    assert not {"matrix/components.js", "matrix/components.svg"} & set(files)
+    assert b"matrix.js" not in files["index.html"]
+
+
 def test_the_csv_has_all_rows_and_no_formula() -> None:
     lines = list(csv.reader(io.StringIO(build(make_matrix(2)).files["matrix/components.csv"].decode())))
     assert lines[1] == ["", "A 0", "A 1", "B 0", "B 1"]
