@@ -116,7 +116,7 @@ def test_foreign_hosts_and_origins_are_refused(server: SiteServer) -> None:
         {"Sec_Fetch_Site": "cross-site", "Sec_Fetch_Mode": "no-cors"},
     ):
         for path in ("/", "/live/news", "/assets/search/index.js"):
-            assert ask(server, path, **headers).status == 403
+            assert ask(server, path, "GET", None, **headers).status == 403
         assert question(server, "eye.timing.wcet=6 ms", **headers).status == 403
     assert ask(server, "/", Host=own, Origin=f"http://{own}").status == 200
     with socket.create_connection(("127.0.0.1", server.server_port), 10) as raw:
