@@ -45,6 +45,26 @@ def test_threads_are_those_of_a_container_or_of_a_node_outside_of_one() -> None:
     assert (both.containers["twin"].threads, both.nodes["twin"].threads) == (4, 5)
 
 
+def test_a_node_or_a_container_moves_to_another_host() -> None:
+    text = TEXT.replace("hosts: {", "hosts: {arm_pc: {cores: 2}, ")
+
+    def moved(override: str) -> tuple[str | None, str | None, str | None]:
+        found = apply_overrides(architecture(text), (override,))
+        return found.containers["box"].host, found.nodes["eye"].host, found.nodes["mind"].host
+
+    assert moved("mind.host=arm_pc") == ("pc", "pc", "arm_pc")
+    assert moved("box.host=arm_pc") == ("arm_pc", "arm_pc", "pc")
+    for override, words in {
+        "eye.host=arm_pc": "`eye` runs in the container `box`: set `containers.box.host`",
+        "mind.host=arm_pcc": "`host` takes a host; did you mean `arm_pc`?, not `arm_pcc`",
+        "mind.host.x=pc": "`host.x` takes a value of its own, without a part below it, not `pc`",
+        "pc.host=pc": "no node or container is called `pc`",
+    }.items():
+        with pytest.raises(OverrideError) as caught:
+            moved(override)
+        assert str(caught.value).startswith(words)
+
+
 def test_orders_are_those_of_processes_hosts_cores_and_resources() -> None:
     found = changed("box.scheduling=ros2_executor", "gpu.scheduling=fifo", "mind.scheduling=fifo")
     assert (found.containers["box"].scheduling, found.resources["gpu"].scheduling) == ("ros2_executor", "fifo")

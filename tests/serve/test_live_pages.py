@@ -83,7 +83,7 @@ def test_errors_stand_on_the_page_until_they_are_mended(visit: Visit, save: Save
     mistake = page.locator(".live .mistake")
     expect(mistake.locator(".place")).to_contain_text("archgen.yaml:10:")
     expect(mistake).to_contain_text("did you mean inputs?")
-    expect(mistake.locator("code")).to_contain_text("<img src=x onerror=alert(1)>")
+    expect(mistake.locator("pre code")).to_contain_text("<img src=x onerror=alert(1)>")
     expect(mistake.locator("mark")).to_have_text("imputs")
     expect(page.locator(".live .state")).to_contain_text("The page shows the last sound state, of ")
     expect(page.locator("main")).to_contain_text("Looks.")
@@ -142,6 +142,21 @@ def test_a_picture_that_somebody_looks_at_is_exchanged_in_its_place(visit: Visit
     assert before.partition("transform:")[2] == after.partition("transform:")[2]
     page.keyboard.press("Escape")
     expect(page.locator("dialog")).to_have_count(0)
+
+
+def test_the_search_finds_what_is_new(visit: Visit, save: Save) -> None:
+    page = visit("components/g.eye.html")
+    page.keyboard.press("/")
+    page.locator("#find-field").fill("brake")
+    expect(page.locator("#find-list")).to_contain_text("Brake")
+    page.keyboard.press("Escape")
+    save(ROBOT.replace("Looks.", "Sees.").replace("      brake:", "      zebra: {}\n      brake:"))
+    expect(page.locator("main")).to_contain_text("Sees.")
+    page.keyboard.press("/")
+    page.locator("#find-field").fill("zebra")
+    expect(page.locator("#find-list")).to_contain_text("Zebra")
+    page.locator("#find-field").fill("brake")
+    expect(page.locator("#find-list [role=option]").first).to_contain_text("Brake")
 
 
 def test_a_page_that_is_gone_says_so_and_comes_back(browser: Browser, server: SiteServer, save: Save) -> None:

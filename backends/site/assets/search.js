@@ -84,19 +84,30 @@
   }
 
   function load() {
-    if (loading) return;
-    loading = true;
-    loadScript("ufuzzy", () => {});
-    loadScript("match", () => {});
+    if (loading && !(stale && isReady() && isComplete())) return;
+    [loading, loaded, stale] = [true, 0, false];
+    if (!isReady()) {
+      loadScript("ufuzzy", () => {});
+      loadScript("match", () => {});
+    }
     loadScript("index", () => {
       draw();
       loadPart();
     });
   }
 
+  // Under `archgen serve` the site changes while it is read: the next search begins with the index as it is then.
+  let stale = false;
+  document.addEventListener("archgen:version", () => {
+    stale = loading;
+  });
+
   function loadPart() {
     const { parts } = archgenSearch.settings;
-    if (loaded === parts.length) return;
+    if (loaded === parts.length) {
+      if (stale) load();
+      return;
+    }
     loadScript(parts[loaded], () => {
       loaded += 1;
       // Results while the rest is still being read, but not anew for each of many small parts.

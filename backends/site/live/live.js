@@ -96,6 +96,7 @@
 
   function exchangeParts(next) {
     const parts = readParts(next);
+    document.dispatchEvent(new Event("archgen:version"));
     root.dataset.version = version = next.documentElement.dataset.version ?? version;
     // Scripts of a page's own keep their state in the address: they start again from there.
     if (parts.main !== written.main && hasOwnScripts) {

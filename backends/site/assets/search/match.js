@@ -44,6 +44,9 @@ const archgenSearch = (function () {
 
   // --- what the parts of the index call -------------------------------------------------------------------------
   function index(given) {
+    // Under `archgen serve` there may have been another index before.
+    for (const part of [kinds, words, seenTokens, selectors]) part.clear();
+    wordList = null;
     Object.assign(settings, given);
   }
 
