@@ -14,7 +14,10 @@ from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews
 from archgen.views.pages import report_outline, site_pages
-from archgen.views.shapes import Outline, Page
+from archgen.views.chart_shapes import Drawing
+from archgen.views.report.printed_report import make_printed_report, walk_sections
+from archgen.views.report.report_drawings import make_report_drawings
+from archgen.views.shapes import Figure, Outline, Page
 
 
 # Without slots: `cached_property` stores its values in the object's dictionary.
@@ -34,8 +37,19 @@ class ProductInputs:
 
     @cached_property
     def outline(self) -> Outline:
-        """The report's contents."""
+        """The architecture as one document, for templates."""
         return report_outline.make_report(self.views.lookup, self.views.edition)
+
+    @cached_property
+    def printed_report(self) -> Outline:
+        """The contents of the Word report."""
+        return make_printed_report(self.views.lookup, self.views.edition)
+
+    @cached_property
+    def report_drawings(self) -> Mapping[str, Drawing]:
+        """The pictures of the Word report by their own ids: those that it shows."""
+        shown_ids = {block.graph for section in walk_sections(self.printed_report.sections) for block in section.blocks if isinstance(block, Figure)}
+        return {drawing.id: drawing for drawing in make_report_drawings(self.views.lookup, self.views.drawings).values() if drawing.id in shown_ids}
 
     @cached_property
     def pages(self) -> tuple[Page, ...]:
@@ -80,6 +94,8 @@ class Product:
     """The formats of the pictures that it shows; None if it shows none."""
     picture_patterns: tuple[str, ...] = ("*",)
     """The ids of the pictures that it shows."""
+    list_drawings: Callable[[ProductInputs], Mapping[str, Drawing]] = lambda inputs: inputs.views.drawings
+    """What `picture_patterns` choose from, by id."""
     entry_file: str = ""
     """The file of its folder to open first."""
     follows_inputs: bool = True

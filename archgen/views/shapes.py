@@ -147,6 +147,7 @@ class Facts:
     """Names and values in two columns (owner, status, host): a definition list or an unnumbered table."""
 
     rows: tuple[tuple[str, Inlines], ...]
+    row_anchors: tuple[str | None, ...] = ()
 
 
 Block = Paragraph | Markdown | Figure | Bullets | Facts | Table

@@ -12,7 +12,7 @@ from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.word_xml import escape_text, format_field, format_paragraph, format_run, points_to_twips
 
-_MAX_LEVEL = 3
+_MAX_LEVEL = 2
 """Levels of headings in the table of contents."""
 _NUMBER_WIDTH = 30.0
 """Points at the right that page numbers take."""
@@ -24,7 +24,7 @@ def write_contents(writer: DocxWriter, pages: Mapping[str, int]) -> Iterator[Flo
     # styles, \c the captions with a SEQ field of a name.
     headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= _MAX_LEVEL]
     yield from _write_list(writer, "Contents", f'TOC \\o "1-{_MAX_LEVEL}" \\h \\z \\u', headings, pages)
-    for title, kind in (("Figures", "Figure"), ("Tables", "Table")):
+    for title, kind in ():
         entries = [(entry, "table of figures") for entry in writer.find_contents(kind)]
         if len(entries) > 1:
             yield from _write_list(writer, title, f'TOC \\h \\z \\c "{kind}"', entries, pages)

@@ -16,7 +16,7 @@ from archgen.views.shapes import Figure
 
 _TYPE_SIZE = 9.0
 """Type size in points of the pictures that archgen draws."""
-_LEGIBLE_SIZE = 5.8
+_LEGIBLE_SIZE = 5.4
 _LEGIBLE_SIZE_TURNED = 5.5
 """Below these sizes the next larger sheet is tried; turning a printed page is a price, finding A3 paper a higher one."""
 _CAPTION_HEIGHT = 60.0

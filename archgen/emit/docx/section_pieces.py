@@ -108,7 +108,7 @@ def _iter_anchors(section: Section) -> Iterator[str]:
     for block in section.blocks:
         if isinstance(block, (Table, Figure)):
             yield block.anchor
-        if isinstance(block, Table):
+        if isinstance(block, (Table, Facts)):
             yield from (anchor for anchor in block.row_anchors if anchor)
     for below in section.sections:
         yield from _iter_anchors(below)

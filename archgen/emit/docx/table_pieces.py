@@ -58,9 +58,13 @@ def write_facts(writer: DocxWriter, shape: Facts) -> Iterator[FlowPiece]:
         max((measure_word(name) for name, _ in shape.rows), default=0) * face.size * face.factor + CELL_MARGINS + 2
     )
     left = min(max(longest, width * _NAME_SHARE), width / 2)
+    row_anchors = (*shape.row_anchors, *(None for _ in shape.rows))
     body = [
-        [WordCell(format_run(name, MUTED_COLOUR), name), WordCell(format_runs(writer, value), join_text(value))]
-        for name, value in shape.rows
+        [
+            WordCell(writer.format_bookmark(anchor) + format_run(name, MUTED_COLOUR), name),
+            WordCell(format_runs(writer, value), join_text(value)),
+        ]
+        for (name, value), anchor in zip(shape.rows, row_anchors, strict=False)
     ]
     if body:
         yield write_table_rows(writer, [], body, TableFrame((left, width - left), style="Report Facts"))

@@ -27,6 +27,8 @@ class DocumentEdition:
 
     revision: str = ""
     level: DetailLevel = "implementation"
+    ros_place: Literal["annex", "inline"] = "annex"
+    """Where the report has the ROS side: in an annex, or with each component."""
     chapter_names: tuple[str, ...] = GENERATED_CHAPTERS
     project_chapters: Mapping[str, Chapter] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
