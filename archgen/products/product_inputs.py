@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -43,7 +43,13 @@ class ProductInputs:
     @cached_property
     def printed_report(self) -> Outline:
         """The contents of the Word report."""
-        return make_printed_report(self.views.lookup, self.views.edition)
+        level = self.options.level or self.views.edition.settings.level
+        edition = replace(
+            self.views.edition,
+            level=level or "implementation",
+            ros_place="inline" if level == "implementation" else "annex",
+        )
+        return make_printed_report(self.views.lookup, edition)
 
     @cached_property
     def report_drawings(self) -> Mapping[str, Drawing]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from archgen import git
 from archgen.findings import rule_pages
-from archgen.git.project_revision import find_revision
+from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.history import count_history
 from archgen.model import selector_evaluation
 from archgen.model.project_history import History
@@ -79,6 +79,8 @@ def make_views(checked_project: CheckedProject, options: OutputOptions) -> Proje
     edition = DocumentEdition(
         revision=choose_revision(checked_project, options),
         level=options.level or "implementation",
+        settings=checked_project.chapters.settings,
+        date=_find_date(checked_project, options),
         chapter_names=checked_project.chapters.order,
         project_chapters=checked_project.chapters.texts,
         drawings=all_drawings,
@@ -88,6 +90,13 @@ def make_views(checked_project: CheckedProject, options: OutputOptions) -> Proje
         has_errors=checked_project.has_errors,
     )
     return ProjectViews(lookup, edition, all_drawings)
+
+
+def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
+    """Return the day of the revision that is printed; empty where the revision is one that somebody named."""
+    if options.revision not in {None, find_revision(checked_project.root, checked_project.input_files)}:
+        return ""
+    return find_revision_date(checked_project.root, checked_project.input_files)
 
 
 def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:

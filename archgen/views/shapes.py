@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 Record = Mapping[str, Any]
@@ -181,6 +181,14 @@ class Outline:
     """What the reader must know first, for example that only a part is shown or that there are errors."""
     sections: tuple[Section, ...] = ()
     language: str = "en"
+    title_table: Table | None = None
+    """The partners, on the title page."""
+    front_sections: tuple[Section, ...] = ()
+    """What stands before the contents, without numbers: history, abbreviations."""
+    properties: Mapping[str, str] = field(default_factory=dict)
+    """What the document says of itself by name: number, date, authors."""
+    lists: tuple[str, ...] = ("figures", "tables")
+    """The lists behind the contents."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,8 +36,10 @@ def _iter_body(
         yield from _format_elements(template.before)
         yield _format_section_end(opening)
         opening = paper.create_section_properties(paper.base)
-    yield from (piece.xml for piece in title_page)
-    yield _format_section_end(opening)
+    # A cover may show all that the title page has: then there is none.
+    if title_page or not template.before:
+        yield from (piece.xml for piece in title_page)
+        yield _format_section_end(opening)
     sheet = (main[0].sheet if main else None) or paper.base
     for index, piece in enumerate(main):
         sheet = piece.sheet or paper.base

@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.model.component import Component, Group
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.project_history import History
+from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
 from archgen.views.chart_shapes import Drawing
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
@@ -29,6 +30,10 @@ class DocumentEdition:
     level: DetailLevel = "implementation"
     ros_place: Literal["annex", "inline"] = "annex"
     """Where the report has the ROS side: in an annex, or with each component."""
+    settings: ReportSettings = field(default_factory=ReportSettings)
+    """What the project says of its report: first pages, lists, paper."""
+    date: str = ""
+    """The day of the revision, `2026-03-31`; empty where git does not tell."""
     chapter_names: tuple[str, ...] = GENERATED_CHAPTERS
     project_chapters: Mapping[str, Chapter] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)

@@ -13,7 +13,7 @@ from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.report import condensed_blocks, ros_blocks
+from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
 from archgen.views.report.report_drawings import make_report_drawings
 from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 
@@ -27,9 +27,22 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     outline = report_outline.make_report(lookup, edition)
     printer = _ReportPrinter(lookup, edition, make_report_drawings(lookup, edition.drawings))
     sections = [part for section in outline.sections for part in printer.print_section(section)]
+    overview = next((section for section in sections if section.anchor == "page:index"), None)
+    summary = summary_section.make_summary(lookup, edition, overview)
+    if summary:
+        # It has all of the overview, which would stand behind the project's own introduction.
+        sections = [summary, *(section for section in sections if section is not overview)]
     body = [section for section in sections if not section.appendix]
     annexes = [section for section in sections if section.appendix]
-    return dataclasses.replace(outline, sections=(*body, *printer.make_ros_annexes(), *annexes))
+    return dataclasses.replace(
+        outline,
+        facts=front_pages.make_title_facts(lookup, edition),
+        sections=(*body, *printer.make_ros_annexes(), *annexes),
+        title_table=front_pages.make_partner_table(lookup),
+        front_sections=tuple(front_pages.make_front_sections(lookup, edition)),
+        properties=front_pages.list_properties(lookup, edition),
+        lists=edition.settings.lists,
+    )
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -59,7 +72,9 @@ class _ReportPrinter:
         for block in blocks:
             if not isinstance(block, Figure):
                 yield block
-            elif block.graph not in _LARGE_DRAWINGS and block.graph in self.drawings:
+            elif (
+                block.graph not in _LARGE_DRAWINGS or self.edition.settings.has_large_paper
+            ) and block.graph in self.drawings:
                 yield dataclasses.replace(block, graph=self.drawings[block.graph].id)
 
     def _print_group(self, section: Section) -> Section:
