@@ -189,6 +189,8 @@ class Outline:
     """What the document says of itself by name: number, date, authors."""
     lists: tuple[str, ...] = ("figures", "tables")
     """The lists behind the contents."""
+    has_large_paper: bool = True
+    """Pictures may take sheets of twice the size."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ and holds the package: styles, sections, headers, pictures, properties. The text
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from archgen.emit.docx.contents_lists import write_contents
 from archgen.emit.docx.core_properties import write_core_properties
@@ -43,6 +44,8 @@ def write(
     unknown_names = fill_placeholders(report_template, list_placeholder_values(outline))
     language = outline.language if template is None else ""
     writer = create_writer(report_template, pictures, chapter_files, list_anchors(outline), language)
+    if not outline.has_large_paper:
+        writer.paper = replace(writer.paper, large=())
     if template is not None:
         warn_of_template(writer, unknown_names)
     title_page = tuple(write_title_page(writer, outline, cover_names))

@@ -13,8 +13,10 @@ from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.title_page import write_front_heading
 from archgen.emit.docx.word_xml import escape_text, format_field, format_paragraph, format_run, points_to_twips
 
-_MAX_LEVEL = 2
-"""Levels of headings in the table of contents."""
+_MAX_LEVEL = 3
+"""Levels of headings in the table of contents, if they fit a page or two."""
+_MAX_LINES = 100
+"""From this many lines on the contents have the first two levels alone."""
 _MAX_TABLES = 60
 _NUMBER_WIDTH = 30.0
 """Points at the right that page numbers take."""
@@ -29,8 +31,9 @@ def write_contents(
     """
     # Switches (ECMA-376 17.16.5.68): \o by levels of headings, \h links, \z no numbers on a screen, \u outline levels of other
     # styles, \c the captions with a SEQ field of a name.
-    headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= _MAX_LEVEL]
-    yield from _write_list(writer, "Contents", f'TOC \\o "1-{_MAX_LEVEL}" \\h \\z \\u', headings, pages)
+    level_count = _MAX_LEVEL - (sum(entry.level <= _MAX_LEVEL for entry in writer.headings) > _MAX_LINES)
+    headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= level_count]
+    yield from _write_list(writer, "Contents", f'TOC \\o "1-{level_count}" \\h \\z \\u', headings, pages)
     for title, kind in (("Figures", "Figure"), ("Tables", "Table")):
         entries = [(entry, "table of figures") for entry in writer.find_contents(kind)]
         if kind == "Table" and "tables" in lists and len(entries) > _MAX_TABLES:

@@ -42,6 +42,7 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
         front_sections=tuple(front_pages.make_front_sections(lookup, edition)),
         properties=front_pages.list_properties(lookup, edition),
         lists=edition.settings.lists,
+        has_large_paper=edition.settings.has_large_paper,
     )
 
 

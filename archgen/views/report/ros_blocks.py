@@ -59,7 +59,7 @@ def _refer_to_node(lookup: Lookup, node: Node) -> Inlines:
     first = find_described_component(lookup, node)
     place = (inline_text.component_link(lookup.architecture.components[first]),) if first else ()
     return inline_text.to_inlines(
-        inline_text.node_link(node), " implements this too; it is described at ", *place, "."
+        "The node ", inline_text.node_link(node), " implements this too; it is described at ", *place, "."
     )
 
 
