@@ -54,7 +54,13 @@ class ProductInputs:
     @cached_property
     def report_drawings(self) -> Mapping[str, Drawing]:
         """The pictures of the Word report by their own ids: those that it shows."""
-        shown_ids = {block.graph for section in walk_sections(self.printed_report.sections) for block in section.blocks if isinstance(block, Figure)}
+        outline = self.printed_report
+        shown_ids = {
+            block.graph
+            for section in walk_sections((*outline.front_sections, *outline.sections))
+            for block in section.blocks
+            if isinstance(block, Figure)
+        }
         return {drawing.id: drawing for drawing in make_report_drawings(self.views.lookup, self.views.drawings).values() if drawing.id in shown_ids}
 
     @cached_property

@@ -132,6 +132,8 @@ class Figure:
     graph: str
     caption: str
     alt: str
+    numbered: bool = True
+    """The picture has a caption with a number, and is in the list of figures."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from archgen.emit.docx.docx_writer import DocxWriter
+from archgen.emit.docx.figures import write_figure
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.table_pieces import write_facts, write_table
 from archgen.emit.docx.text_pieces import ParagraphContent, write_paragraph, write_text
 from archgen.emit.docx.text_runs import join_text
 from archgen.emit.docx.word_xml import format_paragraph, format_run
-from archgen.views.shapes import Facts, Outline, Section, Table
+from archgen.views.shapes import Facts, Figure, Outline, Section, Table
 
 
 def list_placeholder_values(outline: Outline) -> dict[str, str]:
@@ -54,6 +55,8 @@ def write_front_sections(writer: DocxWriter, outline: Outline, cover_names: Coll
                 yield from write_facts(writer, block)
             elif isinstance(block, Table):
                 yield from write_table(writer, block)
+            elif isinstance(block, Figure):
+                yield from write_figure(writer, block)
 
 
 def write_front_heading(writer: DocxWriter, title: str) -> FlowPiece:

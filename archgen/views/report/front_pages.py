@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from archgen.analyses.size_counts import measure_progress
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
+from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
 from archgen.views.pages import dashboard, page_marks
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.shapes import Column, Facts, Inlines, Section, Table, Text
+from archgen.views.shapes import Column, Facts, Figure, Inlines, Section, Table, Text
 
 _SIGNS = (
     ("in, out", "a port that reads, a port that writes"),
@@ -88,8 +89,8 @@ def make_partner_table(lookup: Lookup) -> Table | None:
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
 
-def make_front_sections(lookup: Lookup, edition: DocumentEdition) -> Iterator[Section]:
-    """Yield what stands before the contents: history, abbreviations, and how tables are read."""
+def make_front_sections(lookup: Lookup, edition: DocumentEdition, legend: Drawing | None) -> Iterator[Section]:
+    """Yield what stands before the contents: history, abbreviations, and how tables and pictures are read."""
     settings = edition.settings
     if settings.history:
         yield Section("front:history", "Document history", (_make_history_table(settings),))
@@ -99,6 +100,9 @@ def make_front_sections(lookup: Lookup, edition: DocumentEdition) -> Iterator[Se
     signs = (*_SIGNS, *(_ROS_SIGNS if edition.level == "implementation" and lookup.architecture.nodes else ()))
     facts = Facts(tuple((name.replace("`", ""), inline_text.message_to_inlines(words)) for name, words in signs))
     yield Section("front:signs", "How to read the tables", (facts,))
+    if legend:
+        figure = Figure(f"figure:{legend.id}", legend.id, legend.title, "The forms of boxes and arrows.", numbered=False)
+        yield Section("front:legend", "How to read the pictures", (figure,))
 
 
 def _make_history_table(settings: ReportSettings) -> Table:

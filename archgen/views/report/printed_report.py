@@ -14,7 +14,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
-from archgen.views.report.report_drawings import make_report_drawings
+from archgen.views.report.report_drawings import LEGEND_NAME, make_report_drawings
 from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 
 _TIMING_ANNEX = "Rates, loads and traffic"
@@ -39,7 +39,7 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
         facts=front_pages.make_title_facts(lookup, edition),
         sections=(*body, *printer.make_ros_annexes(), *annexes),
         title_table=front_pages.make_partner_table(lookup),
-        front_sections=tuple(front_pages.make_front_sections(lookup, edition)),
+        front_sections=tuple(front_pages.make_front_sections(lookup, edition, printer.find_legend())),
         properties=front_pages.list_properties(lookup, edition),
         lists=edition.settings.lists,
         has_large_paper=edition.settings.has_large_paper,
@@ -53,6 +53,10 @@ class _ReportPrinter:
     lookup: Lookup
     edition: DocumentEdition
     drawings: Mapping[str, Drawing]
+
+    def find_legend(self) -> Drawing | None:
+        """Return the picture of the legend, None where no picture is drawn anew for the report."""
+        return self.drawings.get(LEGEND_NAME) if self.edition.drawings else None
 
     def print_section(self, section: Section) -> tuple[Section, ...]:
         """Return what becomes of a chapter: itself, and the annexes that some of it moves to."""

@@ -11,13 +11,53 @@ from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.lookup import Lookup
 
 _PREFIX = "report/"
+LEGEND_NAME = "report/legend"
 _MAX_INSIDE_BOXES = 10
 """Groups of more components are drawn without their neighbours."""
 
 
 def make_report_drawings(lookup: Lookup, drawings: Mapping[str, Drawing]) -> dict[str, Drawing]:
     """Return the report's drawings by the names of the usual ones; those that differ have ids of their own."""
-    return {name: _fit_drawing(lookup, drawing) for name, drawing in drawings.items()}
+    fitted = {name: _fit_drawing(lookup, drawing) for name, drawing in drawings.items()}
+    legend = _draw_legend([drawing for drawing in fitted.values() if isinstance(drawing, Graph)])
+    fitted = {name: _leave_legend(drawing) for name, drawing in fitted.items()}
+    return fitted | ({LEGEND_NAME: legend} if legend.legend else {})
+
+
+def _draw_legend(graphs: Sequence[Graph]) -> Graph:
+    """Return a picture with the legend of all pictures that the report draws anew, under a flow as an example."""
+    keys = {key for graph in graphs if graph.id.startswith(_PREFIX) for key in add_legend_keys(graph).legend}
+    boxes = (
+        Box("from", "Neighbour", ("what it gives, or calls",), emphasis="neighbour", side="left"),
+        Box("subject", "What it is about", ("role, owner, host",), emphasis="subject"),
+        Box("to", "Neighbour", ("what it takes, or serves",), emphasis="neighbour", side="right"),
+    )
+    arrows = (Arrow("in", "from", "subject", "type"), Arrow("out", "subject", "to", "type"))
+    # In the order of a legend, whatever picture a key comes from.
+    order = add_legend_keys(_join_graphs(graphs)).legend
+    return Graph(
+        LEGEND_NAME,
+        "How to read the pictures",
+        "flow",
+        boxes,
+        arrows,
+        legend=tuple(key for key in order if key in keys),
+        notes=("A number on an arrow: how many flows it stands for. W, E, N in a corner: a warning, an error, a note.",),
+        asked=2,
+        kind="component",
+    )
+
+
+def _join_graphs(graphs: Sequence[Graph]) -> Graph:
+    boxes = tuple(box for graph in graphs for box in graph.boxes)
+    arrows = tuple(arrow for graph in graphs for arrow in graph.arrows)
+    return Graph("", "", "flow", boxes, arrows, kind="component")
+
+
+def _leave_legend(drawing: Drawing) -> Drawing:
+    """Return a picture of the report's own without its legend, which stands once at the beginning."""
+    own = isinstance(drawing, Graph) and drawing.id.startswith(_PREFIX)
+    return replace(drawing, legend=(), legend_colours=()) if own else drawing  # type: ignore[call-arg]
 
 
 def _fit_drawing(lookup: Lookup, drawing: Drawing) -> Drawing:
@@ -25,6 +65,8 @@ def _fit_drawing(lookup: Lookup, drawing: Drawing) -> Drawing:
         return drawing
     if drawing.kind == "implementation":
         return join_topics(drawing)
+    if drawing.kind == "component":
+        return _rename(drawing, boxes=drawing.boxes, arrows=drawing.arrows)
     if drawing.kind == "group-timing":
         return leave_neighbours(drawing)
     if drawing.kind == "group":
@@ -144,7 +186,7 @@ def _merge_arrows(ends: tuple[str, str, str], arrows: Sequence[Arrow], folded: C
 
 
 def _rename(graph: Graph, *, boxes: tuple[Box, ...], arrows: tuple[Arrow, ...], notes: tuple[str, ...] | None = None) -> Graph:
-    redrawn = replace(
+    return replace(
         graph,
         id=f"{_PREFIX}{graph.id}",
         boxes=boxes,
@@ -152,4 +194,3 @@ def _rename(graph: Graph, *, boxes: tuple[Box, ...], arrows: tuple[Arrow, ...], 
         notes=graph.notes if notes is None else notes,
         asked=sum(arrow.count for arrow in arrows),
     )
-    return add_legend_keys(redrawn)
