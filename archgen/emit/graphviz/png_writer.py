@@ -18,7 +18,7 @@ from archgen.emit.graphviz.placed_scene import DotAttributes, Scene
 _PNG_WRITERS = ("png:cairo", "png")
 _QUICK_WRITER = "png:cairo:gd"
 _COLOUR_COUNT = 16
-_MAX_OWN_COLOURS = 12
+_MAX_OWN_COLOURS = 9
 """Of 16 colours so many may be our own: the others are shades at the edges of letters and lines."""
 _HIGH_HALVES = bytes((index << 4) & 0xFF for index in range(256))
 _PAGE_WIDTH = 700.0
@@ -77,6 +77,8 @@ def reduce_palette(data: bytes) -> bytes:
     palette_bytes = chunks[b"PLTE"]
     colours = [palette_bytes[each : each + 3] for each in range(0, len(palette_bytes), 3)]
     kept_indices = _choose_colours(colours, lines)
+    if not kept_indices:
+        return data
     nearest = bytes(
         min(range(len(kept_indices)), key=lambda at: _measure_distance(colour, colours[kept_indices[at]]))
         for colour in colours
@@ -109,13 +111,15 @@ def _write_chunk(name: bytes, body: bytes) -> bytes:
 
 
 def _choose_colours(colours: Sequence[bytes], lines: bytes) -> list[int]:
+    """Return the indices of the colours that stay; empty where so many are our own that shades would be lost."""
     # A seventh of the pixels tells the frequent from the rare; all of them would take longer than the drawing.
     sample = lines[::7]
     counts = [sample.count(index) for index in range(len(colours))]
     own = [index for index, colour in enumerate(colours) if colour in _OWN_COLOURS and counts[index]]
-    first = sorted(own, key=lambda index: -counts[index])[:_MAX_OWN_COLOURS]
-    others = sorted((index for index in range(len(colours)) if index not in first), key=lambda index: -counts[index])
-    return [*first, *others][:_COLOUR_COUNT]
+    if len(own) > _MAX_OWN_COLOURS:
+        return []
+    others = sorted((index for index in range(len(colours)) if index not in own), key=lambda index: -counts[index])
+    return [*own, *others][:_COLOUR_COUNT]
 
 
 def _measure_distance(one: bytes, other: bytes) -> int:
