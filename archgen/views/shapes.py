@@ -56,6 +56,8 @@ class Text:
     """
     status: Status | None = None
     """The state that this run tells. Emitters may show it as a coloured chip; its words say the same."""
+    is_number: bool = False
+    """The run stands for the label of the figure or table that `ref` leads to: `Figure 3` in place of its text."""
     meter: Meter | None = None
     """A bar that repeats a figure of the same row; emitters may leave it out."""
 

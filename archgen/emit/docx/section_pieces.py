@@ -66,7 +66,8 @@ def _write_scope(writer: DocxWriter, items: Sequence[OutlineItem]) -> Iterator[F
     for index, item in enumerate(items):
         if sheet_needs[index] and index < last and isinstance(item.block, (Figure, Table)):
             late.append(item)
-            inlines = (Text("On the wide page that follows: "), Text(item.block.caption, ref=item.block.anchor))
+            place = Text("The picture", ref=item.block.anchor, is_number=True)
+            inlines = (place, Text(" stands on the wide page that follows: "), Text(item.block.caption))
             yield write_paragraph(writer, Paragraph(inlines))
         else:
             yield from _write_item(writer, item)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
-from archgen.emit.docx.word_xml import format_run, name_bookmark
+from archgen.emit.docx.word_xml import format_field, format_run, mark_label, name_bookmark, name_label_bookmark
 from archgen.views.shapes import Text
 
 MUTED_COLOUR = '<w:color w:val="55606A"/>'
@@ -92,6 +92,9 @@ def _format_text(writer: DocxWriter, text: Text, setting: RunSetting, link_style
 
 
 def _format_link(writer: DocxWriter, text: Text, setting: RunSetting) -> str:
+    if text.is_number and text.ref in writer.anchors:
+        # What is only written later has no number yet: `docx_writer` fills it in.
+        return format_field(f"REF {name_label_bookmark(text.ref or '')} \\h", mark_label(text.ref or ""))
     if text.ref in writer.anchors:
         target = f'w:anchor="{name_bookmark(text.ref or "")}"'
     elif text.url and (relation := writer.relate_link(text.url)):

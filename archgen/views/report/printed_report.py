@@ -14,6 +14,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
+from archgen.views.report.figure_mentions import mention_section
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import LEGEND_NAME, make_report_drawings
 from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -38,7 +39,7 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     return dataclasses.replace(
         outline,
         facts=front_pages.make_title_facts(lookup, edition),
-        sections=tuple(print_section_figures(each) for each in (*body, *printer.make_ros_annexes(), *annexes)),
+        sections=tuple(mention_section(print_section_figures(each)) for each in (*body, *printer.make_ros_annexes(), *annexes)),
         title_table=front_pages.make_partner_table(lookup),
         front_sections=tuple(front_pages.make_front_sections(lookup, edition, printer.find_legend())),
         properties=front_pages.list_properties(lookup, edition),
