@@ -44,4 +44,3 @@ def _list_versions(report: MappingNode) -> Iterator[HistoryEntry]:
         if isinstance(item, MappingNode):
             values = (mapping_values.get_text(item, key) or "" for key in ("version", "date", "author", "change"))
             yield HistoryEntry(*values)
-

@@ -87,16 +87,22 @@ def write_started(
 ) -> MadeProduct:
     """Finish a product and write it: completely, or not at all. Return it as it was written."""
     refuse_leaving_links(inputs.checked_project, target)
+    made_product = make_content(inputs, started_products, product)
+    if isinstance(made_product.content, bytes):
+        write_product_file(inputs.checked_project, target, made_product.content)
+    else:
+        file_tree.write_tree(made_product.content, target)
+    return made_product
+
+
+def make_content(inputs: ProductInputs, started_products: StartedProducts, product: Product) -> MadeProduct:
+    """Finish a product in memory, and pass on its warnings."""
     # One product's pictures are none of another's: the report draws some anew, under ids of their own.
     shown_names = _list_shown(inputs, product) if product.picture_formats is not None else {}
     pictures = {name: each for name, each in started_products.drawn.pictures.items() if name in shown_names}
     made_product = started_products.finishers[product.name](pictures)
     for warning in made_product.warnings:
         inputs.options.warn(warning)
-    if isinstance(made_product.content, bytes):
-        write_product_file(inputs.checked_project, target, made_product.content)
-    else:
-        file_tree.write_tree(made_product.content, target)
     return made_product
 
 

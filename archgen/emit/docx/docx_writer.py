@@ -27,8 +27,10 @@ _IMAGE_TYPES = {
 }
 
 
-ColumnMeasures = tuple[list[float], list[float]]
-"""Of each column of a table the width of its longest word, and of its longest line, in points."""
+ColumnMeasures = tuple[list[float], list[float], list[float]]
+"""Of each column of a table the width of its longest word, of its longest line, and of its longest word where all names are
+broken, in points.
+"""
 
 
 @dataclass(frozen=True, slots=True)

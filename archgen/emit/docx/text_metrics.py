@@ -67,10 +67,15 @@ def measure_word(word: str) -> float:
     return math.fsum(_measure_character(ord(sign)) for sign in word) / 1000
 
 
+def join_hard_blanks(text: str) -> str:
+    """Return text in which blanks that do not break are letters, so that it splits where lines may."""
+    return text.replace("\u00a0", "_").replace("\u202f", "_")
+
+
 @lru_cache(maxsize=65536)
 def measure_words(text: str) -> tuple[float, ...]:
     """Return the widths of a text's words, in units of the type size; a blank that does not break belongs to its word."""
-    return tuple([measure_word(word) for word in text.replace("\u00a0", "_").split()])
+    return tuple([measure_word(word) for word in join_hard_blanks(text).split()])
 
 
 @lru_cache(maxsize=65536)

@@ -20,6 +20,7 @@ from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Para
 from archgen.views.tables import architecture_tables, project_growth
 
 DetailLevel = Literal["functional", "implementation"]
+RosPlace = Literal["annex", "inline"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class DocumentEdition:
 
     revision: str = ""
     level: DetailLevel = "implementation"
-    ros_place: Literal["annex", "inline"] = "annex"
+    ros_place: RosPlace = "annex"
     """Where the report has the ROS side: in an annex, or with each component."""
     settings: ReportSettings = field(default_factory=ReportSettings)
     """What the project says of its report: first pages, lists, paper."""

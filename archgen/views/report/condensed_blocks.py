@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.views import inline_text
-from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Inlines, Paragraph, Table, Text
 
 FactRow = tuple[str, Inlines]
 _MIN_CONSTANT_ROWS = 3
@@ -56,7 +56,7 @@ def _is_title(paragraph: Paragraph) -> bool:
 
 
 def _read_fact(paragraph: Paragraph) -> FactRow | None:
-    """Return a paragraph that begins with its title in bold as a fact: `Inputs. It has no inputs.`"""
+    """Return a paragraph that begins with its title in bold as a fact: `Inputs`, "It has no inputs."."""
     first, *others = paragraph.inlines
     if not first.strong or not first.text.endswith(". "):
         return None
@@ -108,7 +108,7 @@ def drop_repeated_columns(table: Table, kept_columns: int = 1) -> Table:
     remarks, kept_indices = [], []
     for index, column in enumerate(table.columns):
         texts = {_join_texts(row[index]) for row in table.rows}
-        if index < kept_columns or (len(texts) > 1 or len(table.rows) < _MIN_CONSTANT_ROWS) and texts != {""}:
+        if index < kept_columns or ((len(texts) > 1 or len(table.rows) < _MIN_CONSTANT_ROWS) and texts != {""}):
             kept_indices.append(index)
         elif texts != {""}:
             remarks.append(f"{column.title} of all: {texts.pop()}")
@@ -122,8 +122,3 @@ def drop_repeated_columns(table: Table, kept_columns: int = 1) -> Table:
 
 def _join_texts(cell: Inlines) -> str:
     return "".join(part.text for part in cell)
-
-
-def shorten_first_text(blocks: Iterable[Block]) -> Iterator[Block]:
-    """Yield blocks without the empty texts among them."""
-    return (block for block in blocks if not (isinstance(block, Markdown) and not block.text.strip()))

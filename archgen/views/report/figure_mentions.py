@@ -37,7 +37,9 @@ def _write_sentence(anchor: str, blocks: Sequence[Block]) -> Inlines:
     tables = [_name_block(block) for block in blocks if isinstance(block, Table)]
     words = next((words for prefix, words in _WORDS if anchor.startswith(prefix)), None)
     if words and len(figures) <= 1 and len(tables) <= 1:
-        parts = [(name, Text(f" {word}")) for names, word in zip((figures, tables), words, strict=True) for name in names]
+        parts = [
+            (name, Text(f" {word}")) for names, word in zip((figures, tables), words, strict=True) for name in names
+        ]
         return (*_join(parts, ", "), Text("."))
     names = [(name,) for name in (*figures, *tables)]
     return (Text("See "), *_join(names, ", "), Text("."))

@@ -84,7 +84,12 @@ def make_partner_table(lookup: Lookup) -> Table | None:
         )
         for partner in architecture.partners.values()
     )
-    columns = (Column("Partner"), Column("Who it is", 3), Column("Components", 0.6, "right"), Column("Nodes", 0.5, "right"))
+    columns = (
+        Column("Partner"),
+        Column("Who it is", 3),
+        Column("Components", 0.6, "right"),
+        Column("Nodes", 0.5, "right"),
+    )
     anchors = tuple(f"partner:{partner_id}" for partner_id in architecture.partners)
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
@@ -101,13 +106,18 @@ def make_front_sections(lookup: Lookup, edition: DocumentEdition, legend: Drawin
     facts = Facts(tuple((name.replace("`", ""), inline_text.message_to_inlines(words)) for name, words in signs))
     yield Section("front:signs", "How to read the tables", (facts,))
     if legend:
-        figure = Figure(f"figure:{legend.id}", legend.id, legend.title, "The forms of boxes and arrows.", numbered=False)
+        figure = Figure(
+            f"figure:{legend.id}", legend.id, legend.title, "The forms of boxes and arrows.", numbered=False
+        )
         yield Section("front:legend", "How to read the pictures", (figure,))
 
 
 def _make_history_table(settings: ReportSettings) -> Table:
     rows = tuple(
-        tuple(inline_text.to_inlines(text) if text else () for text in (entry.version, entry.date, entry.author, entry.change))
+        tuple(
+            inline_text.to_inlines(text) if text else ()
+            for text in (entry.version, entry.date, entry.author, entry.change)
+        )
         for entry in settings.history
     )
     columns = (Column("Version", 0.5), Column("Date", 0.7), Column("Author"), Column("Change", 3))
@@ -129,7 +139,8 @@ def list_properties(lookup: Lookup, edition: DocumentEdition) -> dict[str, str]:
         "level": describe_level(edition),
         "status": describe_state(lookup),
         "history": "; ".join(
-            " ".join(filter(None, (entry.version, entry.date, entry.author, entry.change))) for entry in settings.history
+            " ".join(filter(None, (entry.version, entry.date, entry.author, entry.change)))
+            for entry in settings.history
         ),
         "abbreviations": "; ".join(f"{name}: {meaning}" for name, meaning in settings.abbreviations),
         "summary": " ".join(settings.summary.split()),

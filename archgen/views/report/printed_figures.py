@@ -107,7 +107,7 @@ def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
         Decimal(found[2]) * _TIME_FACTORS[found[3]]
         for cell in cells
         for part in cell
-        if (found := _TIME_CELL.fullmatch(part.text))
+        if (found := _TIME_CELL.fullmatch(part.text)) and Decimal(found[2])
     ]
     if column.align != "right" or len(times) < _MIN_TIMES:
         return ""

@@ -39,7 +39,9 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     return dataclasses.replace(
         outline,
         facts=front_pages.make_title_facts(lookup, edition),
-        sections=tuple(mention_section(print_section_figures(each)) for each in (*body, *printer.make_ros_annexes(), *annexes)),
+        sections=tuple(
+            mention_section(print_section_figures(each)) for each in (*body, *printer.make_ros_annexes(), *annexes)
+        ),
         title_table=front_pages.make_partner_table(lookup),
         front_sections=tuple(front_pages.make_front_sections(lookup, edition, printer.find_legend())),
         properties=front_pages.list_properties(lookup, edition),

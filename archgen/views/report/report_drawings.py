@@ -42,7 +42,9 @@ def _draw_legend(graphs: Sequence[Graph]) -> Graph:
         boxes,
         arrows,
         legend=tuple(key for key in order if key in keys),
-        notes=("A number on an arrow: how many flows it stands for. W, E, N in a corner: a warning, an error, a note.",),
+        notes=(
+            "A number on an arrow: how many flows it stands for. W, E, N in a corner: a warning, an error, a note.",
+        ),
         asked=2,
         kind="component",
     )
@@ -56,8 +58,9 @@ def _join_graphs(graphs: Sequence[Graph]) -> Graph:
 
 def _leave_legend(drawing: Drawing) -> Drawing:
     """Return a picture of the report's own without its legend, which stands once at the beginning."""
-    own = isinstance(drawing, Graph) and drawing.id.startswith(_PREFIX)
-    return replace(drawing, legend=(), legend_colours=()) if own else drawing  # type: ignore[call-arg]
+    if isinstance(drawing, Graph) and drawing.id.startswith(_PREFIX):
+        return replace(drawing, legend=(), legend_colours=())
+    return drawing
 
 
 def _fit_drawing(lookup: Lookup, drawing: Drawing) -> Drawing:
@@ -85,12 +88,12 @@ def join_topics(graph: Graph) -> Graph:
     names: dict[str, list[str]] = {}
     flows: dict[tuple[str, str, str], list[Arrow]] = {}
     plain_arrows: list[Arrow] = []
-    used_topics: set[str] = set()
+    plain_topics: set[str] = set()
     for topic in sorted(topics):
         entering = [arrow for arrow in graph.arrows if arrow.head == topic]
         leaving = [arrow for arrow in graph.arrows if arrow.tail == topic]
         if not entering or not leaving or any(_is_inner(boxes, a, b) for a in entering for b in leaving):
-            used_topics.add(topic)
+            plain_topics.add(topic)
             plain_arrows += [*entering, *leaving]
             continue
         for first in entering:
@@ -109,17 +112,26 @@ def join_topics(graph: Graph) -> Graph:
     shown = tuple(
         replace(box, lines=tuple(names[box.id])) if box.id in names else box
         for box in graph.boxes
-        if box.id not in topics or box.id in used_topics
+        if box.id not in topics or box.id in plain_topics
     )
     # Nodes one behind the other, with topics between them, are too long for a line.
-    direction = "top-bottom" if plain_arrows and graph.direction is None and _has_inner_flow(boxes, plain_arrows) else graph.direction
+    direction = (
+        "top-bottom"
+        if plain_arrows and graph.direction is None and _has_inner_flow(boxes, plain_arrows)
+        else graph.direction
+    )
     joined = _rename(graph, boxes=shown, arrows=(*arrows, *plain_arrows))
     return replace(joined, direction=direction)
 
 
 def _has_inner_flow(boxes: Mapping[str, Box], arrows: Sequence[Arrow]) -> bool:
     """Whether a topic that stays a box joins nodes of the subject."""
-    ends = {(arrow.tail if arrow.head == box.id else arrow.head) for box in boxes.values() for arrow in arrows if box.id in (arrow.tail, arrow.head)}
+    ends = {
+        (arrow.tail if arrow.head == box.id else arrow.head)
+        for box in boxes.values()
+        for arrow in arrows
+        if box.id in (arrow.tail, arrow.head)
+    }
     subjects = [end for end in ends if end in boxes and boxes[end].emphasis == "subject"]
     return len(subjects) > 1
 
@@ -151,7 +163,9 @@ def fold_neighbours(lookup: Lookup, graph: Graph) -> Graph:
         new_ids[box.id] = f"{'<' if box.side == 'left' else '>'}{group}"
         members.setdefault(new_ids[box.id], []).append(box.title)
         title = lookup.architecture.groups[group].title
-        folded.setdefault(new_ids[box.id], replace(box, id=new_ids[box.id], title=title, ref=f"group:{group}", status=None))
+        folded.setdefault(
+            new_ids[box.id], replace(box, id=new_ids[box.id], title=title, ref=f"group:{group}", status=None)
+        )
     boxes = tuple(
         replace(box, lines=tuple(dict.fromkeys(members[box.id]))) if box.id in members else box
         for box in folded.values()
@@ -185,7 +199,9 @@ def _merge_arrows(ends: tuple[str, str, str], arrows: Sequence[Arrow], folded: C
     )
 
 
-def _rename(graph: Graph, *, boxes: tuple[Box, ...], arrows: tuple[Arrow, ...], notes: tuple[str, ...] | None = None) -> Graph:
+def _rename(
+    graph: Graph, *, boxes: tuple[Box, ...], arrows: tuple[Arrow, ...], notes: tuple[str, ...] | None = None
+) -> Graph:
     return replace(
         graph,
         id=f"{_PREFIX}{graph.id}",

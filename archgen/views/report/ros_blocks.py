@@ -67,7 +67,9 @@ def _condense_facts(node: Node, component: Component, rows: Sequence[FactRow]) -
     """Yield the facts of a node: what it is in one row, where it runs with its package in a second, times in a third."""
     values = dict(rows)
     kind = values.get("Kind, status", ())
-    name = inline_text.to_inlines(Text(node.id, code=True, strong=True), ", ROS name ", *values["ROS name"], ", ", *kind)
+    name = inline_text.to_inlines(
+        Text(node.id, code=True, strong=True), ", ROS name ", *values["ROS name"], ", ", *kind
+    )
     others = [item for item in node.implements if item != component.id]
     if others:
         name = (*name, Text("; implements "), *values["Implements"])
@@ -152,7 +154,9 @@ def _qos_cell(endpoint: Endpoint) -> Inlines:
 
 def shorten_qos(qos: Qos) -> str:
     """Write a quality of service in short: `R 10` is reliable with depth 10, `BE` best effort, `TL` transient local."""
-    reliability = "BE" if qos.reliability == "best_effort" else "R" if qos.reliability == "reliable" else qos.reliability
+    reliability = (
+        "BE" if qos.reliability == "best_effort" else "R" if qos.reliability == "reliable" else qos.reliability
+    )
     depth = "all" if qos.history == "keep_all" else "" if qos.depth is None else str(qos.depth)
     parts = [" ".join(part for part in (reliability, depth) if part)]
     parts += ["TL"] if qos.durability == "transient_local" else []

@@ -9,7 +9,18 @@ from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.pages import dashboard
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.shapes import Block, DashboardCard, Facts, Inlines, KeyFigure, Markdown, Paragraph, Section, Table, Text
+from archgen.views.shapes import (
+    Block,
+    DashboardCard,
+    Facts,
+    Inlines,
+    KeyFigure,
+    Markdown,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+)
 from archgen.views.timing.timing_tables import is_blank
 
 _STATE_ORDER = ("chains", "progress", "points", "cells", "changes")

@@ -26,19 +26,21 @@ def list_block_texts(block: Block) -> Iterator[str]:
         case Figure():
             yield block.caption
         case Bullets():
-            for item in block.items:
-                yield from _split_lines(item)
+            yield from (line for item in block.items for line in _split_lines(item))
         case Facts():
             for name, value in block.rows:
                 yield name
                 yield from _split_lines(value)
         case Table():
-            yield block.caption
-            for column in block.columns:
-                yield column.title
-            for row in block.rows:
-                for cell in row:
-                    yield from _split_lines(cell)
+            yield from _list_table_texts(block)
+
+
+def _list_table_texts(table: Table) -> Iterator[str]:
+    yield table.caption
+    yield from (column.title for column in table.columns)
+    for row in table.rows:
+        for cell in row:
+            yield from _split_lines(cell)
 
 
 def _split_lines(inlines: Inlines) -> Iterator[str]:

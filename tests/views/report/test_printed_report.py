@@ -16,7 +16,7 @@ from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.pages import report_outline
 from archgen.views.report.printed_figures import print_text
 from archgen.views.report.printed_report import make_printed_report, walk_sections
-from archgen.views.shapes import Figure, Outline, Section, Table
+from archgen.views.shapes import Outline, Section
 from tests.views.report.report_texts import list_block_texts, list_texts
 
 LIST = yaml.safe_load((Path(__file__).parent / "said_elsewhere.yaml").read_text(encoding="utf-8"))
@@ -72,7 +72,10 @@ def test_nothing_of_a_component_moves_to_another(views: ProjectViews) -> None:
     after = make_printed_report(views.lookup, views.edition)
     sections = {section.anchor: section for section in walk_sections(after.sections)}
     # The chapter's heading says the group of each component.
-    shared = [*list_texts(sections["page:parameters"]), *(group.title for group in views.lookup.architecture.groups.values())]
+    shared = [
+        *list_texts(sections["page:parameters"]),
+        *(group.title for group in views.lookup.architecture.groups.values()),
+    ]
     lost: dict[str, list[str]] = {}
     for section in walk_sections(before.sections):
         kind, _, component = section.anchor.partition(":")
@@ -85,5 +88,7 @@ def test_nothing_of_a_component_moves_to_another(views: ProjectViews) -> None:
 
 def test_every_entry_of_the_list_is_needed_and_says_why(views: ProjectViews) -> None:
     texts = _list_all(report_outline.make_report(views.lookup, views.edition))
-    assert [entry["text"] for entry in LIST["gone"] if not any(re.fullmatch(entry["text"], _normalize(t)) for t in texts)] == []
-    assert [entry["text"] for part in LIST.values() for entry in part if len(entry["why"]) < 20] == []  # noqa: PLR2004
+    assert [
+        entry["text"] for entry in LIST["gone"] if not any(re.fullmatch(entry["text"], _normalize(t)) for t in texts)
+    ] == []
+    assert [entry["text"] for part in LIST.values() for entry in part if len(entry["why"]) < 20] == []
