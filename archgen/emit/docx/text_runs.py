@@ -86,7 +86,7 @@ def _format_text(writer: DocxWriter, text: Text, setting: RunSetting, link_style
     elif text.muted and not link_style:
         properties += MUTED_COLOUR
     if text.code and setting.size:
-        half_points = round(setting.size * CODE_SCALE * 2)
+        half_points = int(setting.size * CODE_SCALE * 2)  # rounded up, it would not fit what was measured
         properties += f'<w:sz w:val="{half_points}"/><w:szCs w:val="{half_points}"/>'
     return before + format_run(shown, properties)
 

@@ -94,6 +94,22 @@ def make_partner_table(lookup: Lookup) -> Table | None:
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
 
+def make_use_case_table(lookup: Lookup) -> Table | None:
+    """Say what the use cases are that requirements name."""
+    use_cases = lookup.architecture.use_cases.values()
+    rows = tuple(
+        (
+            inline_text.to_inlines(use_case.id),
+            inline_text.to_inlines(Text(use_case.title, strong=True)),
+            inline_text.to_inlines(" ".join((use_case.description or "").split())),
+        )
+        for use_case in use_cases
+    )
+    columns = (Column("Id", 0.4), Column("Use case", 1.2), Column("What happens", 3))
+    anchors = tuple(f"use_case:{use_case.id}" for use_case in use_cases)
+    return Table("table:use_cases", "Use cases", columns, rows, anchors) if rows else None
+
+
 def make_front_sections(lookup: Lookup, edition: DocumentEdition, legend: Drawing | None) -> Iterator[Section]:
     """Yield what stands before the contents: history, abbreviations, and how tables and pictures are read."""
     settings = edition.settings

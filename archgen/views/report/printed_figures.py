@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from decimal import ROUND_HALF_UP, Decimal
 
+from archgen.views.report import inline_marks
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Markdown, Paragraph, Section, Table, Text
 
 _TIME_FACTORS = {"ns": Decimal(1), "us": Decimal(1000), "ms": Decimal(10**6), "s": Decimal(10**9)}
@@ -22,6 +23,7 @@ _WORDS = {
     "terms of the bound": "parts of the bound",
     "Where rates differ": "Where a reader is slower than its source",
     "Edges that lose samples or beat": "Topics that are read less often than published",
+    "archgen finds": "the check of the architecture finds",
     "Where the rate is from": "Source of the rate",
     "any scheduler that never idles": "any order that never idles",
 }
@@ -57,7 +59,9 @@ def _print_block(block: Block) -> Block:
 
 def print_inlines(inlines: Inlines) -> Inlines:
     """Return runs of text with real signs and three significant digits; code stays as it is written."""
-    return tuple(part if part.code else replace(part, text=print_text(part.text)) for part in inlines)
+    return tuple(
+        part if part.code else replace(part, text=print_text(part.text)) for part in inline_marks.render_marks(inlines)
+    )
 
 
 def print_text(text: str) -> str:

@@ -72,6 +72,8 @@ class _ReportPrinter:
 
     def _print_others(self, section: Section) -> Section:
         blocks = tuple(_flatten(self._keep_legible(section.blocks)))
+        if section.anchor == "page:requirements" and (table := front_pages.make_use_case_table(self.lookup)):
+            blocks = (table, *blocks)
         return dataclasses.replace(
             section, blocks=blocks, sections=tuple(self._print_others(each) for each in section.sections)
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.views.report.printed_figures import print_section_figures, print_text
+from archgen.views.report.printed_figures import print_inlines, print_section_figures, print_text
 from archgen.views.shapes import Column, Section, Table, Text
 
 
@@ -34,6 +34,24 @@ def test_a_column_of_times_has_one_unit_in_its_heading() -> None:
     assert isinstance(printed, Table)
     assert printed.columns[0].title == "Deadline, ms"
     assert [row[0][0].text for row in printed.rows] == ["15000", "20", "350", "≥ 3000", "unknown"]
+
+
+@pytest.mark.parametrize(
+    ("text", "runs"),
+    [
+        (
+            "`calm` and *wrap*, **not** 2*3*4",
+            [("calm", "code"), (" and ", ""), ("wrap", "i"), (", ", ""), ("not", "b"), (" 2*3*4", "")],
+        ),
+        ("a * b * c", [("a * b * c", "")]),
+        ("call_state of `a.b", [("call_state of `a.b", "")]),
+    ],
+)
+def test_markdown_in_cells_is_set(text: str, runs: list[tuple[str, str]]) -> None:
+    printed = print_inlines((Text(text),))
+    assert [
+        (run.text, "code" if run.code else "i" if run.emphasis else "b" if run.strong else "") for run in printed
+    ] == runs
 
 
 def test_code_stays_as_it_is_written() -> None:

@@ -14,9 +14,9 @@ from archgen import pipeline, resources
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.pages import report_outline
-from archgen.views.report.printed_figures import print_text
+from archgen.views.report.printed_figures import print_inlines, print_text
 from archgen.views.report.printed_report import make_printed_report, walk_sections
-from archgen.views.shapes import Outline, Section
+from archgen.views.shapes import Outline, Section, Text
 from tests.views.report.report_texts import list_block_texts, list_texts
 
 LIST = yaml.safe_load((Path(__file__).parent / "said_elsewhere.yaml").read_text(encoding="utf-8"))
@@ -32,7 +32,7 @@ def views() -> ProjectViews:
 
 def _normalize(text: str) -> str:
     # Figures are rounded and written with real signs in one of the two: `tests/views/report/test_printed_figures.py`.
-    text = print_text(text).replace("\u202f", " ")
+    text = "".join(run.text for run in print_inlines((Text(print_text(text)),))).replace("\u202f", " ")
     for pattern, becomes in REWRITTEN:
         text = pattern.sub(becomes, text)
     # `Rate` is a name of its own in one document and stands inside of a sentence in the other.
