@@ -106,7 +106,7 @@ class Project:
         *,
         template: AnyPath | None = None,
         select: str | None = None,
-        level: DetailLevel = "implementation",
+        level: DetailLevel | None = None,
         revision: str | None = None,
     ) -> None:
         """Write the Word report. Raises OSError, and `emit.tree.OutputError` for what the user can fix."""
@@ -190,7 +190,7 @@ class Project:
         return self.root / files[0] if len(files) == 1 else self.root
 
     def _output_options(
-        self, select: str | None, level: DetailLevel = "implementation", revision: str | None = None
+        self, select: str | None, level: DetailLevel | None = "implementation", revision: str | None = None
     ) -> OutputOptions:
         return OutputOptions(self.select(select) if select else None, select or "", level, revision)
 

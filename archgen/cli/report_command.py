@@ -16,14 +16,18 @@ if TYPE_CHECKING:
 @click.command("report")
 @shared_options.project_argument
 @shared_options.output_option("The file", "report.docx")
-@click.option("--format", "form", type=click.Choice(["docx"]), default="docx", show_default=True)
+@click.option("--format", "form", type=click.Choice(["docx", "pdf", "xlsx"]), default="docx", show_default=True)
 @click.option(
     "--template",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.",
 )
 @shared_options.select_option
-@shared_options.level_option
+@click.option(
+    "--level",
+    type=click.Choice(["functional", "implementation"]),
+    help="Stop at the functional level, or show the ROS side with each component.  [default: `report.level` of the project, else everything with the ROS side in an annex]",
+)
 @shared_options.revision_option
 @shared_options.history_option
 @shared_options.keep_going_option
@@ -39,11 +43,16 @@ def command(  # noqa: PLR0913 - one for each option
     history: bool,
     keep_going: bool,
 ) -> None:
-    """Write the architecture of PROJECT as a Word document that can be handed in."""
+    """Write the architecture of PROJECT as a Word document that can be handed in.
+
+    `--format pdf` takes LibreOffice, `--format xlsx` writes all tables as a workbook (`pip install archgen[xlsx]`).
+    """
     from archgen.products import project_outputs
     from archgen.products.output_options import OutputOptions
 
-    del form  # one for now; the option is there so that scripts say what they want
+    if template is not None and form == "xlsx":
+        msg = "a workbook takes no template: `--template` goes with docx and pdf"
+        raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     selection = command_support.select_or_exit(checked_project, select)
     output_options = OutputOptions(
@@ -55,8 +64,13 @@ def command(  # noqa: PLR0913 - one for each option
         command_support.print_warning,
         history,
     )
-    target = output or checked_project.output_folder / "report.docx"
+    target = output or checked_project.output_folder / f"report.{form}"
     with command_support.explain_write_errors():
-        project_outputs.write_report(checked_project, output_options, target, template)
+        if form == "xlsx":
+            project_outputs.write_report_workbook(checked_project, output_options, target)
+        elif form == "pdf":
+            project_outputs.write_report_pdf(checked_project, output_options, target, template)
+        else:
+            project_outputs.write_report(checked_project, output_options, target, template)
     command_support.print_written(target)
     command_support.exit_by_findings(checked_project)

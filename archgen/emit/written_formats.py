@@ -21,6 +21,8 @@ MEASURED_HEADER = (
 """The first line of a slice with what was measured."""
 PROGRAM_NAME = "archgen"
 """What the properties of a Word document call the program that wrote it; other programs that save it write their own name."""
+PDF_MARK = b"% written by archgen\n"
+"""The last line of a PDF: a comment behind its end, which readers pass over."""
 PROGRAM_PART = "docProps/app.xml"
 _EDGE_BYTES = 4096
 """All marks stand within so many bytes at the beginning or the end of a file."""
@@ -84,10 +86,19 @@ def name_written_format(stream: BinaryIO) -> str | None:
     stream.seek(0)
     head = stream.read(_EDGE_BYTES)
     if head.startswith(b"PK"):
-        return "Word document" if _has_program_name(stream) else None
+        if not _has_program_name(stream):
+            return None
+        # Its list of files, at the end, names the parts of the one or the other.
+        return "workbook" if b"xl/workbook.xml" in _read_end(stream) else "Word document"
+    if head.startswith(b"%PDF-"):
+        return "PDF" if _read_end(stream).endswith(PDF_MARK) else None
     name = next((name for name, mark in _HEAD_MARKS if mark.match(head)), None)
+    return name or ("plain comparison" if _COMPARISON_END.search(_read_end(stream)) else None)
+
+
+def _read_end(stream: BinaryIO) -> bytes:
     stream.seek(max(0, stream.seek(0, io.SEEK_END) - _EDGE_BYTES))
-    return name or ("plain comparison" if _COMPARISON_END.search(stream.read(_EDGE_BYTES)) else None)
+    return stream.read(_EDGE_BYTES)
 
 
 def _has_program_name(stream: BinaryIO) -> bool:

@@ -12,8 +12,10 @@ from urllib.parse import unquote
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.link.report_front import read_report_settings
 from archgen.link.svg_cleaning import clean_project_svg, is_svg
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
+from archgen.model.report_settings import ReportSettings
 from archgen.syntax.project_files import ProjectFiles, read_binary_file, read_text_file
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
@@ -65,6 +67,8 @@ class ReportChapters:
     texts: Mapping[str, Chapter] = field(default_factory=dict)
     packed_pictures: Mapping[str, bytes] = field(default_factory=dict)
     """Pictures that a packed project holds itself, by path; they win over files."""
+    settings: ReportSettings = field(default_factory=ReportSettings)
+    """What stands beside the chapters: level, first pages, lists."""
     picture_cache: dict[str, bytes | None] = field(default_factory=dict, compare=False, repr=False)
     """Pictures read so far, None for one that is absent: each is read once, so that all outputs have the same bytes."""
 
@@ -144,9 +148,9 @@ def read_chapters(root: MappingNode, files: ProjectFiles) -> tuple[ReportChapter
             texts[name] = Chapter(name, text)
         order.append(name)
     chapter_order = tuple(order) if entries is not None else GENERATED_CHAPTERS
-    return ReportChapters(files, chapter_order, texts, dict(_decode_pictures(report.get("pictures")))), tuple(
-        diagnostics
-    )
+    pictures = dict(_decode_pictures(report.get("pictures")))
+    settings = read_report_settings(root)
+    return ReportChapters(files, chapter_order, texts, pictures, settings), tuple(diagnostics)
 
 
 def _list_texts(node: object) -> Iterator[tuple[str, str]]:

@@ -16,7 +16,10 @@ from archgen.products.project_views import ProjectViews
 from archgen.views import drawing_set
 from archgen.views.chart_shapes import Drawing
 from archgen.views.pages import report_outline, site_pages
-from archgen.views.shapes import Outline, Page
+from archgen.views.pages.report_outline import DocumentEdition, RosPlace
+from archgen.views.report.printed_report import make_printed_report, walk_sections
+from archgen.views.report.report_drawings import make_report_drawings
+from archgen.views.shapes import Figure, Outline, Page
 
 MAX_PICTURED_COMPONENTS = 300
 """With more, the site has no picture of each component unless it is asked for: of 1,000 they take minutes to draw, and
@@ -61,8 +64,41 @@ class ProductInputs:
 
     @cached_property
     def outline(self) -> Outline:
-        """The report's contents."""
+        """The architecture as one document, for templates."""
         return report_outline.make_report(self.views.lookup, self.views.edition)
+
+    @cached_property
+    def printed_report(self) -> Outline:
+        """The contents of the Word report."""
+        return make_printed_report(self.views.lookup, self._report_edition)
+
+    @property
+    def _report_edition(self) -> DocumentEdition:
+        """What the report contains: at the level that is asked for here, else in the project."""
+        level = self.options.level or self.views.edition.settings.level
+        ros_place: RosPlace = "inline" if level == "implementation" else "annex"
+        return replace(self.views.edition, level=level or "implementation", ros_place=ros_place)
+
+    @cached_property
+    def tabled_report(self) -> Outline:
+        """The architecture as one document at the report's level, each table as it is on the site."""
+        return report_outline.make_report(self.views.lookup, self._report_edition)
+
+    @cached_property
+    def report_drawings(self) -> Mapping[str, Drawing]:
+        """The pictures of the Word report by their own ids: those that it shows."""
+        outline = self.printed_report
+        shown_ids = {
+            block.graph
+            for section in walk_sections((*outline.front_sections, *outline.sections))
+            for block in section.blocks
+            if isinstance(block, Figure)
+        }
+        return {
+            drawing.id: drawing
+            for drawing in make_report_drawings(self.views.lookup, self.views.drawings).values()
+            if drawing.id in shown_ids
+        }
 
     @cached_property
     def pages(self) -> tuple[Page, ...]:

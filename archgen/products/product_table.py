@@ -32,7 +32,7 @@ class _RecordingReader:
 
 
 def _start_report(inputs: ProductInputs) -> FinishProduct:
-    outline = inputs.outline
+    outline = inputs.printed_report
     template = read_named_file(inputs.template, MAX_TEMPLATE_BYTES) if inputs.template else None
 
     # Called on a miss only. The cache hands in a reader that records which chapter pictures the writer asks for.
@@ -109,7 +109,13 @@ def _start_packed(inputs: ProductInputs) -> FinishProduct:
 
 
 # A PNG for programs that know no SVG; an SVG with text as outlines, since the reader's Word may lack the font.
-REPORT = Product("report", "report.docx", _start_report, ("png", "svg_outlines"))
+REPORT = Product(
+    "report",
+    "report.docx",
+    _start_report,
+    ("png", "svg_outlines"),
+    list_drawings=lambda inputs: inputs.report_drawings,
+)
 SITE = Product(
     "site", "site", _start_site, ("svg",), entry_file="index.html", list_drawings=lambda inputs: inputs.site_drawings
 )

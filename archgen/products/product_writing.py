@@ -56,20 +56,21 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
 
 def _choose_drawings(inputs: ProductInputs, products: Sequence[Product]) -> tuple[Drawing, ...]:
     """Return the drawings that any of the products shows."""
+    drawings = {name: drawing for product in products for name, drawing in _list_shown(inputs, product).items()}
     patterns = dict.fromkeys(pattern for product in products for pattern in product.picture_patterns)
-    shown_names = {
-        name
-        for product in products
-        for name in product.list_drawings(inputs)
-        if any(pattern == "*" or fnmatch.fnmatchcase(name, pattern) for pattern in product.picture_patterns)
-    }
-    drawings = tuple(drawing for name, drawing in inputs.views.drawings.items() if name in shown_names)
-    if "*" in patterns:
-        return drawings
-    if not drawings:
+    if not drawings and "*" not in patterns:
         msg = f"no picture is called {' or '.join(patterns)}"
         raise file_tree.OutputError(msg, _name_pictures(inputs.views.drawings))
-    return drawings
+    return tuple(drawings.values())
+
+
+def _list_shown(inputs: ProductInputs, product: Product) -> dict[str, Drawing]:
+    """Return the drawings that a product shows, by id."""
+    return {
+        name: drawing
+        for name, drawing in product.list_drawings(inputs).items()
+        if any(fnmatch.fnmatchcase(name, pattern) for pattern in product.picture_patterns)
+    }
 
 
 def _name_pictures(names: Iterable[str]) -> str:
@@ -86,13 +87,22 @@ def write_started(
 ) -> MadeProduct:
     """Finish a product and write it: completely, or not at all. Return it as it was written."""
     refuse_leaving_links(inputs.checked_project, target)
-    made_product = started_products.finishers[product.name](started_products.drawn.pictures)
-    for warning in made_product.warnings:
-        inputs.options.warn(warning)
+    made_product = make_content(inputs, started_products, product)
     if isinstance(made_product.content, bytes):
         write_product_file(inputs.checked_project, target, made_product.content)
     else:
         file_tree.write_tree(made_product.content, target)
+    return made_product
+
+
+def make_content(inputs: ProductInputs, started_products: StartedProducts, product: Product) -> MadeProduct:
+    """Finish a product in memory, and pass on its warnings."""
+    # One product's pictures are none of another's: the report draws some anew, under ids of their own.
+    shown_names = _list_shown(inputs, product) if product.picture_formats is not None else {}
+    pictures = {name: each for name, each in started_products.drawn.pictures.items() if name in shown_names}
+    made_product = started_products.finishers[product.name](pictures)
+    for warning in made_product.warnings:
+        inputs.options.warn(warning)
     return made_product
 
 

@@ -12,7 +12,13 @@ from archgen.products.backend_products import choose_backends, make_backend_prod
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.product_table import PACKED, REPORT, SITE, make_diagrams_product
-from archgen.products.product_writing import start_products, write_product, write_product_file, write_started
+from archgen.products.product_writing import (
+    make_content,
+    start_products,
+    write_product,
+    write_product_file,
+    write_started,
+)
 from archgen.products.project_views import make_scoped_lookup
 from archgen.views import resolved_record
 
@@ -22,6 +28,35 @@ def write_report(
 ) -> None:
     """Write the Word report. Raise OSError, or OutputError for what the user can mend."""
     write_product(ProductInputs(checked_project, options, template), REPORT, target)
+
+
+def write_report_pdf(
+    checked_project: CheckedProject, options: OutputOptions, target: Path, template: Path | None = None
+) -> None:
+    """Write the Word report as PDF, by LibreOffice. Raise OSError, or OutputError for what the user can mend."""
+    from archgen.emit.pdf_conversion import LibreOfficeError, convert_document, find_libreoffice
+
+    try:
+        # Before the report is written: that takes long.
+        find_libreoffice()
+        inputs = ProductInputs(checked_project, options, template)
+        started_products = start_products(inputs, (REPORT,))
+        document = make_content(inputs, started_products, REPORT)
+        content = convert_document(document.content if isinstance(document.content, bytes) else b"")
+    except LibreOfficeError as error:
+        raise file_tree.OutputError(str(error)) from None
+    write_product_file(checked_project, target, content)
+
+
+def write_report_workbook(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
+    """Write all tables of the report as an Excel workbook. Raise OSError, or OutputError for what the user can mend."""
+    from archgen.emit.xlsx import XlsxWriterError, write_workbook
+
+    try:
+        content = write_workbook(ProductInputs(checked_project, options).tabled_report)
+    except XlsxWriterError as error:
+        raise file_tree.OutputError(str(error)) from None
+    write_product_file(checked_project, target, content)
 
 
 def write_site(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:

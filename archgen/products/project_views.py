@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from archgen import git
 from archgen.findings import rule_pages
-from archgen.git.project_revision import find_revision
+from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.history import count_history
 from archgen.model import selector_evaluation
 from archgen.model.project_history import History
@@ -91,7 +91,7 @@ def make_views(
         all_drawings = mark_drawings(all_drawings, options.changes)
     revision = choose_revision(checked_project, options)
     edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)
-    edition = replace(edition, changes=options.changes)
+    edition = replace(edition, changes=options.changes, date=_find_date(checked_project, options))
     return ProjectViews(lookup, edition, all_drawings)
 
 
@@ -106,6 +106,7 @@ def make_edition(
     return DocumentEdition(
         revision=revision,
         level=level or "implementation",
+        settings=checked_project.chapters.settings,
         chapter_names=checked_project.chapters.order,
         project_chapters=checked_project.chapters.texts,
         drawings=drawings,
@@ -125,6 +126,13 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
         return replace(repository, folder=git.find_repository(checked_project.root).prefix)
     except git.GitError:
         return repository
+
+
+def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
+    """Return the day of the revision that is printed; empty where the revision is one that somebody named."""
+    if options.revision not in {None, find_revision(checked_project.root, checked_project.input_files)}:
+        return ""
+    return find_revision_date(checked_project.root, checked_project.input_files)
 
 
 def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:

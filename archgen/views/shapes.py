@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from archgen.views.matrix_shapes import Matrix
@@ -60,6 +60,8 @@ class Text:
     """The state that this run tells. Emitters may show it as a coloured chip; its words say the same."""
     is_place: bool = False
     """Whether this is a place in the project's files, `FILE:LINE`. One without an address may be offered to be copied."""
+    is_number: bool = False
+    """The run stands for the label of the figure or table that `ref` leads to: `Figure 3` in place of its text."""
     meter: Meter | None = None
     """A bar that repeats a figure of the same row; emitters may leave it out."""
 
@@ -136,6 +138,8 @@ class Figure:
     graph: str
     caption: str
     alt: str
+    numbered: bool = True
+    """The picture has a caption with a number, and is in the list of figures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +155,7 @@ class Facts:
     """Names and values in two columns (owner, status, host): a definition list or an unnumbered table."""
 
     rows: tuple[tuple[str, Inlines], ...]
+    row_anchors: tuple[str | None, ...] = ()
 
 
 Block = Paragraph | Markdown | Figure | Bullets | Facts | Table
@@ -184,6 +189,16 @@ class Outline:
     """What the reader must know first, for example that only a part is shown or that there are errors."""
     sections: tuple[Section, ...] = ()
     language: str = "en"
+    title_table: Table | None = None
+    """The partners, on the title page."""
+    front_sections: tuple[Section, ...] = ()
+    """What stands before the contents, without numbers: history, abbreviations."""
+    properties: Mapping[str, str] = field(default_factory=dict)
+    """What the document says of itself by name: number, date, authors."""
+    lists: tuple[str, ...] = ("figures", "tables")
+    """The lists behind the contents."""
+    has_large_paper: bool = True
+    """Pictures may take sheets of twice the size."""
 
 
 @dataclass(frozen=True, slots=True)

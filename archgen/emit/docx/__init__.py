@@ -7,6 +7,7 @@ and holds the package: styles, sections, headers, pictures, properties. The text
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from archgen.emit.docx.contents_lists import write_contents
 from archgen.emit.docx.core_properties import write_core_properties
@@ -18,7 +19,7 @@ from archgen.emit.docx.report_template import open_template
 from archgen.emit.docx.section_pieces import list_anchors, write_sections
 from archgen.emit.docx.template_checks import TemplateError
 from archgen.emit.docx.template_placeholders import fill_placeholders, find_placeholders
-from archgen.emit.docx.title_page import list_placeholder_values, write_title_page
+from archgen.emit.docx.title_page import list_placeholder_values, write_front_sections, write_title_page
 from archgen.emit.docx.writer_setup import create_writer, warn_of_template
 from archgen.emit.picture import Picture
 from archgen.views.shapes import Outline
@@ -39,22 +40,25 @@ def write(
     Raises TemplateError, with a message for the user, if the template cannot be used.
     """
     report_template = open_template(template)
-    title_on_cover = "title" in find_placeholders(report_template.before)
+    cover_names = find_placeholders(report_template.before)
     unknown_names = fill_placeholders(report_template, list_placeholder_values(outline))
     language = outline.language if template is None else ""
     writer = create_writer(report_template, pictures, chapter_files, list_anchors(outline), language)
+    if not outline.has_large_paper:
+        writer.paper = replace(writer.paper, large=())
     if template is not None:
         warn_of_template(writer, unknown_names)
-    title_page = tuple(write_title_page(writer, outline, title_on_cover=title_on_cover))
+    title_page = tuple(write_title_page(writer, outline, cover_names))
+    front = tuple(write_front_sections(writer, outline, cover_names))
     sections = tuple(write_sections(writer, outline))
     # The lists take pages themselves: they are written once to be measured, and once with the numbers.
     base = writer.paper.base
-    flow = assign_sheets((*write_contents(writer, {}), *sections), base)
+    flow = assign_sheets((*front, *write_contents(writer, {}, outline.lists), *sections), base)
     pages = estimate_pages((*title_page, *flow), base, section_start=len(title_page))
     # How long a cover is, only Word knows; nearly all take one page.
     cover_pages = 1 if report_template.before else 0
     numbers = {bookmark: page + cover_pages for bookmark, page in pages.items()}
-    flow = assign_sheets((*write_contents(writer, numbers), *sections), base)
+    flow = assign_sheets((*front, *write_contents(writer, numbers, outline.lists), *sections), base)
     document = report_template.document
     clean_settings(document)
     write_core_properties(document, report_template.package, outline)

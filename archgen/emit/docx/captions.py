@@ -24,7 +24,8 @@ def write_caption(
     entry = ContentsEntry(name_bookmark(anchor), f"{kind} {number}", text)
     entries.append(entry)
     # The field's name is the one that the list of figures or tables collects (`\c` in `contents_lists`).
-    runs = format_run(f"{kind} ") + format_field(f"SEQ {kind} \\* ARABIC", number) + format_run(f": {text}")
+    label = format_run(f"{kind} ") + format_field(f"SEQ {kind} \\* ARABIC", number)
+    runs = writer.format_label(anchor, label) + format_run(f": {text}")
     face = writer.styles.find_face("caption")
     rows = (face.line,) * face.count_lines(f"{entry.label}: {text}", (sheet or writer.paper.base).text_width)
     # A table's caption stands above it, and must not stay behind on the page before.

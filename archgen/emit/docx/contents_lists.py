@@ -6,27 +6,39 @@ computes the page of an entry that stands outside of one. So the outer field is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
+from archgen.emit.docx.title_page import write_front_heading
 from archgen.emit.docx.word_xml import escape_text, format_field, format_paragraph, format_run, points_to_twips
 
 _MAX_LEVEL = 3
-"""Levels of headings in the table of contents."""
+"""Levels of headings in the table of contents, if they fit a page or two."""
+_MAX_LINES = 100
+"""From this many lines on the contents have the first two levels alone."""
+_MAX_TABLES = 60
 _NUMBER_WIDTH = 30.0
 """Points at the right that page numbers take."""
 
 
-def write_contents(writer: DocxWriter, pages: Mapping[str, int]) -> Iterator[FlowPiece]:
-    """Write the three lists; that of a single figure or table, or of none, is left out. `pages` has the page of each bookmark."""
+def write_contents(
+    writer: DocxWriter, pages: Mapping[str, int], lists: Collection[str] = ("figures", "tables")
+) -> Iterator[FlowPiece]:
+    """Write the contents, and the lists that are asked for. `pages` has the page of each bookmark.
+
+    A list of a single figure or table, or of none, is left out, and one of so many tables that nobody reads it.
+    """
     # Switches (ECMA-376 17.16.5.68): \o by levels of headings, \h links, \z no numbers on a screen, \u outline levels of other
     # styles, \c the captions with a SEQ field of a name.
-    headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= _MAX_LEVEL]
-    yield from _write_list(writer, "Contents", f'TOC \\o "1-{_MAX_LEVEL}" \\h \\z \\u', headings, pages)
+    level_count = _MAX_LEVEL - (sum(entry.level <= _MAX_LEVEL for entry in writer.headings) > _MAX_LINES)
+    headings = [(entry, f"toc {entry.level}") for entry in writer.headings if entry.level <= level_count]
+    yield from _write_list(writer, "Contents", f'TOC \\o "1-{level_count}" \\h \\z \\u', headings, pages)
     for title, kind in (("Figures", "Figure"), ("Tables", "Table")):
         entries = [(entry, "table of figures") for entry in writer.find_contents(kind)]
-        if len(entries) > 1:
+        if kind == "Table" and "tables" in lists and len(entries) > _MAX_TABLES:
+            writer.warn(f"the report has {len(entries)} tables: a list of more than {_MAX_TABLES} is left out")
+        elif len(entries) > 1 and title.casefold() in lists:
             yield from _write_list(writer, title, f'TOC \\h \\z \\c "{kind}"', entries, pages)
 
 
@@ -40,11 +52,7 @@ def _write_list(
     """Write a list of entries with their styles, in a field that Word computes by an instruction."""
     if not entries:
         return
-    face = writer.styles.find_face("TOC Heading")
-    # A template's style may stand on heading 1: without number and outline level the list does not list itself.
-    properties = '<w:numPr><w:numId w:val="0"/></w:numPr><w:outlineLvl w:val="9"/>'
-    xml = format_paragraph(writer.styles.find_style_id("TOC Heading"), format_run(title), properties)
-    yield FlowPiece(xml, (face.line,), face.before, face.after, keep_next=True)
+    yield write_front_heading(writer, title)
     last = len(entries) - 1
     for index, (entry, style) in enumerate(entries):
         before = _format_field_start(instruction) if index == 0 else ""

@@ -1,4 +1,4 @@
-"""What a document says about itself: title, subject, language, program. No clock and no person: the same report, the same bytes."""
+"""What a document says about itself: title, number, authors, version, program. No clock: the same report, the same bytes."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from archgen.views.shapes import Outline
 
 _MAX_LENGTH = 255
 """Characters that Word allows in a property; python-docx raises ValueError beyond them."""
+_PROPERTY_NAMES = {"author": "authors", "category": "dissemination", "version": "version", "content_status": "status"}
+"""Word's properties, and what the document says of itself under other names."""
 
 
 def write_core_properties(document: Document, package: Package, outline: Outline) -> None:
@@ -27,7 +29,14 @@ def write_core_properties(document: Document, package: Package, outline: Outline
     package.relate_to(part, RELATIONSHIP_TYPE.CORE_PROPERTIES)
     properties = document.core_properties
     properties.title = clean_line(outline.title)[:_MAX_LENGTH]
-    properties.subject = clean_line(outline.subtitle)[:_MAX_LENGTH]
+    said = {name: clean_line(value)[:_MAX_LENGTH] for name, value in outline.properties.items()}
+    # Word has no field for a document's number; its readers look for it in the subject.
+    number = outline.properties.get("number", "")
+    subject = f"{number} {outline.subtitle}".strip() if number else outline.subtitle
+    properties.subject = clean_line(subject)[:_MAX_LENGTH]
+    for name, key in _PROPERTY_NAMES.items():
+        if said.get(key):
+            setattr(properties, name, said[key])
     properties.language = clean_line(outline.language)[:_MAX_LENGTH]
     _write_program_name(package)
 

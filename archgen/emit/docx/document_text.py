@@ -11,7 +11,7 @@ from lxml import etree
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.report_template import ReportTemplate
-from archgen.emit.docx.word_xml import MC, NAMESPACES
+from archgen.emit.docx.word_xml import MC, NAMESPACES, fill_labels
 
 _BODY_MARK = "<!--body-->"
 _IGNORABLE = f"{{{MC}}}Ignorable"
@@ -22,7 +22,8 @@ def format_document(
 ) -> str:
     """Return the XML of the document."""
     frame = _format_frame(template.document.element)
-    return frame.replace(_BODY_MARK, "".join(_iter_body(template, writer, title_page, main)))
+    body = "".join(_iter_body(template, writer, title_page, main))
+    return frame.replace(_BODY_MARK, fill_labels(body, writer.list_labels()))
 
 
 def _iter_body(
@@ -36,8 +37,10 @@ def _iter_body(
         yield from _format_elements(template.before)
         yield _format_section_end(opening)
         opening = paper.create_section_properties(paper.base)
-    yield from (piece.xml for piece in title_page)
-    yield _format_section_end(opening)
+    # A cover may show all that the title page has: then there is none.
+    if title_page or not template.before:
+        yield from (piece.xml for piece in title_page)
+        yield _format_section_end(opening)
     sheet = (main[0].sheet if main else None) or paper.base
     for index, piece in enumerate(main):
         sheet = piece.sheet or paper.base

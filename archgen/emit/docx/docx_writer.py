@@ -16,7 +16,7 @@ from archgen.emit.docx.link_addresses import quote_address
 from archgen.emit.docx.list_numbering import ListNumbering
 from archgen.emit.docx.paper_sheets import PaperSet
 from archgen.emit.docx.style_table import StyleTable
-from archgen.emit.docx.word_xml import clean_word_text, name_bookmark
+from archgen.emit.docx.word_xml import clean_word_text, name_bookmark, name_label_bookmark
 from archgen.emit.picture import Picture
 
 _IMAGE_TYPES = {
@@ -27,8 +27,10 @@ _IMAGE_TYPES = {
 }
 
 
-ColumnMeasures = tuple[list[float], list[float]]
-"""Of each column of a table the width of its longest word, and of its longest line, in points."""
+ColumnMeasures = tuple[list[float], list[float], list[float]]
+"""Of each column of a table the width of its longest word, of its longest line, and of its longest word where all names are
+broken, in points.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +85,16 @@ class DocxWriter:
         number = self.take_id()
         # Without words in it, it may stand before anything, and no edit of the words takes it away.
         return f'<w:bookmarkStart w:id="{number}" w:name="{name_bookmark(anchor)}"/><w:bookmarkEnd w:id="{number}"/>'
+
+    def format_label(self, anchor: str, label: str) -> str:
+        """Return the label and number of a caption inside of a bookmark, which sentences refer to."""
+        number = self.take_id()
+        start = f'<w:bookmarkStart w:id="{number}" w:name="{name_label_bookmark(anchor)}"/>'
+        return f'{start}{label}<w:bookmarkEnd w:id="{number}"/>'
+
+    def list_labels(self) -> dict[str, str]:
+        """Return the labels of all captions by their bookmarks."""
+        return {entry.bookmark: entry.label for entry in (*self.figures, *self.tables)}
 
     def find_free_anchor(self, anchor: str) -> str:
         """Return an anchor without a bookmark: the one that is wanted, or it with a number."""

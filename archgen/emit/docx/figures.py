@@ -16,7 +16,7 @@ from archgen.views.shapes import Figure
 
 _TYPE_SIZE = 9.0
 """Type size in points of the pictures that archgen draws."""
-_LEGIBLE_SIZE = 5.8
+_LEGIBLE_SIZE = 5.4
 _LEGIBLE_SIZE_TURNED = 5.5
 """Below these sizes the next larger sheet is tried; turning a printed page is a price, finding A3 paper a higher one."""
 _CAPTION_HEIGHT = 60.0
@@ -49,8 +49,9 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     svg = picture.svg_outlines
     drawing = writer.relate_image(f"graph:{shape.graph}", "svg", svg) if svg else ""
     run = format_picture(writer, (raster, drawing), (width, height), shape.alt or shape.caption)
-    yield write_picture(writer, PictureRun(run, height), sheet)
-    yield write_caption(writer, shape.anchor, shape.caption, sheet)
+    yield write_picture(writer, PictureRun(run, height), sheet, keep_next=shape.numbered)
+    if shape.numbered:
+        yield write_caption(writer, shape.anchor, shape.caption, sheet)
     # Whoever reads the page must know what the picture lacks, not only whoever wrote it.
     if picture.warning:
         yield _write_note(writer, picture.warning, sheet)

@@ -66,7 +66,8 @@ def _write_scope(writer: DocxWriter, items: Sequence[OutlineItem]) -> Iterator[F
     for index, item in enumerate(items):
         if sheet_needs[index] and index < last and isinstance(item.block, (Figure, Table)):
             late.append(item)
-            inlines = (Text("On the wide page that follows: "), Text(item.block.caption, ref=item.block.anchor))
+            place = Text("The picture", ref=item.block.anchor, is_number=True)
+            inlines = (place, Text(" stands on the wide page that follows: "), Text(item.block.caption))
             yield write_paragraph(writer, Paragraph(inlines))
         else:
             yield from _write_item(writer, item)
@@ -108,7 +109,7 @@ def _iter_anchors(section: Section) -> Iterator[str]:
     for block in section.blocks:
         if isinstance(block, (Table, Figure)):
             yield block.anchor
-        if isinstance(block, Table):
+        if isinstance(block, (Table, Facts)):
             yield from (anchor for anchor in block.row_anchors if anchor)
     for below in section.sections:
         yield from _iter_anchors(below)

@@ -10,13 +10,13 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.table_rows import TableFrame, WordCell, write_table_rows
 from archgen.emit.docx.text_metrics import measure_word
-from archgen.emit.docx.text_runs import MUTED_COLOUR, format_runs, join_text
+from archgen.emit.docx.text_runs import MUTED_COLOUR, RunSetting, format_runs, join_text
 from archgen.emit.docx.word_xml import format_run
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
 MAX_COLUMNS = 63
 """Word opens no table with more."""
-_NAME_SHARE = 0.27
+_NAME_SHARE = 0.17
 """Share of the width that the names of facts get, if none of them needs more."""
 _ALIGNMENTS = {"left": "", "right": '<w:jc w:val="right"/>', "centre": '<w:jc w:val="center"/>'}
 
@@ -31,10 +31,14 @@ def write_table(writer: DocxWriter, shape: Table) -> Iterator[FlowPiece]:
         yield write_caption(writer, anchor, shape.caption, sheet, "Table")
     else:
         bookmark = writer.format_bookmark(anchor)
+    total = (sheet or writer.paper.base).text_width
+    widths = share_width(writer, TableContent.from_table(shape), total, styles)
+    size = writer.styles.find_face(styles.text).size
+    settings = [RunSetting(size, width - CELL_MARGINS) for width in widths]
     body = []
     row_anchors = (*shape.row_anchors, *(None for _ in shape.rows))
     for row, row_anchor in zip(shape.rows, row_anchors, strict=False):
-        cells = _write_cells(writer, row, aligns)
+        cells = _write_cells(writer, row, aligns, settings)
         cells += [WordCell("", "")] * (len(shape.columns) - len(cells))
         bookmark += writer.format_bookmark(row_anchor)
         if bookmark:
@@ -45,8 +49,6 @@ def write_table(writer: DocxWriter, shape: Table) -> Iterator[FlowPiece]:
         WordCell(format_run(column.title), column.title, align)
         for column, align in zip(shape.columns, aligns, strict=True)
     ]
-    total = (sheet or writer.paper.base).text_width
-    widths = share_width(writer, TableContent.from_table(shape), total, styles)
     yield write_table_rows(writer, header, body, TableFrame(widths, shape.caption, sheet, styles=styles))
 
 
@@ -58,9 +60,14 @@ def write_facts(writer: DocxWriter, shape: Facts) -> Iterator[FlowPiece]:
         max((measure_word(name) for name, _ in shape.rows), default=0) * face.size * face.factor + CELL_MARGINS + 2
     )
     left = min(max(longest, width * _NAME_SHARE), width / 2)
+    setting = RunSetting(face.size, width - left - CELL_MARGINS)
+    row_anchors = (*shape.row_anchors, *(None for _ in shape.rows))
     body = [
-        [WordCell(format_run(name, MUTED_COLOUR), name), WordCell(format_runs(writer, value), join_text(value))]
-        for name, value in shape.rows
+        [
+            WordCell(writer.format_bookmark(anchor) + format_run(name, MUTED_COLOUR), name),
+            WordCell(format_runs(writer, value, setting), join_text(value)),
+        ]
+        for (name, value), anchor in zip(shape.rows, row_anchors, strict=False)
     ]
     if body:
         yield write_table_rows(writer, [], body, TableFrame((left, width - left), style="Report Facts"))
@@ -68,7 +75,7 @@ def write_facts(writer: DocxWriter, shape: Facts) -> Iterator[FlowPiece]:
 
 def write_chapter_table(writer: DocxWriter, rows: Sequence[Sequence[Inlines]], aligns: Sequence[str]) -> FlowPiece:
     """Write a table from a chapter, without caption and number; its first row is the header."""
-    cells = [_write_cells(writer, row, aligns) for row in rows]
+    cells = [_write_cells(writer, row, aligns, [RunSetting()] * len(row)) for row in rows]
     # Of a column's longest text the root: a long one breaks into lines, and must not squeeze the others.
     weights = [max(1.0, *(len(row[n].text) ** 0.5 for row in cells)) for n in range(len(cells[0]))]
     columns = [Column(cell.text, weight) for cell, weight in zip(cells[0], weights, strict=True)]
@@ -77,7 +84,10 @@ def write_chapter_table(writer: DocxWriter, rows: Sequence[Sequence[Inlines]], a
     return write_table_rows(writer, cells[0], cells[1:], TableFrame(widths))
 
 
-def _write_cells(writer: DocxWriter, row: Sequence[Inlines], aligns: Sequence[str]) -> list[WordCell]:
+def _write_cells(
+    writer: DocxWriter, row: Sequence[Inlines], aligns: Sequence[str], settings: Sequence[RunSetting]
+) -> list[WordCell]:
     return [
-        WordCell(format_runs(writer, cell), join_text(cell), align) for cell, align in zip(row, aligns, strict=False)
+        WordCell(format_runs(writer, cell, setting), join_text(cell), align)
+        for cell, align, setting in zip(row, aligns, settings, strict=False)
     ]

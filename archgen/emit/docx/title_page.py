@@ -2,30 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from archgen.emit.docx.docx_writer import DocxWriter
+from archgen.emit.docx.figures import write_figure
 from archgen.emit.docx.page_flow import FlowPiece
-from archgen.emit.docx.table_pieces import write_facts
+from archgen.emit.docx.table_pieces import write_facts, write_table
 from archgen.emit.docx.text_pieces import ParagraphContent, write_paragraph, write_text
 from archgen.emit.docx.text_runs import join_text
-from archgen.emit.docx.word_xml import format_run
-from archgen.views.shapes import Facts, Outline
+from archgen.emit.docx.word_xml import format_paragraph, format_run
+from archgen.views.shapes import Facts, Figure, Outline, Section, Table
 
 
 def list_placeholder_values(outline: Outline) -> dict[str, str]:
-    """Return what a template may ask for by a name in double braces: title, subtitle, and the facts by their names."""
+    """Return what a template may ask for by a name in double braces: what the document says of itself, and its facts."""
     facts = {name.casefold(): join_text(value).replace("\n", ", ") for name, value in outline.facts}
-    return {**facts, "title": outline.title, "subtitle": outline.subtitle}
+    return {**facts, **outline.properties, "title": outline.title, "subtitle": outline.subtitle}
 
 
-def write_title_page(writer: DocxWriter, outline: Outline, *, title_on_cover: bool) -> Iterator[FlowPiece]:
-    """Write the title page; without the title where the template's cover shows it."""
-    if not title_on_cover:
+def write_title_page(writer: DocxWriter, outline: Outline, cover_names: Collection[str]) -> Iterator[FlowPiece]:
+    """Write the title page, without what a template's cover shows: `cover_names` are the placeholders on it.
+
+    A cover that shows the title and facts of its own needs no page of facts behind it.
+    """
+    if "title" not in cover_names:
         yield write_text(writer, ParagraphContent(format_run(outline.title), outline.title), "Title")
         if outline.subtitle:
             yield write_text(writer, ParagraphContent(format_run(outline.subtitle), outline.subtitle), "Subtitle")
-    if outline.facts:
-        yield from write_facts(writer, Facts(outline.facts))
+    shows_facts = "title" in cover_names and len(cover_names) > 1
+    facts = tuple(row for row in outline.facts if row[0].casefold() not in cover_names)
+    if facts and not shows_facts:
+        yield from write_facts(writer, Facts(facts))
+    if outline.title_table and not shows_facts:
+        yield from write_table(writer, outline.title_table)
     for notice in outline.notices:
         yield write_paragraph(writer, notice)
+
+
+def write_front_sections(writer: DocxWriter, outline: Outline, cover_names: Collection[str]) -> Iterator[FlowPiece]:
+    """Write what stands before the contents, under headings that neither count nor are listed."""
+    sections = outline.front_sections
+    if "title" in cover_names and len(cover_names) > 1:
+        # What the cover has no line for is not lost.
+        facts = tuple(row for row in outline.facts if row[0].casefold() not in cover_names)
+        partners = (outline.title_table,) if outline.title_table else ()
+        blocks = (*((Facts(facts),) if facts else ()), *partners)
+        sections = (Section("front:document", "About this document", blocks), *sections) if blocks else sections
+    for section in sections:
+        yield write_front_heading(writer, section.title)
+        for block in section.blocks:
+            if isinstance(block, Facts):
+                yield from write_facts(writer, block)
+            elif isinstance(block, Table):
+                yield from write_table(writer, block)
+            elif isinstance(block, Figure):
+                yield from write_figure(writer, block)
+
+
+def write_front_heading(writer: DocxWriter, title: str) -> FlowPiece:
+    """Write a heading that no list has: without number and outline level, which a template's style may bring."""
+    face = writer.styles.find_face("TOC Heading")
+    properties = '<w:numPr><w:numId w:val="0"/></w:numPr><w:outlineLvl w:val="9"/>'
+    xml = format_paragraph(writer.styles.find_style_id("TOC Heading"), format_run(title), properties)
+    return FlowPiece(xml, (face.line,), face.before, face.after, keep_next=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Mapping
 
 _W = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"
 _R = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
@@ -26,6 +27,7 @@ NAMESPACES = {
 
 # What XML 1.0 cannot hold (control characters, halves of surrogate pairs, two non-characters), and the C1 controls, which nobody sees.
 _FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_LABEL_MARK = re.compile(r"\[label (_ag[0-9a-f]{24})\]")
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": " ", "\r": " "})
 _LINE_ENDS = str.maketrans("\n\r", "  ")
 # Most texts need nothing: one search spares them both replacements.
@@ -50,6 +52,21 @@ def escape_text(text: str) -> str:
 def name_bookmark(anchor: str) -> str:
     """Return the name of an anchor's bookmark: hashed, as Word allows 40 characters; Word hides names that begin with `_`."""
     return "_ag" + hashlib.sha256(anchor.encode("utf-8", "surrogatepass")).hexdigest()[:24]
+
+
+def name_label_bookmark(anchor: str) -> str:
+    """Return the name of the bookmark around the label and number of a caption."""
+    return name_bookmark(f"label of {anchor}")
+
+
+def mark_label(anchor: str) -> str:
+    """Return what stands for the label of a caption until all captions have their numbers."""
+    return f"[label {name_bookmark(anchor)}]"
+
+
+def fill_labels(xml: str, labels: Mapping[str, str]) -> str:
+    """Put labels into the place of their marks, by the captions' bookmarks."""
+    return _LABEL_MARK.sub(lambda found: labels.get(found[1], found[0]), xml)
 
 
 def format_run(text: str, properties: str = "") -> str:

@@ -72,7 +72,7 @@ def draw_picture(
     """Draw a graph or a chart in these formats (names of Picture's fields)."""
     if isinstance(drawing, Chart):
         return render_picture(
-            drawing, chart_layout.lay_out_chart(drawing, links.get), formats, quick=False, warning=warning
+            drawing, chart_layout.lay_out_chart(drawing, links.get), formats, quick=True, warning=warning
         )
     _, scene = lay_out_graph(drawing, links, simple=simple)
     return render_picture(drawing, scene, formats, quick=_count_hues(drawing) <= _FEW_HUES, warning=warning)

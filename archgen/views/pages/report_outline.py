@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.model.component import Component, Group
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.project_history import History
+from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
 from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
@@ -20,6 +21,7 @@ from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Para
 from archgen.views.tables import architecture_tables, project_growth
 
 DetailLevel = Literal["functional", "implementation"]
+RosPlace = Literal["annex", "inline"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +30,12 @@ class DocumentEdition:
 
     revision: str = ""
     level: DetailLevel = "implementation"
+    ros_place: RosPlace = "annex"
+    """Where the report has the ROS side: in an annex, or with each component."""
+    settings: ReportSettings = field(default_factory=ReportSettings)
+    """What the project says of its report: first pages, lists, paper."""
+    date: str = ""
+    """The day of the revision, `2026-03-31`; empty where git does not tell."""
     chapter_names: tuple[str, ...] = GENERATED_CHAPTERS
     project_chapters: Mapping[str, Chapter] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)

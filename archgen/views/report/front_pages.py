@@ -1,0 +1,163 @@
+"""The first pages of the printed report: what a deliverable says of itself, its history, its words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.analyses.size_counts import measure_progress
+from archgen.model.report_settings import ReportSettings
+from archgen.views import inline_text
+from archgen.views.chart_shapes import Drawing
+from archgen.views.lookup import Lookup
+from archgen.views.pages import dashboard, page_marks
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.shapes import Column, Facts, Figure, Inlines, Section, Table, Text
+
+_SIGNS = (
+    ("in, out", "a port that reads, a port that writes"),
+    ("nobody yet, outside", "who reads an output: no component, or somebody outside of the system"),
+    ("≤, ≥", "at most, at least; a sum with unknown parts is at least what is known"),
+)
+_ROS_SIGNS = (
+    ("sub, pub", "subscribes to a topic, publishes it"),
+    ("serves, calls", "offers a service or an action, uses one"),
+    ("R 10, BE 5", "quality of service: reliable or best effort, with the depth of the queue"),
+    ("TL, D, L, M", "transient local (latched), deadline, lifespan, manual liveliness"),
+    ("a grey QoS", "nobody wrote it: the default of ROS"),
+    ("`nav_msgs/Odometry`", "messages without their folder: `msg`, `srv` and `action` are told by the use"),
+)
+_LEVEL_WORDS = {
+    "functional": "functional level",
+    "annex": "everything, the ROS side in an annex",
+    "inline": "everything, each component with its ROS side",
+}
+
+
+def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> tuple[tuple[str, Inlines], ...]:
+    """Return the lines of the title page; what nobody wrote has none."""
+    settings, architecture = edition.settings, lookup.architecture
+    lines = (
+        ("Number", settings.number),
+        ("Version", architecture.project.version or ""),
+        ("Date", settings.date or edition.date),
+        ("Authors", ", ".join(settings.authors)),
+        ("Dissemination", settings.dissemination),
+        ("State", describe_state(lookup)),
+        ("Level", describe_level(edition)),
+        ("Revision", edition.revision),
+        ("ROS distribution", architecture.distro or ""),
+    )
+    return tuple((name, inline_text.to_inlines(value)) for name, value in lines if value)
+
+
+def describe_level(edition: DocumentEdition) -> str:
+    """Say in words which level the report shows."""
+    return _LEVEL_WORDS["functional" if edition.level == "functional" else edition.ros_place]
+
+
+def describe_state(lookup: Lookup) -> str:
+    """Say in a line how large the architecture is, and what is not yet proven of it."""
+    architecture = lookup.architecture
+    parts = [inline_text.count_noun(len(architecture.components), "component")]
+    results = lookup.timing.chains if lookup.timing else ()
+    if results:
+        troubled = page_marks.list_troubled_chains(lookup)
+        met = len(results) - len(troubled)
+        parts.append(f"{met} of {inline_text.count_noun(len(results), 'chain')} in time")
+    if open_count := len(lookup.findings) + len(dashboard.make_chain_points(lookup)):
+        parts.append(inline_text.count_noun(open_count, "open point"))
+    return ", ".join(parts)
+
+
+def make_partner_table(lookup: Lookup) -> Table | None:
+    """List the partners with what they are and what they own, for the title page."""
+    architecture = lookup.architecture
+    if not architecture.partners:
+        return None
+    counts = {row.id: row.components for row in measure_progress(architecture) if row.scope == "partner"}
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(partner.title, strong=True)),
+            inline_text.to_inlines(" ".join((partner.description or "").split())),
+            inline_text.to_inlines(str(counts.get(partner.id, 0))),
+            inline_text.to_inlines(str(sum(partner.id in node.owners for node in architecture.nodes.values()))),
+        )
+        for partner in architecture.partners.values()
+    )
+    columns = (
+        Column("Partner"),
+        Column("Who it is", 3),
+        Column("Components", 0.6, "right"),
+        Column("Nodes", 0.5, "right"),
+    )
+    anchors = tuple(f"partner:{partner_id}" for partner_id in architecture.partners)
+    return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
+
+
+def make_use_case_table(lookup: Lookup) -> Table | None:
+    """Say what the use cases are that requirements name."""
+    use_cases = lookup.architecture.use_cases.values()
+    rows = tuple(
+        (
+            inline_text.to_inlines(use_case.id),
+            inline_text.to_inlines(Text(use_case.title, strong=True)),
+            inline_text.to_inlines(" ".join((use_case.description or "").split())),
+        )
+        for use_case in use_cases
+    )
+    columns = (Column("Id", 0.4), Column("Use case", 1.2), Column("What happens", 3))
+    anchors = tuple(f"use_case:{use_case.id}" for use_case in use_cases)
+    return Table("table:use_cases", "Use cases", columns, rows, anchors) if rows else None
+
+
+def make_front_sections(lookup: Lookup, edition: DocumentEdition, legend: Drawing | None) -> Iterator[Section]:
+    """Yield what stands before the contents: history, abbreviations, and how tables and pictures are read."""
+    settings = edition.settings
+    if settings.history:
+        yield Section("front:history", "Document history", (_make_history_table(settings),))
+    if settings.abbreviations:
+        rows = tuple((name, inline_text.to_inlines(meaning)) for name, meaning in settings.abbreviations)
+        yield Section("front:abbreviations", "Abbreviations", (Facts(rows),))
+    signs = (*_SIGNS, *(_ROS_SIGNS if edition.level == "implementation" and lookup.architecture.nodes else ()))
+    facts = Facts(tuple((name.replace("`", ""), inline_text.message_to_inlines(words)) for name, words in signs))
+    yield Section("front:signs", "How to read the tables", (facts,))
+    if legend:
+        figure = Figure(
+            f"figure:{legend.id}", legend.id, legend.title, "The forms of boxes and arrows.", numbered=False
+        )
+        yield Section("front:legend", "How to read the pictures", (figure,))
+
+
+def _make_history_table(settings: ReportSettings) -> Table:
+    rows = tuple(
+        tuple(
+            inline_text.to_inlines(text) if text else ()
+            for text in (entry.version, entry.date, entry.author, entry.change)
+        )
+        for entry in settings.history
+    )
+    columns = (Column("Version", 0.5), Column("Date", 0.7), Column("Author"), Column("Change", 3))
+    return Table("table:history", "Document history", columns, rows, numbered=False)
+
+
+def list_properties(lookup: Lookup, edition: DocumentEdition) -> dict[str, str]:
+    """Return what templates and document properties may ask for, by name; empty where nobody wrote it."""
+    settings, architecture = edition.settings, lookup.architecture
+    return {
+        "project": architecture.project.title,
+        "number": settings.number,
+        "version": architecture.project.version or "",
+        "date": settings.date or edition.date,
+        "authors": ", ".join(settings.authors),
+        "dissemination": settings.dissemination,
+        "partners": ", ".join(partner.title for partner in architecture.partners.values()),
+        "revision": edition.revision,
+        "level": describe_level(edition),
+        "status": describe_state(lookup),
+        "history": "; ".join(
+            " ".join(filter(None, (entry.version, entry.date, entry.author, entry.change)))
+            for entry in settings.history
+        ),
+        "abbreviations": "; ".join(f"{name}: {meaning}" for name, meaning in settings.abbreviations),
+        "summary": " ".join(settings.summary.split()),
+    }

@@ -1,0 +1,132 @@
+"""Figures as paper wants them: real signs, three significant digits, one unit in a column of times."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from decimal import ROUND_HALF_UP, Decimal
+
+from archgen.views.report import inline_marks
+from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Markdown, Paragraph, Section, Table, Text
+
+_TIME_FACTORS = {"ns": Decimal(1), "us": Decimal(1000), "ms": Decimal(10**6), "s": Decimal(10**9)}
+_UNITS = "ns|us|ms|s|Hz|kHz|MHz|B|kB|MB|GB|B/s|kB/s|MB/s|GB/s|%"
+_QUANTITY = re.compile(rf"(?<![\w.])([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?![\w/])")
+_TIME_CELL = re.compile(r"(>= |<= )?([0-9]+(?:\.[0-9]+)?) (ns|us|ms|s)")
+_SIGNS = (("<= ", "≤ "), (">= ", "≥ "))
+_DIGITS = 3
+_MIN_TIMES = 2
+_THIN = "\u202f"
+"""Between a figure and its unit, which must not part."""
+_WORDS = {
+    "terms of the bound": "parts of the bound",
+    "Where rates differ": "Where a reader is slower than its source",
+    "Edges that lose samples or beat": "Topics that are read less often than published",
+    "archgen finds": "the check of the architecture finds",
+    "Where the rate is from": "Source of the rate",
+    "any scheduler that never idles": "any order that never idles",
+}
+"""Words of the analysis that a reader of a deliverable takes for faults, or does not know."""
+_COLUMN_WORDS = {"Lost": "Not read", "Come at once": "Burst"}
+
+
+def print_section_figures(section: Section) -> Section:
+    """Return a section with its figures for paper, and those below it."""
+    return replace(
+        section,
+        title=_replace_words(section.title),
+        blocks=tuple(_print_block(block) for block in section.blocks),
+        sections=tuple(print_section_figures(each) for each in section.sections),
+    )
+
+
+def _print_block(block: Block) -> Block:
+    match block:
+        case Paragraph():
+            return replace(block, inlines=print_inlines(block.inlines))
+        case Bullets():
+            return replace(block, items=tuple(print_inlines(item) for item in block.items))
+        case Facts():
+            return replace(block, rows=tuple((name, print_inlines(value)) for name, value in block.rows))
+        case Table():
+            return _print_table(block)
+        case Markdown():
+            return block
+        case _:
+            return replace(block, caption=_replace_words(block.caption))
+
+
+def print_inlines(inlines: Inlines) -> Inlines:
+    """Return runs of text with real signs and three significant digits; code stays as it is written."""
+    return tuple(
+        part if part.code else replace(part, text=print_text(part.text)) for part in inline_marks.render_marks(inlines)
+    )
+
+
+def print_text(text: str) -> str:
+    """Return text with real signs and three significant digits: `≤ 4.17 s` for `<= 4166.667 ms`."""
+    for sign, printed in _SIGNS:
+        text = text.replace(sign, printed)
+    return _replace_words(_QUANTITY.sub(lambda found: _print_quantity(found[1], found[2]), text))
+
+
+def _replace_words(text: str) -> str:
+    for words, printed in _WORDS.items():
+        text = text.replace(words, printed)
+    return text
+
+
+def _print_quantity(number: str, unit: str) -> str:
+    value = Decimal(number)
+    if unit == "ms" and value >= 1000:  # noqa: PLR2004 - more digits than three are none that count
+        value, unit = value / 1000, "s"
+    return f"{_round_number(value)}{_THIN}{'µs' if unit == 'us' else unit}"
+
+
+def _round_number(value: Decimal) -> str:
+    """Return a number with three significant digits, but all of those before the point."""
+    if not value:
+        return "0"
+    places = max(_DIGITS - 1 - value.adjusted(), 0)
+    text = f"{value.quantize(Decimal(1).scaleb(-places), ROUND_HALF_UP):f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def _print_table(table: Table) -> Table:
+    columns, cells_by_column = [], []
+    for index, column in enumerate(table.columns):
+        cells = [row[index] for row in table.rows]
+        unit = _choose_unit(column, cells)
+        title = _COLUMN_WORDS.get(column.title, _replace_words(column.title))
+        columns.append(replace(column, title=f"{title}, {'µs' if unit == 'us' else unit}" if unit else title))
+        cells_by_column.append([_convert_cell(cell, unit) if unit else print_inlines(cell) for cell in cells])
+    rows = tuple(tuple(column[row] for column in cells_by_column) for row in range(len(table.rows)))
+    return replace(table, caption=_replace_words(table.caption), columns=tuple(columns), rows=rows)
+
+
+def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
+    """Return the unit of a column of times, that of its middle value; empty for any other column."""
+    times = [
+        Decimal(found[2]) * _TIME_FACTORS[found[3]]
+        for cell in cells
+        for part in cell
+        if (found := _TIME_CELL.fullmatch(part.text)) and Decimal(found[2])
+    ]
+    if column.align != "right" or len(times) < _MIN_TIMES:
+        return ""
+    middle = sorted(times)[(len(times) - 1) // 2]
+    return next((unit for unit in ("s", "ms", "us") if middle >= _TIME_FACTORS[unit]), "ns")
+
+
+def _convert_cell(cell: Inlines, unit: str) -> Inlines:
+    return tuple(_convert_text(part, unit) for part in cell)
+
+
+def _convert_text(part: Text, unit: str) -> Text:
+    found = _TIME_CELL.fullmatch(part.text)
+    if not found:
+        return replace(part, text=print_text(part.text))
+    sign = print_text(found[1] or "")
+    value = Decimal(found[2]) * _TIME_FACTORS[found[3]] / _TIME_FACTORS[unit]
+    return replace(part, text=f"{sign}{_round_number(value)}")

@@ -1,0 +1,169 @@
+"""The report for paper: the outline of all documents, with its blocks put together, and what few read moved to annexes.
+
+Nothing is left out that the outline says; tests/views/test_printed_report.py compares the two, and names what is said in
+another place or shorter.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Iterator, Mapping
+
+from archgen.views.chart_shapes import Drawing
+from archgen.views.lookup import Lookup
+from archgen.views.pages import report_outline
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
+from archgen.views.report.figure_mentions import mention_section
+from archgen.views.report.printed_figures import print_section_figures
+from archgen.views.report.report_drawings import LEGEND_NAME, make_report_drawings
+from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
+
+_TIMING_ANNEX = "Rates, loads and traffic"
+_LARGE_DRAWINGS = ("components", "ros", "timing")
+"""Pictures of all components or nodes, which A4 paper shows too small to read."""
+
+
+def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
+    """Make the outline of the printed report; appendices are at the end."""
+    outline = report_outline.make_report(lookup, edition)
+    printer = _ReportPrinter(lookup, edition, make_report_drawings(lookup, edition.drawings))
+    sections = [part for section in outline.sections for part in printer.print_section(section)]
+    overview = next((section for section in sections if section.anchor == "page:index"), None)
+    summary = summary_section.make_summary(lookup, edition, overview)
+    if summary:
+        # It has all of the overview, which would stand behind the project's own introduction.
+        sections = [summary, *(section for section in sections if section is not overview)]
+    body = [section for section in sections if not section.appendix]
+    annexes = [section for section in sections if section.appendix]
+    return dataclasses.replace(
+        outline,
+        facts=front_pages.make_title_facts(lookup, edition),
+        sections=tuple(
+            mention_section(print_section_figures(each)) for each in (*body, *printer.make_ros_annexes(), *annexes)
+        ),
+        title_table=front_pages.make_partner_table(lookup),
+        front_sections=tuple(front_pages.make_front_sections(lookup, edition, printer.find_legend())),
+        properties=front_pages.list_properties(lookup, edition),
+        lists=edition.settings.lists,
+        has_large_paper=edition.settings.has_large_paper,
+    )
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _ReportPrinter:
+    """Rewrites the sections of the outline for paper. `drawings` are those of the report, by the names in the outline."""
+
+    lookup: Lookup
+    edition: DocumentEdition
+    drawings: Mapping[str, Drawing]
+
+    def find_legend(self) -> Drawing | None:
+        """Return the picture of the legend, None where no picture is drawn anew for the report."""
+        return self.drawings.get(LEGEND_NAME) if self.edition.drawings else None
+
+    def print_section(self, section: Section) -> tuple[Section, ...]:
+        """Return what becomes of a chapter: itself, and the annexes that some of it moves to."""
+        if section.anchor.startswith("group:"):
+            return (self._print_group(section),)
+        if section.anchor == "page:timing":
+            return tuple(self._split_timing(section))
+        return (self._print_others(section),)
+
+    def _print_others(self, section: Section) -> Section:
+        blocks = tuple(_flatten(self._keep_legible(section.blocks)))
+        if section.anchor == "page:requirements" and (table := front_pages.make_use_case_table(self.lookup)):
+            blocks = (table, *blocks)
+        return dataclasses.replace(
+            section, blocks=blocks, sections=tuple(self._print_others(each) for each in section.sections)
+        )
+
+    def _keep_legible(self, blocks: Iterable[Block]) -> Iterator[Block]:
+        """Yield blocks with the report's own pictures; those of the whole architecture come on large paper alone."""
+        for block in blocks:
+            if not isinstance(block, Figure):
+                yield block
+            elif (
+                block.graph not in _LARGE_DRAWINGS or self.edition.settings.has_large_paper
+            ) and block.graph in self.drawings:
+                yield dataclasses.replace(block, graph=self.drawings[block.graph].id)
+
+    def _print_group(self, section: Section) -> Section:
+        blocks = list(_flatten(self._keep_legible(section.blocks)))
+        texts = [block for block in blocks if isinstance(block, Markdown)]
+        others = [_drop_column(block, "Nodes") for block in blocks if not isinstance(block, Markdown)]
+        sections = tuple(self._print_component(each) for each in section.sections)
+        return dataclasses.replace(section, blocks=(*texts, *others), sections=sections)
+
+    def _print_component(self, section: Section) -> Section:
+        component_id = section.anchor.partition(":")[2]
+        blocks = condensed_blocks.condense_component(self._keep_legible(section.blocks), section.title, component_id)
+        if self._shows_ros and self.edition.ros_place == "inline":
+            blocks += self._make_ros_blocks(component_id)
+        return dataclasses.replace(section, blocks=blocks, sections=())
+
+    @property
+    def _shows_ros(self) -> bool:
+        return self.edition.level == "implementation"
+
+    def _make_ros_blocks(self, component_id: str) -> tuple[Block, ...]:
+        component = self.lookup.architecture.components[component_id]
+        return tuple(_flatten(self._keep_legible(ros_blocks.make_ros_blocks(self.lookup, component))))
+
+    def make_ros_annexes(self) -> Iterator[Section]:
+        """Yield the annexes of the ROS side: the components one by one, and the parameters of all nodes."""
+        if not self._shows_ros or "groups" not in self.edition.chapter_names:
+            return
+        if self.edition.ros_place == "annex":
+            sections = tuple(self._list_ros_groups())
+            if sections:
+                lead = Paragraph((Text("Nodes, topics, services and actions, in the order of the components."),))
+                yield Section("page:nodes", "ROS side of the components", (lead,), sections, True, True)  # noqa: FBT003
+        if table := ros_blocks.make_parameter_table(self.lookup):
+            yield Section("page:parameters", "Parameters", (table,), appendix=True, page_break=False)
+
+    def _list_ros_groups(self) -> Iterator[Section]:
+        for group_id in self.lookup.shown_groups():
+            sections = tuple(
+                Section(f"implementation:{component.id}", component.title, self._make_ros_blocks(component.id))
+                for component in self.lookup.shown_components(group_id)
+                if self.lookup.nodes_of.get(component.id)
+            )
+            if sections:
+                title = self.lookup.architecture.groups[group_id].title
+                yield Section(f"nodes:{group_id}", title, (), sections, appendix=True)
+
+    def _split_timing(self, section: Section) -> Iterator[Section]:
+        """Yield the chapter of timing with its verdicts, and the annex of its tables."""
+        blocks = tuple(_flatten(self._keep_legible(section.blocks)))
+        if blocks:
+            yield dataclasses.replace(section, blocks=blocks, sections=())
+        sections = tuple(self._print_others(each) for each in section.sections)
+        sections = tuple(each for each in sections if each.blocks)
+        if sections:
+            yield Section("page:rates", _TIMING_ANNEX, (), sections, appendix=True, page_break=True)
+
+
+def walk_sections(sections: Iterable[Section]) -> Iterator[Section]:
+    """Yield sections, each followed by those below it."""
+    for section in sections:
+        yield section
+        yield from walk_sections(section.sections)
+
+
+def _flatten(blocks: Iterable[Block]) -> Iterator[Block]:
+    """Yield blocks with tables that need no turned page, and no facts without rows."""
+    for block in blocks:
+        if isinstance(block, Table):
+            yield dataclasses.replace(block, wide=False)
+        elif not isinstance(block, Facts) or block.rows:
+            yield block
+
+
+def _drop_column(block: Block, title: str) -> Block:
+    """Return a table without a column."""
+    if not isinstance(block, Table):
+        return block
+    indices = [index for index, column in enumerate(block.columns) if column.title != title]
+    rows: tuple[tuple[Inlines, ...], ...] = tuple(tuple(row[index] for index in indices) for row in block.rows)
+    return dataclasses.replace(block, columns=tuple(block.columns[index] for index in indices), rows=rows)

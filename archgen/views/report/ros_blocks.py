@@ -1,0 +1,179 @@
+"""The ROS side of a component on paper: its nodes as facts, a line or two for each, and one table of what they use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from archgen.model.component import Component
+from archgen.model.node import Endpoint, Node, Qos
+from archgen.views import inline_text
+from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.lookup import Lookup
+from archgen.views.report.condensed_blocks import FactRow, drop_repeated_columns
+from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Paragraph, Table, Text
+
+_USE_WORDS = {"subscribes": "sub", "publishes": "pub", "serves": "serves", "calls": "calls"}
+_USE_ORDER = tuple(_USE_WORDS)
+_OWN_ROWS = ("Implements", "ROS name", "Kind, status")
+"""Facts that the first line of a node says."""
+
+
+def make_ros_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
+    """Describe the nodes of a component; one that implements several is described at the first that is shown."""
+    all_nodes = lookup.nodes_of.get(component.id, ())
+    own_nodes = [node for node in all_nodes if find_described_component(lookup, node) == component.id]
+    texts: list[Block] = []
+    rows: list[FactRow] = []
+    anchors: list[str | None] = []
+    for node in all_nodes:
+        if node not in own_nodes:
+            rows.append(("Node", _refer_to_node(lookup, node)))
+            anchors.append(None)
+            continue
+        node_blocks = make_node_blocks(lookup, node)
+        facts = next((block.rows for block in node_blocks if isinstance(block, Facts)), ())
+        texts += [
+            block for block in node_blocks if isinstance(block, Markdown) or getattr(block, "kind", "text") == "note"
+        ]
+        node_rows = list(_condense_facts(node, component, facts))
+        rows += node_rows
+        anchors += [f"node:{node.id}", *(None for _ in node_rows[1:])]
+    table = _make_endpoint_table(lookup, component, own_nodes)
+    silent_nodes = [node for node in own_nodes if not lookup.endpoints_of.get(node.id)]
+    silence = [Text(f"{', '.join(node.id for node in silent_nodes)}: no topic, service or action.", muted=True)]
+    return (
+        *texts,
+        *([Facts(tuple(rows), tuple(anchors))] if rows else []),
+        *make_implementation_blocks(lookup, component.id),
+        *([Paragraph(tuple(silence))] if silent_nodes else []),
+        *([table] if table else []),
+    )
+
+
+def find_described_component(lookup: Lookup, node: Node) -> str | None:
+    """Return the id of the component that a node is described at: the first shown one that it implements."""
+    return next((name for name in node.implements if lookup.scope.shows_component(name)), None)
+
+
+def _refer_to_node(lookup: Lookup, node: Node) -> Inlines:
+    first = find_described_component(lookup, node)
+    place = (inline_text.component_link(lookup.architecture.components[first]),) if first else ()
+    return inline_text.to_inlines(
+        "The node ", inline_text.node_link(node), " implements this too; it is described at ", *place, "."
+    )
+
+
+def _condense_facts(node: Node, component: Component, rows: Sequence[FactRow]) -> Iterator[FactRow]:
+    """Yield the facts of a node: what it is in one row, where it runs with its package in a second, times in a third."""
+    values = dict(rows)
+    kind = values.get("Kind, status", ())
+    name = inline_text.to_inlines(
+        Text(node.id, code=True, strong=True), ", ROS name ", *values["ROS name"], ", ", *kind
+    )
+    others = [item for item in node.implements if item != component.id]
+    if others:
+        name = (*name, Text("; implements "), *values["Implements"])
+    yield "Node", name
+    places, times, details = [], [], []
+    for title, value in rows:
+        if title in _OWN_ROWS or (title == "Owner" and node.owners == component.owners):
+            continue
+        if title.startswith(("Timing", "Rate", "Response", "Callbacks", "Uses", "Waits")):
+            times.append((title, value))
+        elif title in {"Package", "Runs on", "Owner"}:
+            places.append((title, value))
+        else:
+            details.append((title, value))
+    if places:
+        yield "Package and host", _join_named(places)
+    if times:
+        yield "Timing", _join_named(times)
+    yield from details
+
+
+def _join_named(rows: Iterable[FactRow]) -> Inlines:
+    """Join facts with their names: `runs on Base Computer; owner SSSA`. A package needs no name."""
+    parts = [
+        value if title in {"Package", "Timing"} else inline_text.to_inlines(f"{title[:1].lower()}{title[1:]} ", *value)
+        for title, value in rows
+    ]
+    return inline_text.join_inlines(parts, "; ")
+
+
+def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[Node]) -> Table | None:
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(node.id, code=True)),
+            inline_text.to_inlines(_USE_WORDS[endpoint.use]),
+            inline_text.to_inlines(
+                inline_text.topic_link(endpoint.name), *([Text(" internal", muted=True)] if endpoint.internal else [])
+            ),
+            _message_cell(endpoint),
+            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            _qos_cell(endpoint),
+        )
+        for node in nodes
+        for endpoint in sorted(lookup.endpoints_of.get(node.id, ()), key=lambda each: _USE_ORDER.index(each.use))
+    )
+    columns = (
+        Column("Node", 1.0),
+        Column("Use", 0.5),
+        Column("Name", 1.9),
+        Column("Message", 1.9),
+        Column("Port", 0.9),
+        Column("QoS", 0.6),
+    )
+    caption = f"Topics, services and actions of {component.title}"
+    table = Table(f"table:endpoints/{component.id}", caption, columns, rows)
+    if len(nodes) == 1:
+        table = Table(table.anchor, caption, columns[1:], tuple(row[1:] for row in rows))
+    return drop_repeated_columns(table, kept_columns=3) if rows else None
+
+
+def _message_cell(endpoint: Endpoint) -> Inlines:
+    return (
+        inline_text.to_inlines(Text(shorten_message(endpoint.message), code=True))
+        if endpoint.message
+        else inline_text.UNKNOWN_INLINES
+    )
+
+
+def shorten_message(name: str) -> str:
+    """Return a message's name without the folder that its use tells: `nav_msgs/Odometry` for `nav_msgs/msg/Odometry`."""
+    package, _, rest = name.partition("/")
+    folder, _, short_name = rest.partition("/")
+    return f"{package}/{short_name}" if folder in {"msg", "srv", "action"} and short_name else name
+
+
+def _qos_cell(endpoint: Endpoint) -> Inlines:
+    if endpoint.flow != "topic":
+        return ()
+    text = shorten_qos(endpoint.qos)
+    return (Text(text, muted=not endpoint.qos.written),)
+
+
+def shorten_qos(qos: Qos) -> str:
+    """Write a quality of service in short: `R 10` is reliable with depth 10, `BE` best effort, `TL` transient local."""
+    reliability = (
+        "BE" if qos.reliability == "best_effort" else "R" if qos.reliability == "reliable" else qos.reliability
+    )
+    depth = "all" if qos.history == "keep_all" else "" if qos.depth is None else str(qos.depth)
+    parts = [" ".join(part for part in (reliability, depth) if part)]
+    parts += ["TL"] if qos.durability == "transient_local" else []
+    parts += [f"D {qos.deadline}"] if qos.deadline else []
+    parts += [f"L {qos.lifespan}"] if qos.lifespan else []
+    parts += ["M"] if qos.liveliness != "automatic" else []
+    parts += [f"lease {qos.lease_duration}"] if qos.lease_duration else []
+    return " · ".join(parts)
+
+
+def make_parameter_table(lookup: Lookup) -> Table | None:
+    """List the parameters of all shown nodes."""
+    rows: list[tuple[Inlines, ...]] = []
+    for node in lookup.shown_nodes():
+        tables = [block for block in make_node_blocks(lookup, node) if isinstance(block, Table)]
+        for table in tables:
+            if table.anchor.startswith("table:parameters/"):
+                rows += [((Text(node.id, ref=f"node:{node.id}", code=True),), *row) for row in table.rows]
+    columns = (Column("Node"), Column("Parameter"), Column("Value"))
+    return Table("table:parameters", "Parameters of the nodes", columns, tuple(rows)) if rows else None
