@@ -44,7 +44,7 @@ _TITLE_WIDTHS = {
     "service": 30,
     "action": 30,
     "group": 22,
-    "fold": 22,
+    "fold": 42,
     "host": 26,
     "container": 30,
     "node": 20,

@@ -30,6 +30,9 @@ _BOX_SAMPLES: dict[str, tuple[Box, str]] = {
     "planned": (Box("", "", status="planned"), "planned"),
     "adapted": (Box("", "", status="adapted"), "adapted"),
     "fold": (Box("", "", style="fold"), "stands for several"),
+    "badge:error": (Box("", "", badge="error"), "has an error (E)"),
+    "badge:warning": (Box("", "", badge="warning"), "has a warning (W)"),
+    "badge:note": (Box("", "", badge="note"), "has a note (N)"),
 }
 _PERIOD_WORDS: dict[PeriodStep, str] = {
     "to_10_ms": "period up to 10 ms",

@@ -165,7 +165,7 @@ def test_a_component_has_its_ports() -> None:
 
 def test_a_whole_group_as_source_has_an_asterisk() -> None:
     graph = draw_component(view(), "h.d")
-    assert text(graph) == ["<g > h.d: * 2 types"]
+    assert text(graph) == ["<g > h.d: * all of these"]
     assert graph.boxes[1].lines == ("whole group", "T x", "T y")
     assert "star" in graph.legend
 
@@ -180,8 +180,13 @@ def test_services_and_actions_run_from_client_to_server(kind: str) -> None:
     style = {"srv": "service", "action": "action"}[kind]
     architecture = make("g: server client", "g.server.ask > g.client.call", f"T ask = pkg/{kind}/Ask")
     assert text(draw_components(view(architecture))) == [f"g.client > g.server [{style}]"]
-    assert text(draw_component(view(architecture), "g.client")) == [f"g.client > <g.server: T ask [{style}]"]
-    assert text(draw_component(view(architecture), "g.server")) == [f">g.client > g.server: T ask [{style}]"]
+    client, server = (draw_component(view(architecture), name) for name in ("g.client", "g.server"))
+    assert text(client) == [f"g.client > >g.server: T ask [{style}]"]
+    assert text(server) == [f"<g.client > g.server: T ask [{style}]"]
+    # The caller is at the left and the server at the right, ports included.
+    assert (client.boxes[0].ports_in, client.boxes[0].ports_out) == ((), (("in call", "call"),))
+    assert (server.boxes[0].ports_in, server.boxes[0].ports_out) == ((("out ask", "ask"),), ())
+    assert [box.side for graph in (client, server) for box in graph.boxes[1:]] == ["right", "left"]
 
 
 def test_partners_outside_are_dashed() -> None:
@@ -331,7 +336,7 @@ def test_views_choose_level_colour_and_direction() -> None:
     assert [box.colour for box in graph.boxes if box.emphasis == "normal"] == [0, 1]
 
 
-def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
+def test_above_the_budget_each_group_is_a_list_of_its_components() -> None:
     architecture = generated(3, 8, 20, 150)
     whole = draw_components(make_lookup(architecture))
     assert len(whole.boxes) > MAX_BOXES
@@ -339,11 +344,33 @@ def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
     assert len(graph.boxes) <= MAX_BOXES
     assert len(graph.arrows) <= MAX_ARROWS
     folded = [box for box in graph.boxes if box.style == "fold"]
-    left = max(sum(box.cluster == cluster.id for box in graph.boxes) for cluster in graph.clusters)
-    assert all(int(box.lines[0].split()[0]) >= left for box in folded)
+    assert [box.title for box in folded] == [cluster.title for cluster in whole.clusters]
+    for box in folded:
+        inside = [each.title for each in whole.boxes if each.cluster == box.id]
+        assert box.lines[0].startswith(f"{len(inside)} inside")
+        assert " · ".join(box.lines[1:]) == " · ".join(inside)
     hidden = whole.asked - graph.asked
-    said = f"{len(folded)} groups folded, because the picture would be larger than 70 boxes and 160 arrows; "
+    said = "Each group is one box that lists what is in it, because the picture would be larger than 70 boxes and 160 arrows; "
     assert graph.notes == (said + f"{hidden} flows inside not drawn.",)
+
+
+def test_a_long_list_ends_with_how_many_more_there_are() -> None:
+    boxes = tuple(Box(f"b{at}", f"A box of number {at:02}", cluster="big") for at in range(72))
+    (box,) = fold_graph(Graph("x", "X", "two-step", boxes, (), (Cluster("big", "Big"),), kind="ros")).boxes
+    assert box.lines[:2] == ("72 inside", "A box of number 00 · A box of number 01")
+    assert box.lines[13:] == ("A box of number 24 · A box of number 25", "and 46 more")
+
+
+def test_what_a_picture_is_about_stays_open_where_its_neighbours_fold() -> None:
+    boxes = tuple(Box(f"b{at}", "B", cluster="own" if at < 60 else f"other{at % 2}") for at in range(80))
+    frames = (
+        Cluster("own", "Own"),
+        Cluster("other0", "O", emphasis="neighbour"),
+        Cluster("other1", "P", emphasis="neighbour"),
+    )
+    graph = fold_graph(Graph("x", "X", "two-step", boxes, (), frames, kind="view"))
+    assert [box.id for box in graph.boxes if box.style == "fold"] == ["other0", "other1"]
+    assert graph.notes[0].startswith("Each group of neighbours is one box that lists what is in it, ")
 
 
 def test_what_cannot_be_folded_says_so() -> None:
@@ -353,7 +380,7 @@ def test_what_cannot_be_folded_says_so() -> None:
     )
 
 
-def test_folding_keeps_frames_that_fit() -> None:
+def test_folding_merges_what_runs_between_frames() -> None:
     boxes = tuple(Box(f"b{at}", "B", cluster="big" if at < 70 else "small") for at in range(72))
     arrows = (Arrow("1", "b0", "b1"), Arrow("2", "b1", "b71"), Arrow("3", "b2", "b71"), Arrow("4", "b70", "b71"))
     graph = fold_graph(
@@ -361,9 +388,9 @@ def test_folding_keeps_frames_that_fit() -> None:
             "x", "X", "two-step", boxes, arrows, (Cluster("big", "Big"), Cluster("small", "Small")), asked=4, kind="ros"
         )
     )
-    assert [box.id for box in graph.boxes] == ["b70", "b71", "big"]
-    assert text(graph) == ["big > b71 (2)", "b70 > b71"]
-    assert graph.boxes[-1].lines == ("70 inside", "1 flow inside")
+    assert [box.id for box in graph.boxes] == ["big", "small"]
+    assert text(graph) == ["big > small (2)"]
+    assert graph.boxes[0].lines[0] == "70 inside, 1 flow among them"
 
 
 def test_what_feeds_a_component_is_named_by_its_title() -> None:
