@@ -17,9 +17,9 @@ An arrow that stands for several flows is wider: 1, 2 to 3, 4 and more flows are
 from __future__ import annotations
 
 from archgen.emit.graphviz import palette
-from archgen.emit.graphviz.box_styles import FONT_NAME, LinkResolver, link_attributes
+from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
-from archgen.emit.graphviz.placed_scene import DotAttributes
+from archgen.emit.graphviz.placed_scene import FONT_NAME, DotAttributes
 from archgen.views.graph_shapes import Arrow
 
 PEN_WIDTHS = ((4, "3.2"), (2, "2"), (1, "1"))

@@ -28,7 +28,6 @@ from archgen.views.graph_shapes import Box
 
 LinkResolver = Callable[[str], str | None]
 
-FONT_NAME = "DejaVu Sans"
 _BOX_SHAPES = {
     "reactive": "octagon",
     "node": "ellipse",
@@ -157,14 +156,14 @@ def _label_html(box: Box) -> str:
     detail_colour = palette.MUTED if text_colour == palette.TEXT else text_colour
     width = _TITLE_WIDTHS.get(box.style, 18)
     bold = box.emphasis == "subject" or box.style in {"group", "fold", "host"}
-    title = "<BR/>".join(
-        f"<B>{escape_label(row)}</B>" if bold else escape_label(row) for row in wrap_text(box.title, width)
-    )
-    rows = [f'<FONT COLOR="{text_colour}">{title}</FONT>']
+    titles = [f"<B>{escape_label(row)}</B>" if bold else escape_label(row) for row in wrap_text(box.title, width)]
+    rows = [f'<TR><TD HEIGHT="11"><FONT COLOR="{text_colour}">{row}</FONT></TD></TR>' for row in titles]
     rows += [
-        f'<FONT POINT-SIZE="7.5" COLOR="{detail_colour}">{small_text}</FONT>' for small_text in _detail_rows(box, width)
+        f'<TR><TD HEIGHT="10"><FONT POINT-SIZE="8" COLOR="{detail_colour}">{row}</FONT></TD></TR>'
+        for row in _detail_rows(box, width)
     ]
-    return "<BR/>".join(rows)
+    # As rows of a table: Graphviz sets lines of two fonts solid, so that descenders touch the next line.
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="0">{"".join(rows)}</TABLE>'
 
 
 def _detail_rows(box: Box, width: int) -> list[str]:
@@ -187,11 +186,16 @@ def _port_table(box: Box) -> str:
 
 
 def _write_table_title(box: Box) -> str:
-    title = "<BR/>".join(escape_label(row) for row in wrap_text(box.title, 28))
-    detail_rows = "".join(
-        f'<BR/><FONT POINT-SIZE="8" COLOR="{palette.MUTED}">{row}</FONT>' for row in _detail_rows(box, 34)
-    )
-    return f'<FONT POINT-SIZE="11" COLOR="{palette.TEXT}"><B>{title}</B></FONT>{detail_rows}'
+    titles = [escape_label(row) for row in wrap_text(box.title, 28)]
+    rows = [
+        f'<TR><TD HEIGHT="13"><FONT POINT-SIZE="11" COLOR="{palette.TEXT}"><B>{row}</B></FONT></TD></TR>'
+        for row in titles
+    ]
+    rows += [
+        f'<TR><TD HEIGHT="10"><FONT POINT-SIZE="8" COLOR="{palette.MUTED}">{row}</FONT></TD></TR>'
+        for row in _detail_rows(box, 34)
+    ]
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="0">{"".join(rows)}</TABLE>'
 
 
 def _write_port_row(box: Box, index: int) -> str:

@@ -1,62 +1,65 @@
-"""Render small PNGs quickly: Graphviz's gd writer, with a palette, takes a third of the time and bytes of cairo's.
+"""Render PNGs with a palette: all colours of the drawing exactly, and few steps between them where edges are smoothed.
 
-Its palette is a little off (white comes out as 252, 254, 252): the entries next to one of our colours are corrected. In
-pictures of many hues it would take two pale fills for one, so cairo writes those itself, as it does where gd is not
-built in.
+Graphviz's gd writer makes a palette by itself, in little time. Of pictures with many hues it takes two pale fills for
+one; those are rendered as plain pixels and get their palette here. Where gd is not built in, cairo writes 24 bits.
 """
 
 from __future__ import annotations
 
 import math
-import struct
-import zlib
+import re
 
-from archgen.emit.graphviz import layout_engine, palette
+from archgen.emit.graphviz import layout_engine, png_palette
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene
 
-_PNG_WRITERS = ("png:cairo", "png")
-_QUICK_WRITER = "png:cairo:gd"
+_TRUE_COLOUR_WRITER = "png:cairo"
+_LAST_WRITER = "png"
+_PALETTE_WRITER = "png:cairo:gd"
+_PIXEL_WRITER = "gd:cairo:gd"
 _PAGE_WIDTH = 700.0
 """The width of pictures on a landscape page, in points."""
-_GD_MASKS = (0xFC, 0xFE, 0xFC)
-"""The bits of red, green and blue that gd's palette keeps."""
+_COLOUR = re.compile(r'"#([0-9a-f]{6})"')
+_FILL_COLOUR = re.compile(r'(?:fillcolor|BGCOLOR|bgcolor)="#([0-9a-f]{6})"')
 
 
 def render_png(scene: Scene, name: str, graph_attributes: DotAttributes, *, quick: bool) -> bytes:
-    """Render a scene at 150 dots per inch. One that is wider than a page, and will be shown smaller, gets 110."""
+    """Render a scene at 150 dots per inch. One that is wider than a page, and will be shown smaller, gets 110.
+
+    `quick` tries gd's own palette first: worth it where there are few hues.
+    """
     left, bottom, right, top = scene.bounds()
     dpi = 150 if right - left <= _PAGE_WIDTH else 110
     # A viewport of whole pixels. 14 points are the padding at both sides (`pad`, 0.08 inch each) and a little more.
     width, height = (math.ceil((size + 14) * dpi / 72) * 72 / dpi for size in (right - left, top - bottom))
     dot = scene.to_dot(name, {**graph_attributes, "viewport": f'"{width:.4f},{height:.4f}"'}, dpi)
-    for writer in (*([_QUICK_WRITER] if quick else []), *_PNG_WRITERS[:-1]):
-        try:
-            data = layout_engine.render_dot(dot, (writer,))[0]
-        except layout_engine.LayoutError:
-            continue
-        return snap_palette(data) if writer == _QUICK_WRITER else data
-    return layout_engine.render_dot(dot, _PNG_WRITERS[-1:])[0]
+    colours, fills = (
+        frozenset(bytes.fromhex(colour) for colour in pattern.findall(dot)) for pattern in (_COLOUR, _FILL_COLOUR)
+    )
+    return (
+        (_render_quickly(dot, colours, fills) if quick else None)
+        or _render_exactly(dot, colours)
+        or _render_true_colours(dot)
+    )
 
 
-def snap_palette(data: bytes) -> bytes:
-    """Replace palette entries that are nearly one of our colours by that colour."""
-    # A PNG chunk is length, type, data, CRC of type and data. PLTE comes before the image data, so the first hit is it.
-    offset = data.find(b"PLTE")
-    if offset < 0:
-        return data
-    (length,) = struct.unpack(">I", data[offset - 4 : offset])
-    entries = data[offset + 4 : offset + 4 + length]
-    triples = (entries[each : each + 3] for each in range(0, length, 3))
-    exact_entries = b"".join(_EXACT_COLOURS.get(triple, triple) for triple in triples)
-    checksum = struct.pack(">I", zlib.crc32(b"PLTE" + exact_entries))
-    return data[: offset + 4] + exact_entries + checksum + data[offset + 8 + length :]
+def _render_quickly(dot: str, colours: frozenset[bytes], fills: frozenset[bytes]) -> bytes | None:
+    """Render with gd's palette, or return None where gd is missing or took two of the drawing's colours for one."""
+    try:
+        return png_palette.correct_palette(layout_engine.render_dot(dot, (_PALETTE_WRITER,))[0], colours, fills)
+    except layout_engine.LayoutError:
+        return None
 
 
-def _mask_colour(colour: bytes) -> bytes:
-    """Return a colour without the bits that gd's palette leaves out."""
-    return bytes(part & mask for part, mask in zip(colour, _GD_MASKS, strict=True))
+def _render_exactly(dot: str, colours: frozenset[bytes]) -> bytes | None:
+    """Render pixels and give them a palette, or return None where gd is missing or the colours are too many for one."""
+    try:
+        return png_palette.index_pixels(layout_engine.render_to_file(dot, _PIXEL_WRITER), colours)
+    except layout_engine.LayoutError:
+        return None
 
 
-_EXACT_COLOURS = {
-    _mask_colour(colour): colour for colour in (bytes.fromhex(light[1:]) for light, _ in palette.dark_pairs())
-}
+def _render_true_colours(dot: str) -> bytes:
+    try:
+        return layout_engine.render_dot(dot, (_TRUE_COLOUR_WRITER,))[0]
+    except layout_engine.LayoutError:
+        return layout_engine.render_dot(dot, (_LAST_WRITER,))[0]

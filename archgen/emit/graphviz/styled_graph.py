@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from archgen.emit.graphviz import arrow_styles, box_styles, layout_engine, palette
-from archgen.emit.graphviz.box_styles import FONT_NAME, LinkResolver
+from archgen.emit.graphviz.box_styles import LinkResolver
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.label_places import sample_line
 from archgen.emit.graphviz.layout_engine import format_attributes
-from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, DotAttributes, Scene, ScenePart, read_scene
+from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, FONT_NAME, DotAttributes, Scene, ScenePart, read_scene
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
 
