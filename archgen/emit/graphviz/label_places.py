@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from archgen.emit.graphviz.placed_scene import Rectangle, Scene, SceneLine, ScenePart, ScenePoint, rectangles_meet
@@ -12,6 +12,7 @@ _LABEL_GAP = 1.0
 _LINE_GAP = 3.0
 """How near another arrow may come to a label, in points."""
 _STEPS = 16
+_MAX_ROUNDS = 4
 
 
 def declutter_labels(scene: Scene) -> Scene:
@@ -20,30 +21,45 @@ def declutter_labels(scene: Scene) -> Scene:
     A label stands on its arrow where no other arrow passes below it, else beside it. One that finds no free place is
     left out of the picture; the arrow's tooltip and the tables still have it.
     """
-    # First come, first served: labels keep the order of their arrows, so the result does not depend on chance.
-    occupied = [part.rectangle for part in scene.parts if part.kind in {"box", "title"}]
-    line_of_label = {f"l{line.edge}": line for line in scene.lines}
     paths = {line.edge: list(sample_line(line, _STEPS)) for line in scene.lines}
-    kept_parts = []
-    for part in scene.parts:
-        if part.kind != "label":
-            kept_parts.append(part)
-            continue
-        line = line_of_label.get(part.name)
-        own_path = paths[line.edge] if line else []
+    labels = [part for part in scene.parts if part.kind == "label"]
+    order = list(labels)
+    placed: dict[str, ScenePart] = {}
+    for _ in range(_MAX_ROUNDS):
+        attempt = _place_labels(scene, order, paths)
+        if len(attempt) > len(placed) or not placed:
+            placed = attempt
+        if len(placed) == len(labels):
+            break
+        # First come, first served: those that found no place are served first in the next round.
+        order = sorted(order, key=lambda part: part.name in attempt)
+    return replace(
+        scene,
+        parts=tuple(placed.get(part.name, part) for part in scene.parts if part.kind != "label" or part.name in placed),
+    )
+
+
+def _place_labels(
+    scene: Scene, labels: Sequence[ScenePart], paths: Mapping[str, Sequence[ScenePoint]]
+) -> dict[str, ScenePart]:
+    """Place labels one after the other. Return those that found a place, by their names."""
+    occupied = [part.rectangle for part in scene.parts if part.kind in {"box", "title"}]
+    placed = {}
+    for part in labels:
+        own_path = paths.get(part.name[1:], [])
         left, bottom, right, top = _reach_of(part, own_path)
         foreign_points = [
             (x, y)
             for edge, path in paths.items()
-            if line is None or edge != line.edge
+            if edge != part.name[1:]
             for x, y in path
             if left < x < right and bottom < y < top
         ]
         spot = _find_spot(part, own_path, occupied, foreign_points)
         if spot is not None:
-            kept_parts.append(spot)
+            placed[part.name] = spot
             occupied.append(spot.rectangle)
-    return replace(scene, parts=tuple(kept_parts))
+    return placed
 
 
 def _reach_of(part: ScenePart, path: Sequence[ScenePoint]) -> Rectangle:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -259,3 +260,19 @@ def test_a_label_keeps_off_other_arrows_where_it_can() -> None:
     (placed,) = declutter_labels(Scene(lines=(_straight_line("0", 0), crossing), parts=(label,))).parts
     assert placed.y == 0
     assert abs(placed.x - 50) > 15
+
+
+def test_a_long_chain_is_wrapped_in_its_frame() -> None:
+    boxes = tuple(Box(f"b{at}", f"Component {at}", cluster="g") for at in range(10))
+    arrows = tuple(Arrow(f"a{at}", f"b{at}", f"b{at + 1}") for at in range(9))
+    graph = Graph("components", "A", "two-step", boxes, arrows, (Cluster("g", "G"),), asked=9, kind="components")
+    _, scene = graph_drawing.lay_out_graph(graph, {})
+    left, bottom, right, top = scene.bounds()
+    assert right - left < 3 * (top - bottom)
+    places = {part.name: part for part in scene.parts}
+    rows = sorted({round(part.y) for name, part in places.items() if re.fullmatch("n[0-9]", name)})
+    assert len(rows) > 1
+    # What leads to the next row stays above that row.
+    lowest = min(y for line in scene.lines for _, y in line.curve)
+    assert lowest >= min(part.rectangle[1] for part in places.values() if part.kind == "box")
+    assert list(overlapping_parts(scene)) == []
