@@ -56,6 +56,10 @@ class Box:
     side: Literal["left", "right"] | None = None
     ports_in: tuple[tuple[str, str], ...] = ()
     ports_out: tuple[tuple[str, str], ...] = ()
+    rows: tuple[tuple[str, str], ...] = ()
+    """A table below the lines: a name and what is to say of it; without the latter the name is a heading."""
+    load: tuple[float | None, str] | None = None
+    """A bar below the title: the share of 100 that is used, None where it is unknown, and its words."""
     ref: str | None = None
     tooltip: str = ""
     badge: Literal["error", "warning", "note"] | None = None

@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.emit.graphviz import palette
+from archgen.emit.graphviz.box_cards import write_card
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes
 from archgen.views.graph_shapes import Box
@@ -54,6 +55,8 @@ def style_box(box: Box, resolve_link: LinkResolver) -> DotAttributes:
     """Return the DOT attributes of a box."""
     if box.ports_in or box.ports_out:
         return {**_common_attributes(box, resolve_link), "shape": "plain", "label": _port_table(box)}
+    if box.rows or box.load:
+        return {**_common_attributes(box, resolve_link), "shape": "plain", "label": write_card(box, *box_colours(box))}
     frame, fill = box_colours(box)
     styles = [
         "filled",

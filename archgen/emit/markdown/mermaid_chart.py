@@ -66,7 +66,9 @@ def escape_mermaid(text: object) -> str:
 def _write_box(box: Box, names: dict[str, str]) -> str:
     shape = "[[]]" if box.change == "changed" and box.style not in _BOX_SHAPES else _BOX_SHAPES.get(box.style, "()")
     half = len(shape) // 2
-    text = "<br>".join(_label_text(line) for line in (box.title, *box.lines))
+    rows = [": ".join(words.replace("\n", ", ") for words in row if words) for row in box.rows]
+    load = [box.load[1]] if box.load else []
+    text = "<br>".join(_label_text(line) for line in (box.title, *box.lines, *load, *rows))
     style_class = box.change or (box.emphasis if box.emphasis != "normal" else "")
     return f'{names[box.id]}{shape[:half]}"{text}"{shape[half:]}' + (f":::{style_class}" if style_class else "")
 

@@ -30,6 +30,7 @@ from archgen.views.graphs import (
 from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
 from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.architectures import generated, robot, topics
 from tests.timings import timed
 
@@ -277,16 +278,36 @@ def test_hosts_have_containers_nodes_and_links() -> None:
     )
     graph = draw_hosts(view(architecture))
     assert text(graph) == [
-        "pc > arm: CAN [link]",
-        "link lan > pc [link]",
-        "link lan > arm [link]",
-        "link lan > eye [link]",
+        "host pc > host arm: CAN [link]",
+        "link lan > host pc [link]",
+        "link lan > host arm [link]",
+        "link lan > host eye [link]",
     ]
-    assert [(box.id, box.cluster, box.lines) for box in graph.boxes] == [
-        ("container box", "pc", ("1 thread", "b")),
-        ("a", "pc", ()),
-        ("no host", None, ()),
-        ("link lan", None, ()),
+    own = "Nodes with a process of their own"
+    assert [(box.id, box.lines, box.rows) for box in graph.boxes] == [
+        ("host pc", ("4 cores, 2 nodes",), (("Box (1 thread)", ""), ("b", "\u2013"), (own, ""), ("a", "\u2013"))),
+        ("host arm", ("4 cores, 0 nodes",), ()),
+        ("host eye", ("4 cores, 0 nodes",), ()),
+        ("no host", (), ()),
+        ("link lan", (), ()),
+    ]
+
+
+LOADED = """\
+archgen: 1
+hosts: {pc: {cores: 2}, spare: {cores: 1}}
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Empty}, timing: {rate: 10 Hz, wcet: 50 ms}}}}}
+nodes: {n_a: {implements: a, host: pc}}
+"""
+
+
+def test_a_host_has_a_bar_of_its_load(tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(LOADED)
+    architecture = pipeline.check_project(tmp_path / "robot.yaml").architecture
+    graph = draw_hosts(replace(view(architecture), timing=analyse_with_chains(architecture)))
+    assert [(box.id, box.load, box.rows) for box in graph.boxes] == [
+        ("host pc", (25.0, "load 25 %"), (("n_a", "10 Hz, up to 50 ms"),)),
+        ("host spare", None, ()),
     ]
 
 
