@@ -140,8 +140,8 @@ def _draw_link(lookup: Lookup, link: Link) -> Iterator[Arrow]:
     """Yield the arrows of a link: a line between two hosts, or a line from its own box to each of more."""
     host_ids = _linked_hosts(lookup, link)
     if len(host_ids) == 2:  # noqa: PLR2004
-        ends = [f"host {each}" for each in host_ids]
-        yield Arrow(f"link {link.id}", *ends, _link_label(link), style="link", ref=f"link:{link.id}")
+        tail, head = (f"host {each}" for each in host_ids)
+        yield Arrow(f"link {link.id}", tail, head, _link_label(link), style="link", ref=f"link:{link.id}")
     elif len(host_ids) > 2:  # noqa: PLR2004
         for end in host_ids:
             yield Arrow(f"link {link.id} {end}", f"link {link.id}", f"host {end}", style="link", ref=f"link:{link.id}")
