@@ -66,6 +66,8 @@ class Box:
     fill: PeriodStep | None = None
     """Fills the box by the period scale; frame and text distinguish what has no period."""
     change: ElementChange | None = None
+    broken: bool = False
+    """Whether a change breaks what it reads; a line says whose it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +92,8 @@ class Arrow:
     flows: tuple[str, ...] = ()
     ref: str | None = None
     change: ElementChange | None = None
+    broken: bool = False
+    """Whether a change of what runs along it breaks another partner."""
 
 
 @dataclass(frozen=True, slots=True)

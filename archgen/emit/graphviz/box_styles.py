@@ -86,6 +86,8 @@ def _has_double_frame(box: Box) -> bool:
 
 def box_colours(box: Box) -> tuple[str, str]:
     """Return the colours of a box's frame and fill."""
+    if box.broken:
+        return palette.ERROR, palette.mix_tint(palette.ERROR)
     if box.change is not None:
         return palette.CHANGES[box.change], palette.mix_tint(palette.CHANGES[box.change])
     if box.fill is not None:
@@ -114,6 +116,8 @@ def _box_margin(box: Box) -> str:
 
 
 def _pen_width(box: Box) -> str:
+    if box.broken:
+        return "2.6"
     if box.change is not None:
         return _CHANGE_PENS[box.change]
     if box.emphasis == "subject":
@@ -137,6 +141,7 @@ def _common_attributes(box: Box, resolve_link: LinkResolver) -> DotAttributes:
     classes = ["box", box.style, box.emphasis]
     classes += [box.status] if box.status else []
     classes += [f"change-{box.change}"] if box.change else []
+    classes += ["broken"] if box.broken else []
     classes += [f"hue{box.colour}"] if box.colour is not None else []
     classes += [f"pace-{box.fill.replace('_', '-')}"] if box.fill else []
     return {

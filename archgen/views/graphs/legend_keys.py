@@ -41,12 +41,12 @@ def _change_keys(graph: Graph) -> list[str]:
     """Return keys for what happened to boxes and arrows, and for arrows that are as before, where two versions are
     drawn.
     """
-    boxes = {box.change for box in graph.boxes}
-    lines = {arrow.change or "same" for arrow in graph.arrows}
+    boxes = {"broken" if box.broken else box.change for box in graph.boxes}
+    lines = {"broken" if arrow.broken else arrow.change or "same" for arrow in graph.arrows}
     if boxes == {None} and lines <= {"same"}:
         return []
-    return [f"change:{kind}" for kind in get_args(ElementChange) if kind in boxes] + [
-        f"line:{kind}" for kind in (*get_args(ElementChange), "same") if kind in lines
+    return [f"change:{kind}" for kind in ("broken", *get_args(ElementChange)) if kind in boxes] + [
+        f"line:{kind}" for kind in ("broken", *get_args(ElementChange), "same") if kind in lines
     ]
 
 
