@@ -20,9 +20,9 @@ _LIST_WIDTH = 56
 _MAX_LIST_ROWS = 14
 
 
-def fold_graph(graph: Graph) -> Graph:
+def fold_graph(graph: Graph, max_arrows: int = MAX_ARROWS) -> Graph:
     """Fold a graph until it fits the budget. One that still does not fit gets a note that says so."""
-    if _fits_budget(graph):
+    if _fits_budget(graph, max_arrows):
         return graph
     members = Counter(box.cluster for box in graph.boxes)
     # Folding a frame with a single box saves nothing.
@@ -31,18 +31,18 @@ def fold_graph(graph: Graph) -> Graph:
     folded = graph
     for cluster_ids in (neighbours, {cluster.id for cluster in foldable}):
         if cluster_ids:
-            folded = _fold_clusters(graph, cluster_ids)
-            if _fits_budget(folded):
+            folded = _fold_clusters(graph, cluster_ids, max_arrows)
+            if _fits_budget(folded, max_arrows):
                 return folded
-    note = f"This picture is larger than {MAX_BOXES} boxes and {MAX_ARROWS} arrows: select a part to see it well."
+    note = f"This picture is larger than {MAX_BOXES} boxes and {max_arrows} arrows: select a part to see it well."
     return replace(folded, notes=(*folded.notes, note))
 
 
-def _fits_budget(graph: Graph) -> bool:
-    return len(graph.boxes) <= MAX_BOXES and len(graph.arrows) <= MAX_ARROWS
+def _fits_budget(graph: Graph, max_arrows: int) -> bool:
+    return len(graph.boxes) <= MAX_BOXES and len(graph.arrows) <= max_arrows
 
 
-def _fold_clusters(graph: Graph, cluster_ids: set[str]) -> Graph:
+def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Graph:
     drawn_ids = {box.id: box.cluster if box.cluster in cluster_ids else box.id for box in graph.boxes}
     drawn_ids |= {cluster.id: cluster.id for cluster in graph.clusters}
     outer_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] != drawn_ids[arrow.head]]
@@ -60,7 +60,7 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str]) -> Graph:
     folded_words = "Each group of neighbours" if kinds == {True} else "Each group"
     note = (
         f"{folded_words} is one box that lists what is in it, because the picture would be larger than {MAX_BOXES} boxes "
-        f"and {MAX_ARROWS} arrows; {count_noun(sum(flows_within.values()), 'flow')} inside not drawn."
+        f"and {max_arrows} arrows; {count_noun(sum(flows_within.values()), 'flow')} inside not drawn."
     )
     folded_graph = replace(
         graph,

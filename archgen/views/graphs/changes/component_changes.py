@@ -139,6 +139,8 @@ def _connection_lines(comparison: Comparison, change_notes: ChangeNotes) -> Iter
     broken_readers = BrokenReaders(comparison)
 
     def make_line(edge: MergedEdge, change: ElementChange | None, sentences: tuple[str, ...]) -> ConnectionLine:
+        if change == "added":  # what is new gives instead of what was lost
+            return _connection_line(edge, change, sentences)
         old_input_id = comparison.matched_ids.old_ids.get("input", {}).get(edge.input_id, edge.input_id)
         return replace(
             _connection_line(edge, change, sentences), broken_partners=broken_readers.find_partners(edge, old_input_id)
