@@ -93,7 +93,7 @@ def test_all_formats_have_the_same_sections_in_the_same_order(read_sides: ReadSi
     document, texts = describe(read_sides(old, new))
     assert [group.kind for group in document.finding_groups] == ["new", "silenced", "cured"]
     for form in FORMS:
-        name = "Old one" if form == "page" else "old_one"
+        name = "Old One" if form == "page" else "old_one"
         headings = ["Breaking changes", name, "Latency of chains", "New findings", "Silenced findings"]
         headings.append("cured finding" if form == "markdown" else "Cured findings")
         start = texts[form].index("Breaking changes")
