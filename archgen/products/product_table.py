@@ -108,7 +108,8 @@ def _start_packed(inputs: ProductInputs) -> FinishProduct:
 # A PNG for programs that know no SVG; an SVG with text as outlines, since the reader's Word may lack the font.
 REPORT = Product("report", "report.docx", _start_report, ("png", "svg_outlines"))
 SITE = Product("site", "site", _start_site, ("svg",), entry_file="index.html")
-DIAGRAMS = make_diagrams_product(("svg", "png"))
+# No PNG: the report has its own, and who wants files asks `archgen diagram` for them.
+DIAGRAMS = make_diagrams_product(("svg",))
 PACKED = Product("packed", "packed.yaml", _start_packed)
 
 PRODUCTS: Mapping[str, Product] = {product.name: product for product in (REPORT, SITE, DIAGRAMS, PACKED)}
