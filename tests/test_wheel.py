@@ -81,6 +81,7 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
     licences = {
         "LICENSE",
         "archgen/emit/fonts/LICENSE.DejaVu",
+        "archgen/emit/fonts/LICENSE.Inter",
         "backends/site/assets/fonts/LICENSE-Inter.txt",
         "backends/site/assets/search/LICENSE-uFuzzy.txt",
     }

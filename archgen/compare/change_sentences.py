@@ -20,6 +20,8 @@ from archgen.transform import ros_names
 
 SURE_CONFIDENCE = 0.85
 """From here on a rename is stated without its confidence."""
+READERS_LEAD = "it is read by"
+"""Begins the part of a sentence that names who reads what changed; other views say that in their own way."""
 
 
 def note_confidence(confidence: float) -> str:
@@ -132,7 +134,7 @@ def _describe_carriers(change: Change, versions: VersionPair) -> str:
         return f"it carries {tick_names(types)}" if types else describe_outer_messages(element_id, versions)
     if change.element_kind == "output" and change.key == "type":
         readers = sorted(versions.connections_after.readers_by_output.get(element_id, frozenset()))
-        return f"it is read by {tick_names(readers)}" if readers else ""
+        return f"{READERS_LEAD} {tick_names(readers)}" if readers else ""
     if change.element_kind == "type" and change.key in {"message", "size", "comment"}:
         outputs = versions.find_elements_with("output", "type", element_id)
         carrier_note = f"{tick_names(outputs)} {'carry' if len(outputs) > 1 else 'carries'} it" if outputs else ""

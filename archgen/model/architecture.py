@@ -176,11 +176,11 @@ class Architecture:
     """The complete ids of the elements that unresolved references most likely mean (the guess, or the candidates). No
     rule reports these as unused: the reference is reported already."""
 
-    def message_of(self, output: Output) -> str | None:
-        """Return the message that an output's type is mapped to; None if unknown, or if the output is physical."""
-        if output.type is None or output.physical:
+    def message_of(self, port: Input | Output) -> str | None:
+        """Return the message that a port's type is mapped to; None if unknown, or if the port is physical."""
+        if port.type is None or port.physical:
             return None
-        mapped = self.types.get(output.type)
+        mapped = self.types.get(port.type)
         return mapped.message if mapped else None
 
     def nodes_using(self, resource_id: str) -> Iterator[Node]:

@@ -119,7 +119,8 @@ REPORT = Product(
 SITE = Product(
     "site", "site", _start_site, ("svg",), entry_file="index.html", list_drawings=lambda inputs: inputs.site_drawings
 )
-DIAGRAMS = make_diagrams_product(("svg", "png"))
+# No PNG: the report has its own, and who wants files asks `archgen diagram` for them.
+DIAGRAMS = make_diagrams_product(("svg",))
 PACKED = Product("packed", "packed.yaml", _start_packed)
 
 PRODUCTS: Mapping[str, Product] = {product.name: product for product in (REPORT, SITE, DIAGRAMS, PACKED)}

@@ -56,12 +56,18 @@ class Box:
     side: Literal["left", "right"] | None = None
     ports_in: tuple[tuple[str, str], ...] = ()
     ports_out: tuple[tuple[str, str], ...] = ()
+    rows: tuple[tuple[str, str], ...] = ()
+    """A table below the lines: a name and what is to say of it; without the latter the name is a heading."""
+    load: tuple[float | None, str] | None = None
+    """A bar below the title: the share of 100 that is used, None where it is unknown, and its words."""
     ref: str | None = None
     tooltip: str = ""
     badge: Literal["error", "warning", "note"] | None = None
     fill: PeriodStep | None = None
     """Fills the box by the period scale; frame and text distinguish what has no period."""
     change: ElementChange | None = None
+    broken: bool = False
+    """Whether a change breaks what it reads; a line says whose it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +92,8 @@ class Arrow:
     flows: tuple[str, ...] = ()
     ref: str | None = None
     change: ElementChange | None = None
+    broken: bool = False
+    """Whether a change of what runs along it breaks another partner."""
 
 
 @dataclass(frozen=True, slots=True)

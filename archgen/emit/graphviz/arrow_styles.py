@@ -9,7 +9,8 @@
 | internal | dotted |
 | link | thick, without head |
 
-Where two versions are drawn: what is added is thick, what is removed dashed, what changed a double line.
+Where two versions are drawn: what is added is thick, what is removed dashed, what changed a double line, what breaks
+another partner heavy and red.
 
 An arrow that stands for several flows is wider: 1, 2 to 3, 4 and more flows are 1, 2 and 3.2 points.
 """
@@ -17,9 +18,9 @@ An arrow that stands for several flows is wider: 1, 2 to 3, 4 and more flows are
 from __future__ import annotations
 
 from archgen.emit.graphviz import palette
-from archgen.emit.graphviz.box_styles import FONT_NAME, LinkResolver, link_attributes
+from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
-from archgen.emit.graphviz.placed_scene import DotAttributes
+from archgen.emit.graphviz.placed_scene import FONT_NAME, DotAttributes
 from archgen.views.graph_shapes import Arrow
 
 PEN_WIDTHS = ((4, "3.2"), (2, "2"), (1, "1"))
@@ -39,6 +40,7 @@ def style_arrow(arrow: Arrow, resolve_link: LinkResolver, *, merged: bool = Fals
         arrow.style,
         *(["faded"] if arrow.faded else []),
         *([f"change-{arrow.change}"] if arrow.change else []),
+        *(["broken"] if arrow.broken else []),
     ]
     attributes = {
         "class": quote_value(" ".join(classes)),
@@ -51,10 +53,16 @@ def style_arrow(arrow: Arrow, resolve_link: LinkResolver, *, merged: bool = Fals
     if merged:
         # Graphviz scales heads with the pen: wider lines need a smaller factor for heads of about the same size.
         attributes["arrowsize"] = {"1": "0.7", "2": "0.6", "3.2": "0.5"}[pen_width(arrow.count)]
+    if arrow.broken:
+        # Red and heavy, with the head of what runs along it; dashed where it is gone.
+        line = "dashed" if arrow.change == "removed" else "solid"
+        return {**attributes, "style": f'"{line}"', "color": f'"{colour}"', "penwidth": "2.6", "arrowsize": "0.5"}
     return {**attributes, **_change_attributes(arrow, colour)} if arrow.change else attributes
 
 
 def _arrow_colour(arrow: Arrow) -> str:
+    if arrow.broken:
+        return palette.ERROR
     if arrow.change is not None:
         return palette.CHANGES[arrow.change]
     return palette.FADED if arrow.faded else palette.EDGE if arrow.colour is None else palette.hue_colour(arrow.colour)
@@ -104,6 +112,7 @@ def style_label(
         palette.MUTED if arrow.faded else palette.hue_colour(arrow.colour) if arrow.colour is not None else palette.TEXT
     )
     text_colour = palette.CHANGES[arrow.change] if arrow.change else text_colour
+    text_colour = palette.ERROR if arrow.broken else text_colour
     rows = "<BR/>".join(escape_label(row) for line in text.split("\n") for row in wrap_text(line, line_width, 3))
     return {
         "shape": '"box"',

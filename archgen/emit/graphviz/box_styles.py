@@ -22,13 +22,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.emit.graphviz import palette
+from archgen.emit.graphviz.box_cards import write_card
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes
 from archgen.views.graph_shapes import Box
 
 LinkResolver = Callable[[str], str | None]
 
-FONT_NAME = "DejaVu Sans"
 _BOX_SHAPES = {
     "reactive": "octagon",
     "node": "ellipse",
@@ -44,7 +44,7 @@ _TITLE_WIDTHS = {
     "service": 30,
     "action": 30,
     "group": 22,
-    "fold": 22,
+    "fold": 42,
     "host": 26,
     "container": 30,
     "node": 20,
@@ -55,6 +55,8 @@ def style_box(box: Box, resolve_link: LinkResolver) -> DotAttributes:
     """Return the DOT attributes of a box."""
     if box.ports_in or box.ports_out:
         return {**_common_attributes(box, resolve_link), "shape": "plain", "label": _port_table(box)}
+    if box.rows or box.load:
+        return {**_common_attributes(box, resolve_link), "shape": "plain", "label": write_card(box, *box_colours(box))}
     frame, fill = box_colours(box)
     styles = [
         "filled",
@@ -84,6 +86,8 @@ def _has_double_frame(box: Box) -> bool:
 
 def box_colours(box: Box) -> tuple[str, str]:
     """Return the colours of a box's frame and fill."""
+    if box.broken:
+        return palette.ERROR, palette.mix_tint(palette.ERROR)
     if box.change is not None:
         return palette.CHANGES[box.change], palette.mix_tint(palette.CHANGES[box.change])
     if box.fill is not None:
@@ -112,6 +116,8 @@ def _box_margin(box: Box) -> str:
 
 
 def _pen_width(box: Box) -> str:
+    if box.broken:
+        return "2.6"
     if box.change is not None:
         return _CHANGE_PENS[box.change]
     if box.emphasis == "subject":
@@ -135,6 +141,7 @@ def _common_attributes(box: Box, resolve_link: LinkResolver) -> DotAttributes:
     classes = ["box", box.style, box.emphasis]
     classes += [box.status] if box.status else []
     classes += [f"change-{box.change}"] if box.change else []
+    classes += ["broken"] if box.broken else []
     classes += [f"hue{box.colour}"] if box.colour is not None else []
     classes += [f"pace-{box.fill.replace('_', '-')}"] if box.fill else []
     return {
@@ -157,14 +164,14 @@ def _label_html(box: Box) -> str:
     detail_colour = palette.MUTED if text_colour == palette.TEXT else text_colour
     width = _TITLE_WIDTHS.get(box.style, 18)
     bold = box.emphasis == "subject" or box.style in {"group", "fold", "host"}
-    title = "<BR/>".join(
-        f"<B>{escape_label(row)}</B>" if bold else escape_label(row) for row in wrap_text(box.title, width)
-    )
-    rows = [f'<FONT COLOR="{text_colour}">{title}</FONT>']
+    titles = [f"<B>{escape_label(row)}</B>" if bold else escape_label(row) for row in wrap_text(box.title, width)]
+    rows = [f'<TR><TD HEIGHT="11"><FONT COLOR="{text_colour}">{row}</FONT></TD></TR>' for row in titles]
     rows += [
-        f'<FONT POINT-SIZE="7.5" COLOR="{detail_colour}">{small_text}</FONT>' for small_text in _detail_rows(box, width)
+        f'<TR><TD HEIGHT="10"><FONT POINT-SIZE="8" COLOR="{detail_colour}">{row}</FONT></TD></TR>'
+        for row in _detail_rows(box, width)
     ]
-    return "<BR/>".join(rows)
+    # As rows of a table: Graphviz sets lines of two fonts solid, so that descenders touch the next line.
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="0">{"".join(rows)}</TABLE>'
 
 
 def _detail_rows(box: Box, width: int) -> list[str]:
@@ -187,11 +194,16 @@ def _port_table(box: Box) -> str:
 
 
 def _write_table_title(box: Box) -> str:
-    title = "<BR/>".join(escape_label(row) for row in wrap_text(box.title, 28))
-    detail_rows = "".join(
-        f'<BR/><FONT POINT-SIZE="8" COLOR="{palette.MUTED}">{row}</FONT>' for row in _detail_rows(box, 34)
-    )
-    return f'<FONT POINT-SIZE="11" COLOR="{palette.TEXT}"><B>{title}</B></FONT>{detail_rows}'
+    titles = [escape_label(row) for row in wrap_text(box.title, 28)]
+    rows = [
+        f'<TR><TD HEIGHT="13"><FONT POINT-SIZE="11" COLOR="{palette.TEXT}"><B>{row}</B></FONT></TD></TR>'
+        for row in titles
+    ]
+    rows += [
+        f'<TR><TD HEIGHT="10"><FONT POINT-SIZE="8" COLOR="{palette.MUTED}">{row}</FONT></TD></TR>'
+        for row in _detail_rows(box, 34)
+    ]
+    return f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="0">{"".join(rows)}</TABLE>'
 
 
 def _write_port_row(box: Box, index: int) -> str:

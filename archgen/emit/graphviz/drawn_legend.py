@@ -30,6 +30,9 @@ _BOX_SAMPLES: dict[str, tuple[Box, str]] = {
     "planned": (Box("", "", status="planned"), "planned"),
     "adapted": (Box("", "", status="adapted"), "adapted"),
     "fold": (Box("", "", style="fold"), "stands for several"),
+    "badge:error": (Box("", "", badge="error"), "has an error (E)"),
+    "badge:warning": (Box("", "", badge="warning"), "has a warning (W)"),
+    "badge:note": (Box("", "", badge="note"), "has a note (N)"),
 }
 _PERIOD_WORDS: dict[PeriodStep, str] = {
     "to_10_ms": "period up to 10 ms",
@@ -45,6 +48,7 @@ _PERIOD_WORDS: dict[PeriodStep, str] = {
 }
 _BOX_SAMPLES |= {f"pace:{pace}": (Box("", "", fill=pace), words) for pace, words in _PERIOD_WORDS.items()}
 _BOX_SAMPLES |= {
+    "change:broken": (Box("", "", broken=True), "! a change breaks what it reads"),
     "change:added": (Box("", "", change="added"), "+ added"),
     "change:removed": (Box("", "", change="removed"), "\u2212 removed"),
     "change:changed": (Box("", "", change="changed"), "~ changed"),
@@ -58,6 +62,7 @@ _ARROW_SAMPLES: dict[str, tuple[Arrow, str]] = {
     "action": (Arrow("", "", "", style="action"), "action, from client to server"),
     "internal": (Arrow("", "", "", style="internal"), "inside one component"),
     "link": (Arrow("", "", "", style="link"), "network link"),
+    "line:broken": (Arrow("", "", "", change="changed", broken=True), "! breaks another partner"),
     "line:added": (Arrow("", "", "", change="added"), "+ connection added"),
     "line:removed": (Arrow("", "", "", change="removed"), "\u2212 connection removed"),
     "line:changed": (Arrow("", "", "", change="changed"), "~ something else flows"),

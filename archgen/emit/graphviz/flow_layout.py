@@ -8,6 +8,7 @@ from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.label_places import declutter_labels, sample_line
 from archgen.emit.graphviz.layout_engine import format_attributes
 from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, ScenePart
+from archgen.emit.graphviz.rank_wrapping import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
     frame_attributes,
@@ -20,6 +21,8 @@ from archgen.emit.graphviz.styled_graph import (
 from archgen.views.graph_shapes import Box, Cluster
 
 _FRAME_MARGIN = 12.0
+_WIDEST_FRAME = 800.0
+"""The widest frame whose boxes are not wrapped, in points: about a landscape page."""
 
 
 def lay_out_flow(styled_graph: StyledGraph) -> Scene:
@@ -42,17 +45,54 @@ def lay_out_group(styled_graph: StyledGraph) -> Scene:
     graph = styled_graph.graph
     cluster = graph.clusters[0]
     inside_boxes = [item for item in graph.boxes if item.cluster == cluster.id]
-    statements = (
-        [styled_graph.write_node(item) for item in graph.boxes]
-        + _rank_statements(styled_graph)
-        + _hold_neighbours_outside(styled_graph, inside_boxes)
-    )
-    statements += [styled_graph.write_edge(at, item) for at, item in enumerate(graph.arrows)]
-    scene = read_layout(
+    inside_names = {styled_graph.dot_names[item.id] for item in inside_boxes}
+
+    def finish(scene: Scene) -> Scene:
+        framed_scene = _draw_frame(styled_graph, cluster, scene, inside_names)
+        return declutter_labels(place_labels_on_lines(styled_graph, framed_scene))
+
+    scene = _lay_out_framed_boxes(styled_graph, inside_boxes)
+    finished_scene = finish(scene)
+    if graph.direction != "top-bottom" and (wrapped := _wrap_wide_frame(scene, inside_names)):
+        rows = _lay_out_framed_boxes(styled_graph, inside_boxes, wrapped)
+        wrapped_scene = finish(route_between_rows(rows, wrapped))
+        # dot loses a line now and then where many run back, and a label may find no place.
+        if _count_contents(wrapped_scene) >= _count_contents(finished_scene):
+            return wrapped_scene
+    return finished_scene
+
+
+def _count_contents(scene: Scene) -> tuple[int, int]:
+    return len(scene.lines), len(scene.parts)
+
+
+def _lay_out_framed_boxes(
+    styled_graph: StyledGraph, inside_boxes: list[Box], wrapped: WrappedRanks | None = None
+) -> Scene:
+    """Lay out the boxes of a frame and their neighbours, the former in these rows."""
+    graph, names = styled_graph.graph, styled_graph.dot_names
+    statements = [styled_graph.write_node(item) for item in graph.boxes] + _rank_statements(styled_graph)
+    statements += _hold_neighbours_outside(styled_graph, inside_boxes)
+    statements += wrapped.write_statements() if wrapped else []
+    statements += [
+        styled_graph.write_edge(
+            at, item, is_free=wrapped is not None and wrapped.leaves_row(names[item.tail], names[item.head])
+        )
+        for at, item in enumerate(graph.arrows)
+    ]
+    return read_layout(
         styled_graph, layout_engine.lay_out_dot(write_dot(_layout_settings(styled_graph, 0.16), statements))
     )
-    framed_scene = _draw_frame(styled_graph, cluster, scene, {styled_graph.dot_names[item.id] for item in inside_boxes})
-    return declutter_labels(place_labels_on_lines(styled_graph, framed_scene))
+
+
+def _wrap_wide_frame(scene: Scene, inside_names: set[str]) -> WrappedRanks | None:
+    """Wrap the boxes of a frame that is wider than a page, and wider than high."""
+    boxes = [part.rectangle for part in scene.parts if part.name in inside_names]
+    width, height = (
+        (max(box[at + 2] for box in boxes) - min(box[at] for box in boxes) for at in (0, 1)) if boxes else (0, 0)
+    )
+    row_count = math.ceil(width / _WIDEST_FRAME) if width > _WIDEST_FRAME and width > height else 1
+    return wrap_ranks(scene, sorted(inside_names), row_count)
 
 
 def _layout_settings(styled_graph: StyledGraph, nodesep: float) -> str:

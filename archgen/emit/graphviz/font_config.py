@@ -1,4 +1,4 @@
-"""Configure the font of all pictures: it ships with archgen, so that text has the same width on every machine."""
+"""Configure the fonts of all pictures: they ship with archgen, so that text has the same width on every machine."""
 
 from __future__ import annotations
 
@@ -7,19 +7,23 @@ from html import escape
 from pathlib import Path
 
 FONT_FOLDER = Path(__file__).resolve().parent.parent / "fonts"
-"""The folder with DejaVu Sans and its licence."""
+"""The folder with Inter and DejaVu Sans, and their licences."""
 
 _CONFIG_TEMPLATE = """<?xml version="1.0"?>
 <!DOCTYPE fontconfig SYSTEM "urn:fontconfig:fonts.dtd">
 <fontconfig>
   <dir>{fonts}</dir>
   <cachedir>{cache}</cachedir>
+  <match target="font">
+    <edit name="hinting" mode="assign"><bool>false</bool></edit>
+    <edit name="hintstyle" mode="assign"><const>hintnone</const></edit>
+  </match>
 </fontconfig>
 """
 
 
 def write_font_config(folder: Path) -> Path:
-    """Write a fontconfig file that knows this font and no other. Return its path.
+    """Write a fontconfig file that knows these fonts and no other. Return its path.
 
     It refers to a copy: some versions of fontconfig leave a file of theirs beside the fonts that they read.
     """

@@ -7,11 +7,14 @@ from collections.abc import Iterable, Sequence
 
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
+from archgen.emit.graphviz.rank_wrapping import route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import StyledGraph, measure_nodes, read_layout, write_dot
 from archgen.model.graph_search import find_strong_components
 from archgen.views.graph_shapes import Arrow, Box
 
 _PIECE_GAP = 12.0
+_WRAPPED_ASPECT = 3.0
+"""How many times as wide as high a part may be before it is wrapped."""
 NumberedArrow = tuple[int, Arrow]
 
 
@@ -56,21 +59,35 @@ def _connected_parts(boxes: Sequence[Box], arrows: Sequence[NumberedArrow]) -> l
 
 
 def _lay_out_part(styled_graph: StyledGraph, boxes: Sequence[Box], arrows: Sequence[NumberedArrow]) -> Scene:
-    names = {box.id for box in boxes}
+    names = {box.id: None for box in boxes}
     # A single box needs no layout, and Graphviz is what takes the time.
     if len(names) == 1 and not any(arrow.tail in names and arrow.head in names for _, arrow in arrows):
         name = styled_graph.dot_names[boxes[0].id]
         ((width, height),) = measure_nodes([styled_graph.box_attributes[name]])
         return Scene(parts=(ScenePart(name, styled_graph.box_attributes[name], width / 2, height / 2, width, height),))
     direction = "TB" if styled_graph.graph.direction == "top-bottom" else "LR"
-    statements = [styled_graph.write_node(box) for box in boxes]
-    statements += [
-        styled_graph.write_edge(at, arrow, with_text=False)
-        for at, arrow in arrows
-        if arrow.tail in names and arrow.head in names
-    ]
+    nodes = [styled_graph.write_node(box) for box in boxes]
+    inner_arrows = [(at, arrow) for at, arrow in arrows if arrow.tail in names and arrow.head in names]
+    edges = [styled_graph.write_edge(at, arrow, with_text=False) for at, arrow in inner_arrows]
     settings = f'rankdir="{direction}" nodesep="0.12" ranksep="0.3"'
-    return read_layout(styled_graph, layout_engine.lay_out_dot(write_dot(settings, statements)))
+    scene = read_layout(styled_graph, layout_engine.lay_out_dot(write_dot(settings, [*nodes, *edges])))
+    dot_names = styled_graph.dot_names
+    left, bottom, right, top = scene.bounds()
+    row_count = math.floor(math.sqrt((right - left) / (_WRAPPED_ASPECT * (top - bottom)))) if direction == "LR" else 1
+    wrapped = wrap_ranks(scene, [dot_names[name] for name in names], row_count)
+    if wrapped is None:
+        return scene
+    edges = [
+        styled_graph.write_edge(
+            at, arrow, with_text=False, is_free=wrapped.leaves_row(dot_names[arrow.tail], dot_names[arrow.head])
+        )
+        for at, arrow in inner_arrows
+    ]
+    statements = [*nodes, *wrapped.write_statements(), *edges]
+    settings = 'rankdir="LR" nodesep="0.22" ranksep="0.3"'
+    rows = read_layout(styled_graph, layout_engine.lay_out_dot(write_dot(settings, statements)))
+    # dot loses a line now and then where many run back.
+    return route_between_rows(rows, wrapped) if len(rows.lines) == len(scene.lines) else scene
 
 
 def _split_into_rows(widths: Sequence[float], row_width: float) -> tuple[tuple[int, ...], ...]:

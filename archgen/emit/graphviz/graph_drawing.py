@@ -11,7 +11,7 @@ from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
-from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, find_drawn_edges, number_surfaces
+from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, clean_outlines, find_drawn_edges
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Chart, Drawing
 from archgen.views.graph_shapes import Graph
@@ -102,7 +102,7 @@ def render_picture(
         dot=dot,
         warning=warning,
         **{
-            form: number_surfaces(data) if form == "svg_outlines" else data
+            form: clean_outlines(data) if form == "svg_outlines" else data
             for form, data in zip(vector_formats, vector_data, strict=True)
         },
     )

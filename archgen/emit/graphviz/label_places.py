@@ -1,57 +1,111 @@
-"""Find places for labels: none may touch a box, a title or another label."""
+"""Find places for labels: on their own arrows, touching no box, title, other label or foreign arrow."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from archgen.emit.graphviz.placed_scene import Rectangle, Scene, SceneLine, ScenePart, ScenePoint, rectangles_meet
 
 _LABEL_GAP = 1.0
+_LINE_GAP = 3.0
+"""How near another arrow may come to a label, in points."""
+_STEPS = 16
+_MAX_ROUNDS = 4
 
 
 def declutter_labels(scene: Scene) -> Scene:
-    """Move each label that touches something along its arrow, to the nearest free place.
+    """Move labels so that none touches a box, a title or another label, and each is seen to belong to its own arrow.
 
-    A label that finds none is left out of the picture; the arrow's tooltip and the tables still have it.
+    A label stands on its arrow where no other arrow passes below it, else beside it. One that finds no free place is
+    left out of the picture; the arrow's tooltip and the tables still have it.
     """
-    # First come, first served: labels keep the order of their arrows, so the result does not depend on chance.
+    paths = {line.edge: list(sample_line(line, _STEPS)) for line in scene.lines}
+    labels = [part for part in scene.parts if part.kind == "label"]
+    order = list(labels)
+    placed: dict[str, ScenePart] = {}
+    for _ in range(_MAX_ROUNDS):
+        attempt = _place_labels(scene, order, paths)
+        if len(attempt) > len(placed) or not placed:
+            placed = attempt
+        if len(placed) == len(labels):
+            break
+        # First come, first served: those that found no place are served first in the next round.
+        order = sorted(order, key=lambda part: part.name in attempt)
+    return replace(
+        scene,
+        parts=tuple(placed.get(part.name, part) for part in scene.parts if part.kind != "label" or part.name in placed),
+    )
+
+
+def _place_labels(
+    scene: Scene, labels: Sequence[ScenePart], paths: Mapping[str, Sequence[ScenePoint]]
+) -> dict[str, ScenePart]:
+    """Place labels one after the other. Return those that found a place, by their names."""
     occupied = [part.rectangle for part in scene.parts if part.kind in {"box", "title"}]
-    line_of_label = {f"l{edge}": line for edge, line in _lines_by_edge(scene)}
-    kept_parts = []
-    for part in scene.parts:
-        if part.kind != "label":
-            kept_parts.append(part)
-            continue
-        spot = next((at for at in _candidate_spots(part, line_of_label.get(part.name)) if _is_free(at, occupied)), None)
+    placed = {}
+    for part in labels:
+        own_path = paths.get(part.name[1:], [])
+        left, bottom, right, top = _reach_of(part, own_path)
+        foreign_points = [
+            (x, y)
+            for edge, path in paths.items()
+            if edge != part.name[1:]
+            for x, y in path
+            if left < x < right and bottom < y < top
+        ]
+        spot = _find_spot(part, own_path, occupied, foreign_points)
         if spot is not None:
-            kept_parts.append(spot)
+            placed[part.name] = spot
             occupied.append(spot.rectangle)
-    return replace(scene, parts=tuple(kept_parts))
+    return placed
 
 
-def _lines_by_edge(scene: Scene) -> Iterator[tuple[str, SceneLine]]:
-    for line in scene.lines:
-        yield line.edge, line
+def _reach_of(part: ScenePart, path: Sequence[ScenePoint]) -> Rectangle:
+    """Return the rectangle round all places where a label may stand."""
+    xs, ys = [part.x, *(x for x, _ in path)], [part.y, *(y for _, y in path)]
+    aside = part.width / 2 + _LINE_GAP, 2 * part.height + _LINE_GAP
+    return (min(xs) - aside[0], min(ys) - aside[1], max(xs) + aside[0], max(ys) + aside[1])
+
+
+def _find_spot(
+    part: ScenePart, path: Sequence[ScenePoint], occupied: list[Rectangle], foreign_points: Sequence[ScenePoint]
+) -> ScenePart | None:
+    """Return the label at the nearest free place on its arrow with no other arrow near, else at the free place with the
+    fewest points of other arrows below it.
+    """
+    reach = part.width + part.height
+    best, fewest = None, math.inf
+    for spot in _candidate_spots(part, path):
+        if not _is_free(spot, occupied):
+            continue
+        foreign = sum(
+            abs(x - spot.x) < spot.width / 2 + _LINE_GAP and abs(y - spot.y) < spot.height / 2 + _LINE_GAP
+            for x, y in foreign_points
+        )
+        # A place that is far from where the layout put the label may be beside another box: near ones come first.
+        cost = foreign + (math.dist((spot.x, spot.y), (part.x, part.y)) / reach) * 0.01
+        if foreign == 0:
+            return spot
+        if cost < fewest:
+            best, fewest = spot, cost
+    return best
 
 
 def _is_free(part: ScenePart, occupied: list[Rectangle]) -> bool:
     return not any(rectangles_meet(part.rectangle, other, _LABEL_GAP) for other in occupied)
 
 
-def _candidate_spots(part: ScenePart, line: SceneLine | None) -> Iterator[ScenePart]:
-    """Yield the label where it is, then at all places on and beside its arrow, the nearest first."""
-    yield part
-    if line is None:
-        return
-    # On the line, close above and below it, and one more label's height away.
-    sides = (0.0, part.height * 0.6, -part.height * 0.6, part.height * 1.4, -part.height * 1.4)
-    points = list(sample_line(line))
-    points_beside = [(x, y + side) for x, y in points for side in sides]
+def _candidate_spots(part: ScenePart, path: Sequence[ScenePoint]) -> Iterator[ScenePart]:
+    """Yield all places of a label: on its arrow, the nearest first, then where it is, then beside its arrow."""
     # The point itself breaks ties, so that every machine takes the same place.
-    points_beside.sort(key=lambda spot: (abs(spot[0] - part.x) + abs(spot[1] - part.y), spot))
-    for x, y in points_beside:
-        yield replace(part, x=x, y=y)
+    points = sorted(path, key=lambda spot: (abs(spot[0] - part.x) + abs(spot[1] - part.y), spot))
+    yield from (replace(part, x=x, y=y) for x, y in points)
+    yield part
+    # Close above and below the arrow, and one more label's height away.
+    for side in (part.height * 0.6, -part.height * 0.6, part.height * 1.4, -part.height * 1.4):
+        yield from (replace(part, x=x, y=y + side) for x, y in points)
 
 
 def sample_line(line: SceneLine, steps: int = 8) -> Iterator[ScenePoint]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tempfile
 from collections.abc import Sequence
 from typing import Any
 
@@ -40,6 +41,26 @@ def render_dot(dot: str, formats: Sequence[str], program: str = "nop2") -> tuple
     finally:
         graph.close()
     return rendered
+
+
+def render_to_file(dot: str, format_name: str, program: str = "nop2") -> bytes:
+    """Render a DOT graph in a format that Graphviz writes to files only: gd's, of plain pixels."""
+    graph = AGraph(string=dot)
+    try:
+        if library.gvLayout(_GRAPHVIZ_CONTEXT, graph.handle, program.encode()):
+            message = f"{program} gave up"
+            raise LayoutError(message)
+        with tempfile.TemporaryFile() as file:
+            # Graphviz writes through a stream of C's: what this file object holds back would be lost.
+            failed = library.gvRender(_GRAPHVIZ_CONTEXT, graph.handle, format_name.encode(), file)
+            data = b"" if failed else (file.seek(0), file.read())[1]
+        library.gvFreeLayout(_GRAPHVIZ_CONTEXT, graph.handle)
+    finally:
+        graph.close()
+    if not data:
+        message = f"no {format_name} came out"
+        raise LayoutError(message)
+    return data
 
 
 def _render_format(graph: AGraph, format_name: str) -> bytes:

@@ -21,8 +21,10 @@ ScenePoint = tuple[float, float]
 Rectangle = tuple[float, float, float, float]
 """Left, bottom, right, top; in points."""
 
+FONT_NAME = "Inter,DejaVu Sans,sans-serif"
+"""Inter as in the site; DejaVu Sans has the letters and signs that it lacks. Both ship with archgen."""
 DOT_DEFAULTS = (
-    'node [fontname="DejaVu Sans" fontsize="9" fontcolor="#1b2127"]; edge [fontname="DejaVu Sans" fontsize="8"];'
+    f'node [fontname="{FONT_NAME}" fontsize="9" fontcolor="#1b2127"]; edge [fontname="{FONT_NAME}" fontsize="8"];'
 )
 _SPLINE_POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?[0-9.]+(?:e[-+]?[0-9]+)?)")
 

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from archgen.emit.graphviz import arrow_styles, box_styles, layout_engine, palette
-from archgen.emit.graphviz.box_styles import FONT_NAME, LinkResolver
+from archgen.emit.graphviz.box_styles import LinkResolver
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.label_places import sample_line
 from archgen.emit.graphviz.layout_engine import format_attributes
-from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, DotAttributes, Scene, ScenePart, read_scene
+from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, FONT_NAME, DotAttributes, Scene, ScenePart, read_scene
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
 
@@ -38,9 +38,9 @@ class StyledGraph:
         name = self.dot_names[box.id]
         return f"{name} [{format_attributes(self.box_attributes[name])}];"
 
-    def write_edge(self, index: int, arrow: Arrow, *, with_text: bool = True) -> str:
+    def write_edge(self, index: int, arrow: Arrow, *, with_text: bool = True, is_free: bool = False) -> str:
         """Return an arrow as a DOT statement, with its text if the layout shall find room for it. A number is set on
-        the line.
+        the line. With `is_free` it may run in any direction.
         """
         # A number needs no room of its own: it is placed on the line afterwards, and the layout stays denser.
         with_text = with_text and not arrow.label.isdigit()
@@ -57,6 +57,7 @@ class StyledGraph:
             else ""
         )
         line_attributes = {name: attributes[name] for name in _LAYOUT_ATTRIBUTES if name in attributes}
+        line_attributes |= {"constraint": '"false"'} if is_free else {}
         return f'{" -> ".join(endpoints)} [id="e{index}"{label} {format_attributes(line_attributes)}];'
 
     def _write_port(self, box_id: str, port_name: str | None) -> str:

@@ -21,7 +21,7 @@ _GROUP = re.compile(r'(<g id="[^"]*" class="(?:node|edge|cluster)[^"]*">\n)<titl
 _LINK = re.compile(
     r'<g id="[^"]*"><a (xlink:href="[^"]*" )?xlink:title="([^"]*)"([^>]*)>\n(.*?)</a>\n</g>\n', re.DOTALL
 )
-_LONG_DECIMALS = re.compile(rb"(\.[0-9]{2})[0-9]+")
+_DECIMALS = re.compile(rb"(\.[0-9]{2})[0-9]+")
 _SURFACE = re.compile(rb"surface[0-9]+")
 # The lookahead keeps the search inside of one edge's group: an edge without a path must not take the next one's.
 _DRAWN = re.compile(r'<g id="(e[0-9]+)" class="edge[^"]*">(?:(?!</g>\n<).)*?<path', re.DOTALL)
@@ -32,14 +32,13 @@ def find_drawn_edges(svg: str) -> set[str]:
     return set(_DRAWN.findall(svg))
 
 
-def number_surfaces(outlines: bytes) -> bytes:
-    """Renumber cairo's surfaces from 1: cairo goes on counting from one picture to the next in the same process.
-
-    Its six decimals become two: a hundredth of a point is finer than any printer, and a sixth of the bytes less.
+def clean_outlines(outlines: bytes) -> bytes:
+    """Renumber cairo's surfaces from 1, since cairo goes on counting from one picture to the next in the same process,
+    and keep two decimals: a hundredth of a point is less than any printer shows.
     """
     numbers: dict[bytes, bytes] = {}
-    outlines = _LONG_DECIMALS.sub(rb"\1", outlines)
-    return _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
+    outlines = _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
+    return _DECIMALS.sub(rb"\1", outlines)
 
 
 def clean_graphviz_svg(svg: str, drawing: Drawing) -> bytes:

@@ -24,6 +24,7 @@ from archgen.views.changes.figure_lines import FigureLine
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes import SMALL_BUDGET
 from archgen.views.graphs.changes.group_folding import fits_budget
+from archgen.views.inline_text import count_noun
 
 _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24
@@ -48,6 +49,8 @@ def write_comparison_markdown(
     comment.add_block(names + _count_line(document))
     for version in document.versions:
         _add_reading_errors(comment, version)
+    if document.all_clear:
+        comment.add_block(f"{document.all_clear[:1].upper()}{document.all_clear[1:]}.")
     _add_breaking_changes(comment, document)
     _add_changes(comment, document)
     _add_figures(comment, comparison_document.BOUNDARY_HEADING, document.boundary_lines)
@@ -99,6 +102,11 @@ def _add_reading_errors(comment: LimitedComment, version: NamedVersion) -> None:
 def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
     if document.breaking_changes:
         comment.add_block(f"#### {comparison_document.BREAKING_HEADING}")
+        # An alert: hosts set it in red. Elsewhere it is a quotation.
+        count = len(document.breaking_changes)
+        comment.add_block(
+            f"> [!CAUTION]\n> {count_noun(count, 'change')} {'breaks' if count == 1 else 'break'} another partner."
+        )
         comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
         if document.refusal_help:
             comment.add_block(write_sentence(document.refusal_lead + document.refusal_help))
@@ -120,10 +128,11 @@ def _entries_block(entries: str) -> str:
 
 def _breaking_item(item: BreakingChange) -> str:
     losses = (
-        f"  - breaks {_join_partners(loss.partners)} ({loss.category}): {write_sentence(loss.reason)}"
+        f"  - **breaks {_join_partners(loss.partners)}** ({loss.category}): {write_sentence(loss.reason)}"
         for loss in item.losses
     )
-    return "\n".join((_change_item(item.change), *losses, *(f"  - {write_sentence(line)}" for line in item.agreements)))
+    change = f"- {_MARKDOWN_SIGNS[item.change.kind]} {write_sentence(item.short_text)}"
+    return "\n".join((change, *losses, *(f"  - {write_sentence(line)}" for line in item.agreements)))
 
 
 def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
@@ -237,5 +246,7 @@ def _add_picture(comment: LimitedComment, graph: Graph | None) -> None:
 
 def _mermaid_block(graph: Graph) -> str:
     signs = "\\+ added, \u2212 removed, \\~ changed, → renamed or moved; the rest is as before."
+    if any(box.broken for box in graph.boxes) or any(arrow.broken for arrow in graph.arrows):
+        signs = f"Red with \\!: breaks another partner. {signs}"
     notes = " ".join((signs, *(write_sentence(note) for note in graph.notes)))
     return "\n".join(("```mermaid", *write_flowchart(graph), "```", "", f"<sub>{notes}</sub>"))

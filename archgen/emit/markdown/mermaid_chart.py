@@ -28,6 +28,7 @@ _LINK_STYLES: dict[ElementChange | None, str] = {
     "changed": _BOX_STYLES["changed"],
     None: "stroke:#8a8a8a,stroke-width:1px",
 }
+_BROKEN_STYLE = "stroke:#d1242f,stroke-width:4px"
 _ARROW_SIGNS = {"service": "-.->", "action": "==>", "physical": "-.->", "link": "---"}
 _SUBJECT_STYLE = "stroke:#0072b2,stroke-width:2px"
 _NEIGHBOUR_STYLE = "fill:#eeeeee,stroke:#8a8a8a,color:#1b2127"
@@ -66,8 +67,10 @@ def escape_mermaid(text: object) -> str:
 def _write_box(box: Box, names: dict[str, str]) -> str:
     shape = "[[]]" if box.change == "changed" and box.style not in _BOX_SHAPES else _BOX_SHAPES.get(box.style, "()")
     half = len(shape) // 2
-    text = "<br>".join(_label_text(line) for line in (box.title, *box.lines))
-    style_class = box.change or (box.emphasis if box.emphasis != "normal" else "")
+    rows = [": ".join(words.replace("\n", ", ") for words in row if words) for row in box.rows]
+    load = [box.load[1]] if box.load else []
+    text = "<br>".join(_label_text(line) for line in (box.title, *box.lines, *load, *rows))
+    style_class = "broken" if box.broken else box.change or (box.emphasis if box.emphasis != "normal" else "")
     return f'{names[box.id]}{shape[:half]}"{text}"{shape[half:]}' + (f":::{style_class}" if style_class else "")
 
 
@@ -81,17 +84,24 @@ def _write_arrow(arrow: Arrow, names: dict[str, str]) -> str:
 def _write_styles(graph: Graph) -> Iterator[str]:
     kinds = {box.change for box in graph.boxes}
     yield from (f"  classDef {kind} {style}" for kind, style in _BOX_STYLES.items() if kind in kinds)
-    shows_changes = any(kinds) or any(arrow.change for arrow in graph.arrows)
-    emphases = {box.emphasis for box in graph.boxes if not box.change}
+    if any(box.broken for box in graph.boxes):
+        yield f"  classDef broken {_BROKEN_STYLE}"
+    shows_changed_arrows = any(arrow.change or arrow.broken for arrow in graph.arrows)
+    shows_changes = any(kinds) or shows_changed_arrows
+    emphases = {box.emphasis for box in graph.boxes if not box.change and not box.broken}
     if "neighbour" in emphases:
         yield f"  classDef neighbour {_NEIGHBOUR_OF_CHANGES_STYLE if shows_changes else _NEIGHBOUR_STYLE}"
     if "subject" in emphases:
         yield f"  classDef subject {_SUBJECT_STYLE}"
-    for kind, style in _LINK_STYLES.items() if any(arrow.change for arrow in graph.arrows) else ():
-        # linkStyle addresses arrows by their position, so all of them must be counted in the order written.
-        lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.change == kind]
-        if lines:
-            yield f"  linkStyle {','.join(lines)} {style}"
+    # linkStyle addresses arrows by their position, so all of them must be counted in the order written.
+    if shows_changed_arrows:
+        for kind, style in _LINK_STYLES.items():
+            lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.change == kind and not arrow.broken]
+            if lines:
+                yield f"  linkStyle {','.join(lines)} {style}"
+    broken_lines = [str(at) for at, arrow in enumerate(graph.arrows) if arrow.broken]
+    if broken_lines:
+        yield f"  linkStyle {','.join(broken_lines)} {_BROKEN_STYLE}"
 
 
 def _label_text(text: str) -> str:

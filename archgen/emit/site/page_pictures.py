@@ -99,12 +99,14 @@ def embedded_style() -> str:
 
 @cache
 def standalone_style(root: str) -> str:
-    """Return the style of a picture's own file: the font that it was laid out with, and the dark colours."""
+    """Return the style of a picture's own file: the fonts that it was laid out with, and the dark colours."""
     faces = "".join(
-        f'@font-face{{font-family:"DejaVu Sans";font-weight:{weight};src:local("{local}"),url({root}assets/fonts/{file})}}'
-        for weight, local, file in (
-            (400, "DejaVu Sans", "dejavusans.ttf"),
-            (700, "DejaVu Sans Bold", "dejavusans-bold.ttf"),
+        f'@font-face{{font-family:"{family}";font-weight:{weight};src:local("{local}"),url({root}assets/fonts/{file})}}'
+        for family, weight, local, file in (
+            ("Inter", 400, "Inter Regular", "inter-regular.ttf"),
+            ("Inter", 700, "Inter Bold", "inter-bold.ttf"),
+            ("DejaVu Sans", 400, "DejaVu Sans", "dejavusans.ttf"),
+            ("DejaVu Sans", 700, "DejaVu Sans Bold", "dejavusans-bold.ttf"),
         )
     )
     return f"{faces}@media screen and (prefers-color-scheme:dark){{svg{{background:#14181c}}{_dark_style('').replace(chr(10), '')}}}"

@@ -25,8 +25,8 @@ _PAGE_PATH = "index.html"
 _FONT_FACE = re.compile(r"@font-face \{[^}]*\}\n?")
 _FONT_FILE = "inter-latin-wght-normal.woff2"
 """The only font inside the page; letters that it lacks come from the reader's system."""
-_PICTURE_FONTS = 'svg.archgen text { font-family: "DejaVu Sans", "Bitstream Vera Sans", Verdana, sans-serif; }\n'
-"""Fonts as wide as the one that pictures are laid out with, so that texts fit their boxes without it."""
+_PICTURE_FONTS = 'svg.archgen text { font-family: Inter, "DejaVu Sans", "Bitstream Vera Sans", Verdana, sans-serif; }\n'
+"""The font that pictures are laid out with, then fonts that are as wide for the letters that it lacks."""
 
 
 def write_standalone_page(outline: Outline, pictures: Mapping[str, Picture]) -> bytes:

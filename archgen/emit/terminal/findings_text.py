@@ -55,7 +55,7 @@ def render_findings_text(
     for diagnostic in diagnostics:
         yield from render_finding_text(diagnostic, sources, colour=colour, width=width)
         yield ""
-    table_lines = tuple(findings_summary.render_rule_table(diagnostics))
+    table_lines = tuple(findings_summary.render_summary_tables(diagnostics, width))
     yield from (*table_lines, "") if table_lines else ()
     if is_waiting:
         yield from wrap_line(findings_summary.WAITING_SENTENCE, width)

@@ -11,6 +11,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from archgen.emit.markdown.mermaid_chart import escape_mermaid, write_flowchart
+from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
 from archgen.emit.safe_names import make_identifier, make_slug
 from archgen.emit.text.plain_graphs import graph_from_plain
 
@@ -73,8 +74,8 @@ def _is_strange(address: str) -> bool:
 
 
 def draw_mermaid(graph: object) -> str:
-    """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it."""
-    return "\n".join(write_flowchart(graph_from_plain(graph), has_stable_names=True))
+    """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it; a large one is folded."""
+    return "\n".join(write_flowchart(fold_for_mermaid(graph_from_plain(graph)), has_stable_names=True))
 
 
 def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from archgen.compare import Change, Comparison
+from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -40,6 +41,12 @@ class BreakingChange:
     agreements: tuple[str, ...]
 
     @property
+    def short_text(self) -> str:
+        """Return what changed, without who reads it: the losses say that."""
+        text, _, readers = self.change.text.partition(f"; {READERS_LEAD} ")
+        return text if not readers or self.losses else self.change.text
+
+    @property
     def categories(self) -> str:
         """Return the categories of what is lost: `wire, promise`."""
         return ", ".join(self.change.break_categories)
@@ -64,9 +71,12 @@ def is_shown_as_break(edit: Edit, comparison: Comparison) -> bool:
     """Whether an edit stands among the breaking ones. Other ids alone do not, unless they matter or are asked for: they
     break nobody's program.
     """
-    if comparison.only_breaking or comparison.policy.source > Severity.NOTE:
-        return bool(edit.breaks)
-    return any(category != "source" for category in edit.break_categories)
+    return any(is_break_shown(category, comparison) for category in edit.break_categories)
+
+
+def is_break_shown(category: BreakCategory, comparison: Comparison) -> bool:
+    """Whether losses of a category are shown as breaks."""
+    return category != "source" or comparison.only_breaking or comparison.policy.source > Severity.NOTE
 
 
 def note_source(edit: Edit, partner_names: Mapping[str, str]) -> Edit:

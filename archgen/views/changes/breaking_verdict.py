@@ -24,6 +24,7 @@ from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4
+_ALL_CLEAR = "no change breaks another partner"
 _PLAIN_TEXT = re.compile(r"[A-Za-z_](?:[\w ./-]*[\w])?", re.ASCII)
 """A text that YAML reads as itself; the words that it reads as something else are no ids."""
 
@@ -39,6 +40,14 @@ def describe_verdict(comparison: Comparison) -> Iterator[str]:
         yield f"{verdict.severity}: {verdict.sentence}" if verdict.severity else verdict.sentence
     for entry in comparison.idle_acceptances:
         yield _describe_idle(comparison, entry)
+
+
+def describe_all_clear(comparison: Comparison) -> str:
+    """Return that no change breaks another partner; empty where one does, nobody can tell, or there is nobody else."""
+    is_asked = comparison.is_judged and comparison.policy.gravest is not Severity.OFF
+    if not comparison.changes or not is_asked or len(name_partners(comparison)) < 2:  # noqa: PLR2004
+        return ""
+    return _ALL_CLEAR if not any(change.breaks for change in comparison.changes) else ""
 
 
 def describe_obstacle(comparison: Comparison) -> str:
@@ -188,7 +197,7 @@ def _judge_changes(comparison: Comparison) -> _Verdict:
         return _Verdict(None, "`review.breaking` is off: this project does not ask what breaks another partner")
     breaking_changes = [change for change in comparison.changes if change.breaks]
     if not breaking_changes:
-        return _Verdict(None, "no change breaks another partner")
+        return _Verdict(None, _ALL_CLEAR)
     partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
     categories = join_categories(each.category for change in breaking_changes for each in change.breaks)
     names = ", ".join(name_each(partners, name_partners(comparison)))

@@ -22,6 +22,8 @@ CHANGE_SIGNS = {
     "changed": "~",
 }
 """A sign for each kind of change, so that nothing depends on colour."""
+BREAK_SIGN = "!"
+"""The sign of what breaks another partner, in pictures."""
 _CHANGE_MARKS: dict[str, Literal["added", "removed", "changed"]] = {
     "added": "added",
     "copied": "added",
@@ -88,11 +90,20 @@ def count_by_kind(changes: Iterable[Edit]) -> str:
     return ", ".join(f"{kinds[kind]} {kind}" for kind in CHANGE_SIGNS if kinds[kind])
 
 
-def text_runs(text: str) -> Inlines:
-    """Split a sentence into runs, with what is in backticks as code; a backtick without a second one is a backtick."""
+def text_runs(text: str, titles: Mapping[str, str] | None = None, ref: str | None = None) -> Inlines:
+    """Split a sentence into runs, with what is in backticks as code; a backtick without a second one is a backtick.
+
+    With `titles`, elements are called by them, each a link to `ref`.
+    """
     # Splitting with one capturing group alternates: odd pieces were in backticks.
     pieces = re.split(r"`([^`]*)`", text)
-    return tuple(Text(piece, code=index % 2 == 1) for index, piece in enumerate(pieces) if piece)
+    return tuple(
+        _name_run(piece, titles or {}, ref) if index % 2 else Text(piece) for index, piece in enumerate(pieces) if piece
+    )
+
+
+def _name_run(name: str, titles: Mapping[str, str], ref: str | None) -> Text:
+    return Text(titles[name], ref=ref, emphasis=True) if name in titles else Text(name, code=True)
 
 
 def choose_mark(kind: EditKind) -> Literal["added", "removed", "changed"]:

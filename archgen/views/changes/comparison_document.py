@@ -7,13 +7,14 @@ escaping, folding, limits, colours. JSON is written from the comparison itself, 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.model.component import Input, Output
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.breaking_items import (
@@ -103,6 +104,8 @@ class ComparisonDocument:
     """What to do if the project's policy refuses the changes, empty if it does not."""
     missing_entries: tuple[str, ...]
     """What to write for that, as YAML, with the files that it belongs into in the first line of each."""
+    all_clear: str
+    """Says that no change breaks another partner, empty where one does, or where nobody asks."""
     verdict: tuple[str, ...]
     """Where only breaking changes are shown: how many and what the policy says, then which accepted entries are idle."""
     changes_heading: str
@@ -117,6 +120,8 @@ class ComparisonDocument:
     chain_rows: tuple[ChainRow, ...]
     finding_groups: tuple[FindingGroup, ...]
     graphs: tuple[Graph, ...] = field(default=())
+    element_titles: Mapping[str, str] = field(default_factory=dict)
+    """What people call components and their ports, by id: `Navigator`, `Navigator · goal`."""
 
     @property
     def versions(self) -> tuple[NamedVersion, NamedVersion]:
@@ -128,6 +133,7 @@ class ComparisonDocument:
         """Return one line that closes a list: counts, whom it concerns, and whom it breaks."""
         concern_note = f"; concerns {', '.join(self.concerned_partners)}" if self.concerned_partners else ""
         breaking_note = f"; breaks {', '.join(self.broken_partners)}" if self.broken_partners else ""
+        breaking_note += f"; {self.all_clear}" if self.all_clear else ""
         return self.counts + concern_note + breaking_note
 
     @property
@@ -179,6 +185,7 @@ def describe_comparison(
         refusal_lead=f"{breaking_verdict.write_policy(comparison)} refuses this: ",
         refusal_help=breaking_verdict.describe_refusal(comparison),
         missing_entries=breaking_verdict.write_missing_entries(comparison),
+        all_clear="" if comparison.only_breaking else breaking_verdict.describe_all_clear(comparison),
         verdict=verdict,
         changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
         change_groups=tuple(group_changes(other_edits, comparison, partner_names)),
@@ -195,7 +202,18 @@ def describe_comparison(
         chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
         finding_groups=finding_groups,
         graphs=graphs,
+        element_titles=_name_elements(comparison),
     )
+
+
+def _name_elements(comparison: Comparison) -> Mapping[str, str]:
+    titles: dict[str, str] = {}
+    for architecture in (comparison.before.architecture, comparison.after.architecture):
+        titles |= {name: group.title for name, group in architecture.groups.items()}
+        titles |= {name: component.title for name, component in architecture.components.items()}
+        ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
+        titles |= {port.id: f"{architecture.components[port.component].title} · {port.name}" for port in ports}
+    return titles
 
 
 def sort_by_severity(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:

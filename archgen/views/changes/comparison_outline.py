@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from archgen.compare.edits import Edit, EditKind
 from archgen.views import inline_text
@@ -35,14 +36,14 @@ def write_comparison_outline(document: ComparisonDocument) -> Outline:
         _breaking_section(document),
         _picture_section(document),
         _change_section(document),
-        _figure_section("changes:boundaries", comparison_document.BOUNDARY_HEADING, document.boundary_lines),
-        _figure_section("changes:loads", comparison_document.LOAD_HEADING, document.load_lines),
+        _figure_section("changes:boundaries", comparison_document.BOUNDARY_HEADING, document.boundary_lines, document),
+        _figure_section("changes:loads", comparison_document.LOAD_HEADING, document.load_lines, document),
         _chain_section(document.chain_rows),
         *(_findings_section(group) for group in document.finding_groups),
     )
     return Outline(
-        title=document.title,
-        subtitle=f"What changed: {document.before.name} → {document.after.name}",
+        title=f"What changed in {document.title}",
+        subtitle=f"{document.before.name} → {document.after.name}",
         facts=tuple(_document_facts(document)),
         notices=tuple(_document_notices(document)),
         sections=tuple(section for section in sections if section),
@@ -55,13 +56,16 @@ def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines
     yield "Changes", inline_text.to_inlines("none" if document.is_empty else document.counts)
     for name, partners in (("Breaks", document.broken_partners), ("Concerns", document.concerned_partners)):
         if partners:
-            yield name, text_runs(", ".join(partners))
+            runs = text_runs(", ".join(partners))
+            yield name, tuple(replace(run, strong=True, change="removed") for run in runs) if name == "Breaks" else runs
 
 
 def _document_notices(document: ComparisonDocument) -> Iterator[Paragraph]:
     yield from (_unsound_notice(version) for version in document.versions if version.errors)
     if document.is_empty:
         yield Paragraph(text_runs(f"{document.headline}."), "note")
+    if document.all_clear:
+        yield Paragraph(text_runs(f"{document.all_clear[:1].upper()}{document.all_clear[1:]}."), "note")
     # Without any change the verdict is the headline.
     for line in document.verdict[1 if document.is_empty else 0 :]:
         yield Paragraph(text_runs(line), "note")
@@ -82,21 +86,21 @@ def _unsound_notice(version: NamedVersion) -> Paragraph:
 def _breaking_section(document: ComparisonDocument) -> Section | None:
     if not document.breaking_changes:
         return None
-    blocks: list[Block] = [Bullets(tuple(map(_breaking_item, document.breaking_changes)))]
+    blocks: list[Block] = [Bullets(tuple(_breaking_item(item, document) for item in document.breaking_changes))]
     if document.refusal_help:
         blocks.append(Paragraph(text_runs(document.refusal_lead + document.refusal_help), "error"))
         blocks += [Markdown(f"```yaml\n{entries}\n```") for entries in document.missing_entries]
     return Section("changes:breaking", comparison_document.BREAKING_HEADING, tuple(blocks))
 
 
-def _breaking_item(item: BreakingChange) -> Inlines:
+def _breaking_item(item: BreakingChange, document: ComparisonDocument) -> Inlines:
     lines: list[Text] = []
     for loss in item.losses:
-        lines += [Text(f"breaks {', '.join(loss.partners)}", strong=True, line_break=True)]
-        lines += [Text(f" ({loss.category}): "), *text_runs(loss.reason)]
+        lines += [Text(f"breaks {', '.join(loss.partners)}", strong=True, line_break=True, change="removed")]
+        lines += [Text(f" ({loss.category}): "), *_titled_runs(loss.reason, document)]
     for line in item.agreements:
         lines += [Text("", line_break=True), *text_runs(line)]
-    return (*_change_runs(item.change), *lines)
+    return (*_sign_runs(item.change.kind), *_titled_runs(item.short_text, document), *lines)
 
 
 def _picture_section(document: ComparisonDocument) -> Section | None:
@@ -109,23 +113,31 @@ def _change_section(document: ComparisonDocument) -> Section | None:
         Section(
             f"changes:{change_group.group_id or change_group.title}",
             (change_group.title or change_group.group_id) + (f" ({change_group.owner})" if change_group.owner else ""),
-            (Bullets(tuple(_change_runs(change) for change in change_group.changes)),),
+            (Bullets(tuple(_change_runs(change, document) for change in change_group.changes)),),
         )
         for change_group in document.change_groups
     )
     return Section("changes:all", document.changes_heading, sections=sections) if sections else None
 
 
-def _change_runs(change: Edit) -> Inlines:
-    return (*_sign_runs(change.kind), *text_runs(change.text))
+def _change_runs(change: Edit, document: ComparisonDocument) -> Inlines:
+    return (*_sign_runs(change.kind), *_titled_runs(change.text, document))
+
+
+def _titled_runs(text: str, document: ComparisonDocument) -> Inlines:
+    """Split a sentence into runs; elements are called by their titles, each a link to the picture of what changed."""
+    graph = document.main_graph
+    return text_runs(text, document.element_titles, f"figure:{graph.id}" if graph else None)
 
 
 def _sign_runs(kind: EditKind) -> Inlines:
     return Text(CHANGE_SIGNS[kind], strong=True, change=choose_mark(kind)), Text(" ")
 
 
-def _figure_section(anchor: str, heading: str, lines: Sequence[FigureLine]) -> Section | None:
-    items = tuple((*_sign_runs(line.kind), *text_runs(line.text)) for line in lines)
+def _figure_section(
+    anchor: str, heading: str, lines: Sequence[FigureLine], document: ComparisonDocument
+) -> Section | None:
+    items = tuple((*_sign_runs(line.kind), *_titled_runs(line.text, document)) for line in lines)
     return Section(anchor, heading, (Bullets(items),)) if items else None
 
 

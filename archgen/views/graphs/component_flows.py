@@ -6,12 +6,12 @@ of its own. A connection to a whole group is one flow for each component of the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from archgen.model.architecture import Architecture
-from archgen.model.component import Connection
+from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of
 from archgen.views.graph_shapes import Arrow
 
@@ -32,10 +32,8 @@ class ComponentFlow:
 
     @property
     def label(self) -> str:
-        """The label beside the arrow: the type, or the number of types."""
-        if len(self.types) == 1:
-            return self.types[0]
-        return f"* {len(self.types)} types" if self.types else ""
+        """The label beside the arrow: the types, each on a line."""
+        return list_type_names(self.types)
 
 
 def list_flows(architecture: Architecture) -> tuple[ComponentFlow, ...]:
@@ -83,10 +81,14 @@ def _flows_of_connection(architecture: Architecture, connection: Connection) -> 
 
 def flow_style(architecture: Architecture, output_id: str) -> FlowStyle:
     """Return the style of arrow for what an output carries."""
-    output = architecture.outputs[output_id]
-    if output.physical:
+    return port_style(architecture, architecture.outputs[output_id])
+
+
+def port_style(architecture: Architecture, port: Input | Output) -> FlowStyle:
+    """Return the style of arrow for what a port carries by its own type."""
+    if port.physical:
         return "physical"
-    flow = flow_of(architecture.message_of(output))
+    flow = flow_of(architecture.message_of(port))
     return "data" if flow == "topic" else flow
 
 
@@ -118,6 +120,10 @@ def merge_flows(
 
 
 def _bundle_label(bundle: list[ComponentFlow]) -> str:
-    """Return the types of a bundle, each on a line; of more than three the rest is counted."""
-    names = list(dict.fromkeys(flow.label for flow in bundle if flow.label))
+    """Return the types of a bundle, each on a line."""
+    return list_type_names(list(dict.fromkeys(name for flow in bundle for name in flow.types)))
+
+
+def list_type_names(names: Sequence[str]) -> str:
+    """Return names of types, each on a line; of more than three the rest is counted."""
     return "\n".join(names) if len(names) <= 3 else "\n".join([*names[:2], f"and {len(names) - 2} more types"])  # noqa: PLR2004

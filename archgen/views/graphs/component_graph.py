@@ -1,23 +1,31 @@
 """Draw one component at the functional level: its ports as rows, where each comes from and goes to.
 
-Arrows end at the port. A type is written once for all arrows out of an output. A whole component or group as source is
-one box with an asterisk on its arrow. Partners outside of the architecture are dashed.
+Everything runs from left to right: at the left stand the inputs, and the services and actions that it offers, with
+their callers; at the right the outputs, and the services and actions that it calls, with their servers.
+Arrows end at the port. A type is written once for all arrows out of an output. A whole group as source is one box that
+lists its types, with an asterisk on its arrow. Partners outside of the architecture are dashed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Literal
 
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import flow_style
+from archgen.views.graphs.component_flows import flow_style, list_type_names, port_style
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun, format_short_timing
 from archgen.views.lookup import Lookup
 
 DrawnNeighbour = tuple[Box, Arrow]
+_CALLS = {"service", "action"}
+_SIGNS = {"left": "<", "right": ">"}
+"""What stands before the id of a neighbour's box: one that feeds and reads is two boxes, one at each side."""
+_MAX_GROUP_TYPES = 12
+"""How many types the box of a whole group lists."""
 MAX_NEIGHBOURS = 40
 """With more neighbours they are folded by group."""
 
@@ -60,15 +68,44 @@ def _subject_box(lookup: Lookup, component: Component) -> Box:
         emphasis="subject",
         cluster=None,
         style="component",
-        ports_in=tuple((f"in {port.name}", port.name) for port in component.inputs.values()),
-        ports_out=tuple((f"out {port.name}", port.name) for port in component.outputs.values()),
+        ports_in=(
+            *(_port_row(port) for port in component.inputs.values() if not _is_call(lookup, port)),
+            *(_port_row(port) for port in component.outputs.values() if _is_call(lookup, port)),
+        ),
+        ports_out=(
+            *(_port_row(port) for port in component.outputs.values() if not _is_call(lookup, port)),
+            *(_port_row(port) for port in component.inputs.values() if _is_call(lookup, port)),
+        ),
     )
+
+
+def _port_row(port: Input | Output) -> tuple[str, str]:
+    return _port_key(port), port.name
+
+
+def _port_key(port: Input | Output) -> str:
+    # Inputs and outputs may have the same name.
+    return f"{'in' if isinstance(port, Input) else 'out'} {port.name}"
+
+
+def _is_call(lookup: Lookup, port: Input | Output) -> bool:
+    """Return whether a port is a service or an action: an output offers it, an input calls it."""
+    sources = [output for each in port.connections for output in each.outputs] if isinstance(port, Input) else []
+    styles = {flow_style(lookup.architecture, each) for each in sources} or {port_style(lookup.architecture, port)}
+    return styles <= _CALLS
+
+
+def _port_side(lookup: Lookup, port: Input | Output) -> Literal["left", "right"]:
+    """Return the side of a port: what comes in and who calls is at the left, what goes out and who is called at the
+    right.
+    """
+    return "left" if isinstance(port, Input) != _is_call(lookup, port) else "right"
 
 
 def _draw_inputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbour]:
     for port in component.inputs.values():
         if port.external is not None:
-            yield _draw_external(port, component, "left")
+            yield _draw_external(lookup, port, component)
         for connection in port.connections:
             yield _draw_connection(lookup, component, port, connection)
 
@@ -77,24 +114,19 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
     architecture = lookup.architecture
     outputs = [architecture.outputs[each] for each in connection.outputs]
     types = list(dict.fromkeys(output.type for output in outputs if output.type))
+    style = flow_style(architecture, outputs[0].id) if outputs else "data"
+    side = _port_side(lookup, port)
     if connection.kind == "group":
         group_box = element_boxes.group_box(lookup, connection.target)
-        box = replace(
-            group_box, id=f"<{group_box.id}", emphasis="neighbour", side="left", lines=("whole group", *types[:6])
-        )
+        shown_types = types if len(types) <= _MAX_GROUP_TYPES else types[: _MAX_GROUP_TYPES - 1]
+        more = [f"and {len(types) - len(shown_types)} more"] if len(types) > len(shown_types) else []
+        box = replace(group_box, emphasis="neighbour", side=side, lines=("whole group", *shown_types, *more))
+        label = "* all of these" if types else "*"
     else:
         producer = architecture.components[_component_of_port(connection.target)]
-        box = element_boxes.neighbour_box(lookup, producer, "left")
-        # `<` and `>` before an id: a neighbour that feeds and reads is two boxes, one at each side, so nothing runs
-        # backwards.
-        box = replace(box, id=f"<{box.id}")
-    takes_all = connection.kind != "output"
-    label = (
-        f"* {count_noun(len(types), 'type')}"
-        if takes_all and len(types) != 1
-        else f"{'* ' * takes_all}{types[0] if types else ''}"
-    )
-    style = flow_style(architecture, outputs[0].id) if outputs else "data"
+        box = element_boxes.neighbour_box(lookup, producer, side)
+        label = list_type_names(types)
+    box = replace(box, id=f"{_SIGNS[side]}{box.id}")
     arrow = Arrow(
         f"{connection.target}>{port.id}",
         box.id,
@@ -116,11 +148,12 @@ def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbo
         style = flow_style(lookup.architecture, output.id)
         label = output.type or ""
         if output.external is not None:
-            yield _draw_external(output, component, "right")
+            yield _draw_external(lookup, output, component)
             label = ""
         for connection in lookup.readers_of.get(output.id, ()):
             reader = lookup.architecture.components[_component_of_port(connection.input)]
-            box = replace(element_boxes.neighbour_box(lookup, reader, "right"), id=f">{reader.id}")
+            side = _port_side(lookup, output)
+            box = replace(element_boxes.neighbour_box(lookup, reader, side), id=f"{_SIGNS[side]}{reader.id}")
             arrow = Arrow(
                 f"{output.id}>{connection.input}",
                 component.id,
@@ -145,25 +178,27 @@ def _point_to_server(arrow: Arrow) -> Arrow:
     return replace(arrow, **ends)  # type: ignore[arg-type]
 
 
-def _draw_external(port: Input | Output, component: Component, side: str) -> DrawnNeighbour:
-    is_left = side == "left"
+def _draw_external(lookup: Lookup, port: Input | Output, component: Component) -> DrawnNeighbour:
+    """Draw a partner outside of the architecture, at the side of the port."""
+    side = _port_side(lookup, port)
     box = Box(
         f"external {side} {port.id}",
         port.external or "outside",
         style="physical" if port.physical else "external",
         emphasis="normal",
-        side="left" if is_left else "right",
+        side=side,
         tooltip=f"{port.external}\noutside the architecture",
     )
+    ends = (box.id, component.id) if side == "left" else (component.id, box.id)
+    key = _port_key(port)
     arrow = Arrow(
         f"external {side} {port.id}",
-        box.id if is_left else component.id,
-        component.id if is_left else box.id,
+        *ends,
         port.type or "",
-        tail_port=None if is_left else f"out {port.name}",
-        head_port=f"in {port.name}" if is_left else None,
-        style="physical" if port.physical else "data",
-        flows=(f"{port.external} → {port.name}" if is_left else f"{port.name} → {port.external}",),
+        tail_port=key if side == "right" else None,
+        head_port=key if side == "left" else None,
+        style=port_style(lookup.architecture, port),
+        flows=(f"{port.external} → {port.name}" if side == "left" else f"{port.name} → {port.external}",),
     )
     return box, arrow
 

@@ -1,8 +1,13 @@
-"""Keep pictures within a budget: above it frames are folded into a box each, the largest first, and a note says so."""
+"""Keep pictures within a budget: above it each frame is folded into a box that lists what is in it, and a note says so.
+
+All frames of a kind are folded or none: a reader could not see why one is open and another is not. The frames of the
+neighbours come first, so that what a picture is about stays open as long as it fits.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
@@ -11,33 +16,33 @@ from archgen.views.inline_text import count_noun
 
 MAX_BOXES = 70
 MAX_ARROWS = 160
+_LIST_WIDTH = 56
+_MAX_LIST_ROWS = 14
 
 
-def fold_graph(graph: Graph) -> Graph:
+def fold_graph(graph: Graph, max_arrows: int = MAX_ARROWS) -> Graph:
     """Fold a graph until it fits the budget. One that still does not fit gets a note that says so."""
+    if _fits_budget(graph, max_arrows):
+        return graph
     members = Counter(box.cluster for box in graph.boxes)
     # Folding a frame with a single box saves nothing.
-    names = [cluster.id for cluster in graph.clusters if members[cluster.id] > 1]
-    # Stable, so frames of the same size are folded in the order of the files.
-    largest = sorted(names, key=lambda name: -members[name])
-    folded, box_count = graph, len(graph.boxes)
-    for count in range(len(largest) + 1):
-        # Counted on, instead of folded, as long as the boxes alone are too many.
-        box_count -= members[largest[count - 1]] - 1 if count else 0
-        if box_count > MAX_BOXES and count < len(largest):
-            continue  # whatever its arrows, it does not fit
-        folded = _fold_clusters(graph, set(largest[:count])) if count else graph
-        if _fits_budget(folded):
-            return folded
-    note = f"This picture is larger than {MAX_BOXES} boxes and {MAX_ARROWS} arrows: select a part to see it well."
+    foldable = [cluster for cluster in graph.clusters if members[cluster.id] > 1]
+    neighbours = {cluster.id for cluster in foldable if cluster.emphasis == "neighbour"}
+    folded = graph
+    for cluster_ids in (neighbours, {cluster.id for cluster in foldable}):
+        if cluster_ids:
+            folded = _fold_clusters(graph, cluster_ids, max_arrows)
+            if _fits_budget(folded, max_arrows):
+                return folded
+    note = f"This picture is larger than {MAX_BOXES} boxes and {max_arrows} arrows: select a part to see it well."
     return replace(folded, notes=(*folded.notes, note))
 
 
-def _fits_budget(graph: Graph) -> bool:
-    return len(graph.boxes) <= MAX_BOXES and len(graph.arrows) <= MAX_ARROWS
+def _fits_budget(graph: Graph, max_arrows: int) -> bool:
+    return len(graph.boxes) <= MAX_BOXES and len(graph.arrows) <= max_arrows
 
 
-def _fold_clusters(graph: Graph, cluster_ids: set[str]) -> Graph:
+def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Graph:
     drawn_ids = {box.id: box.cluster if box.cluster in cluster_ids else box.id for box in graph.boxes}
     drawn_ids |= {cluster.id: cluster.id for cluster in graph.clusters}
     outer_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] != drawn_ids[arrow.head]]
@@ -51,9 +56,11 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str]) -> Graph:
         _folded_box(graph, cluster, flows_within[cluster.id]) for cluster in graph.clusters if cluster.id in cluster_ids
     ]
     arrows = _merge_arrows(outer_arrows, {key: str(value) for key, value in drawn_ids.items()})
+    kinds = {cluster.emphasis == "neighbour" for cluster in graph.clusters if cluster.id in cluster_ids}
+    folded_words = "Each group of neighbours" if kinds == {True} else "Each group"
     note = (
-        f"{count_noun(len(cluster_ids), 'group')} folded, because the picture would be larger than {MAX_BOXES} boxes and {MAX_ARROWS} arrows; "
-        f"{count_noun(sum(flows_within.values()), 'flow')} inside not drawn."
+        f"{folded_words} is one box that lists what is in it, because the picture would be larger than {MAX_BOXES} boxes "
+        f"and {max_arrows} arrows; {count_noun(sum(flows_within.values()), 'flow')} inside not drawn."
     )
     folded_graph = replace(
         graph,
@@ -68,7 +75,8 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str]) -> Graph:
 
 def _folded_box(graph: Graph, cluster: Cluster, flows: int) -> Box:
     inside = [box for box in graph.boxes if box.cluster == cluster.id]
-    lines = (*cluster.lines, f"{len(inside)} inside") + ((count_noun(flows, "flow") + " inside",) if flows else ())
+    counts = f"{len(inside)} inside" + (f", {count_noun(flows, 'flow')} among them" if flows else "")
+    lines = (*cluster.lines, counts, *_list_titles([box.title for box in inside]))
     return Box(
         cluster.id,
         cluster.title,
@@ -80,6 +88,20 @@ def _folded_box(graph: Graph, cluster: Cluster, flows: int) -> Box:
         ref=cluster.ref,
         tooltip="\n".join([cluster.title, *(box.title for box in inside)]),
     )
+
+
+def _list_titles(titles: Sequence[str]) -> Iterator[str]:
+    """Yield titles side by side, in rows; of more than fit the rest is counted."""
+    rows: list[list[str]] = [[]]
+    for title in titles:
+        if rows[-1] and len(" · ".join([*rows[-1], title])) > _LIST_WIDTH:
+            rows.append([])
+        rows[-1].append(title)
+    shown_rows = rows if len(rows) <= _MAX_LIST_ROWS else rows[: _MAX_LIST_ROWS - 1]
+    yield from (" · ".join(row) for row in shown_rows)
+    hidden = sum(len(row) for row in rows[len(shown_rows) :])
+    if hidden:
+        yield f"and {hidden} more"
 
 
 def _merge_arrows(arrows: list[Arrow], drawn_ids: dict[str, str]) -> tuple[Arrow, ...]:

@@ -7,6 +7,7 @@ from typing import get_args
 
 from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
 
+_BADGE_KEYS = ("badge:error", "badge:warning", "badge:note")
 _BOX_KEYS = ("source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_KEY_OF_FLOW = {"service": "service-box", "action": "action-box"}
 _STATUS_KEYS = ("planned", "adapted")
@@ -26,6 +27,7 @@ def _legend_keys(graph: Graph) -> list[str]:
     keys = [
         key for key in ("subject", "neighbour", *_BOX_KEYS, *_BOX_KEY_OF_FLOW.values(), *_STATUS_KEYS) if key in kinds
     ]
+    keys += [key for key in _BADGE_KEYS if key in kinds]
     keys += _period_keys(graph)
     keys += _change_keys(graph)
     keys += [key for key in _ARROW_KEYS if key in arrow_kinds]
@@ -39,12 +41,12 @@ def _change_keys(graph: Graph) -> list[str]:
     """Return keys for what happened to boxes and arrows, and for arrows that are as before, where two versions are
     drawn.
     """
-    boxes = {box.change for box in graph.boxes}
-    lines = {arrow.change or "same" for arrow in graph.arrows}
+    boxes = {"broken" if box.broken else box.change for box in graph.boxes}
+    lines = {"broken" if arrow.broken else arrow.change or "same" for arrow in graph.arrows}
     if boxes == {None} and lines <= {"same"}:
         return []
-    return [f"change:{kind}" for kind in get_args(ElementChange) if kind in boxes] + [
-        f"line:{kind}" for kind in (*get_args(ElementChange), "same") if kind in lines
+    return [f"change:{kind}" for kind in ("broken", *get_args(ElementChange)) if kind in boxes] + [
+        f"line:{kind}" for kind in ("broken", *get_args(ElementChange), "same") if kind in lines
     ]
 
 
@@ -56,6 +58,7 @@ def _period_keys(graph: Graph) -> list[str]:
 
 def _box_kinds(box: Box) -> set[str]:
     kinds = {_BOX_KEY_OF_FLOW.get(box.style, "external" if box.style in {"physical", "partner"} else box.style)}
+    kinds |= {f"badge:{box.badge}"} if box.badge else set()
     return kinds | {box.emphasis} | ({box.status} if box.status else set())
 
 

@@ -19,11 +19,11 @@ from archgen.emit.graphviz import (
     draw_pictures,
     font_config,
     picture_cache,
+    png_palette,
     start_early_workers,
     worker_pool,
 )
 from archgen.emit.graphviz.drawing_worker import DrawingTask
-from archgen.emit.graphviz.png_writer import snap_palette
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import draw_component, draw_group, draw_overview
 from archgen.views.lookup import make_lookup
@@ -218,16 +218,56 @@ def test_pictures_with_a_warning_are_not_kept(tmp_path: Path, monkeypatch: pytes
 
 def test_the_font_lies_beside_its_licence() -> None:
     names = sorted(file.name for file in font_config.FONT_FOLDER.iterdir())
-    assert names == ["DejaVuSans-Bold.ttf", "DejaVuSans.ttf", "LICENSE.DejaVu"]
+    assert names == [
+        "DejaVuSans-Bold.ttf",
+        "DejaVuSans.ttf",
+        "Inter-Bold.ttf",
+        "Inter-Regular.ttf",
+        "LICENSE.DejaVu",
+        "LICENSE.Inter",
+    ]
 
 
-def test_a_palette_is_set_right() -> None:
-    def chunk(name: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+def _plain_pixels(width: int, colours: list[bytes]) -> bytes:
+    """Return a gd file of true colours."""
+    height = len(colours) // width
+    return (
+        b"\xff\xfe" + struct.pack(">HH", width, height) + b"\1\x7f\xff\xff\xfe" + b"".join(b"\0" + c for c in colours)
+    )
 
-    off, right = bytes([252, 254, 252, 9, 9, 9]), bytes([255, 255, 255, 9, 9, 9])
-    assert snap_palette(b"head" + chunk(b"PLTE", off) + b"tail") == b"head" + chunk(b"PLTE", right) + b"tail"
-    assert snap_palette(b"no palette") == b"no palette"
+
+def _unpack_png(data: bytes) -> list[bytes]:
+    """Return the colours of a PNG with a palette and without filters, row by row."""
+    width, height = struct.unpack(">II", data[16:24])
+    palette = data[data.index(b"PLTE") + 4 :]
+    start = data.index(b"IDAT") + 4
+    (length,) = struct.unpack(">I", data[start - 8 : start - 4])
+    rows = zlib.decompress(data[start : start + length])
+    indices = b"".join(rows[at * (width + 1) + 1 : (at + 1) * (width + 1)] for at in range(height))
+    return [palette[3 * index : 3 * index + 3] for index in indices]
+
+
+def test_colours_of_the_drawing_stay_exact_and_others_are_taken_together() -> None:
+    tints = [bytes.fromhex(colour) for colour in ("f3f2f0", "f7f0f5", "f2f3f4", "ffffff")]
+    smooth = [bytes.fromhex(colour) for colour in ("808080", "818283", "9f9f9f", "707070")]
+    data = png_palette.index_pixels(_plain_pixels(4, tints + smooth), frozenset(tints))
+    assert data
+    grey = smooth[0]
+    assert _unpack_png(data) == [*tints, grey, grey, grey, smooth[3]]
+
+
+def test_more_than_256_colours_have_no_palette() -> None:
+    colours = [bytes((red, green, 0)) for red in range(17) for green in range(16)]
+    assert png_palette.index_pixels(_plain_pixels(16, colours), frozenset(colours)) is None
+    assert png_palette.index_pixels(_plain_pixels(16, colours), frozenset()) is not None
+
+
+def test_a_png_has_each_fill_as_it_is_in_the_svg() -> None:
+    made = draw_pictures(GRAPHS, ("svg", "png"), resolve_link=lambda _: None)
+    for picture in made.values():
+        fills = set(re.findall(rb'<(?:path|polygon)[^>]* fill="#([0-9a-f]{6})"', picture.svg or b""))
+        assert fills
+        assert {bytes.fromhex(fill.decode()) for fill in fills} <= set(_unpack_png(picture.png or b""))
 
 
 def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -13,7 +14,8 @@ from archgen import pipeline
 from archgen.emit.graphviz import graph_drawing
 from archgen.emit.graphviz.box_styles import style_box
 from archgen.emit.graphviz.framed_layout import lay_out_framed
-from archgen.emit.graphviz.placed_scene import Scene, ScenePart, overlapping_parts, rectangles_meet
+from archgen.emit.graphviz.label_places import declutter_labels
+from archgen.emit.graphviz.placed_scene import Scene, SceneLine, ScenePart, overlapping_parts, rectangles_meet
 from archgen.emit.graphviz.styled_graph import style_graph
 from archgen.model.architecture import View
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
@@ -239,3 +241,38 @@ def test_the_flow_runs_the_way_that_the_project_asks_for(
         right, down = two.x - one.x, one.y - two.y
         onwards, aside = (right, down) if direction == "left-right" else (down, right)
         assert onwards > abs(aside) + 30, direction
+
+
+def _straight_line(edge: str, y: float) -> SceneLine:
+    return SceneLine(edge, edge, "a", "b", {}, f"0,{y} 30,{y} 70,{y} 100,{y}")
+
+
+def test_a_label_between_two_arrows_moves_onto_its_own() -> None:
+    label = ScenePart("l0", {}, 50, 6, 30, 8, "label")
+    scene = Scene(lines=(_straight_line("0", 0), _straight_line("1", 12)), parts=(label,))
+    (placed,) = declutter_labels(scene).parts
+    assert (placed.x, placed.y) == (50, 0)
+
+
+def test_a_label_keeps_off_other_arrows_where_it_can() -> None:
+    crossing = SceneLine("1", "1", "a", "b", {}, "50,-40 50,-10 50,10 50,40")
+    label = ScenePart("l0", {}, 50, 6, 30, 8, "label")
+    (placed,) = declutter_labels(Scene(lines=(_straight_line("0", 0), crossing), parts=(label,))).parts
+    assert placed.y == 0
+    assert abs(placed.x - 50) > 15
+
+
+def test_a_long_chain_is_wrapped_in_its_frame() -> None:
+    boxes = tuple(Box(f"b{at}", f"Component {at}", cluster="g") for at in range(10))
+    arrows = tuple(Arrow(f"a{at}", f"b{at}", f"b{at + 1}") for at in range(9))
+    graph = Graph("components", "A", "two-step", boxes, arrows, (Cluster("g", "G"),), asked=9, kind="components")
+    _, scene = graph_drawing.lay_out_graph(graph, {})
+    left, bottom, right, top = scene.bounds()
+    assert right - left < 3 * (top - bottom)
+    places = {part.name: part for part in scene.parts}
+    rows = sorted({round(part.y) for name, part in places.items() if re.fullmatch("n[0-9]", name)})
+    assert len(rows) > 1
+    # What leads to the next row stays above that row.
+    lowest = min(y for line in scene.lines for _, y in line.curve)
+    assert lowest >= min(part.rectangle[1] for part in places.values() if part.kind == "box")
+    assert list(overlapping_parts(scene)) == []

@@ -98,8 +98,11 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 
 #### Breaking changes
 
+> [!CAUTION]
+> 1 change breaks another partner.
+
 - \\~ `display.finder` of SSSA: worst case execution time `20 ms` → `60 ms`
-  - breaks CERTH (promise): takes away the proof that the chain `see` meets its deadline of 150 ms (127 ms → 167 ms); `camera` of CERTH is on it
+  - **breaks CERTH** (promise): takes away the proof that the chain `see` meets its deadline of 150 ms (127 ms → 167 ms); `camera` of CERTH is on it
   - found as `late-chain` at `robot.yaml:22:10`
 
 #### Load of hosts and links
@@ -154,9 +157,12 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 
 #### Breaking changes
 
+> [!CAUTION]
+> 1 change breaks another partner.
+
 - \\~ type `Image` now is `sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image`; `sensing.camera.image` carries it
-  - breaks SSSA (wire): `display.finder` takes `Image`
-  - breaks CERTH and SSSA (meaning): two
+  - **breaks SSSA** (wire): `display.finder` takes `Image`
+  - **breaks CERTH and SSSA** (meaning): two
   - accepted by SSSA: agreed in May
   - said in `archgen.yaml`, not by CERTH and SSSA: agreed in \\*June\\*
 
@@ -176,7 +182,9 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
 def test_a_message_changes_for_who_reads_the_type(told: Told) -> None:
     text = told(("Image: sensor_msgs/msg/Image", "Image: sensor_msgs/msg/CompressedImage"))
     assert text.startswith("### 1 change of the architecture: breaks SSSA, also concerns CERTH\n")
-    assert '  n0 -->|"#126; Image"| n1\n' in text
+    assert '  n0 -->|"#33; Image"| n1\n' in text
+    assert "  linkStyle 0 stroke:#d1242f,stroke-width:4px\n" in text
+    assert "Red with \\!: breaks another partner." in text
 
 
 def test_a_version_with_errors_says_so_first_and_does_not_call_anything_cured(told: Told) -> None:

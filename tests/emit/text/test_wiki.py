@@ -8,6 +8,7 @@ from markdown_it import MarkdownIt
 from archgen.emit import text
 from archgen.emit.backend_manifests import read_shipped_backend
 from archgen.emit.markdown.mermaid_chart import escape_mermaid
+from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
 from archgen.emit.safe_names import make_identifier
 from archgen.emit.text.template_filters import (
     draw_mermaid,
@@ -79,9 +80,10 @@ def test_a_page_for_each_group_and_a_start_page() -> None:
         "*Sensing*\n\n"
         "**Sensing**\n\n"
         "| Sensing | Code | Link |\n| --- | --- | ---: |\n"
-        "| [Sensing](g.md#component-g.a) | `Sensing` | [paper](https://example.org/%20%281%29) |\n\n"
-        '<a id="component-g.a"></a>\n\n## Sensing\n\nPlain *words*.\n\nSensing\n\n'
+        "| [Sensing](../components/g.a.md) | `Sensing` | [paper](https://example.org/%20%281%29) |\n\n"
+        "\n## Components\n\n- [Sensing](../components/g.a.md)\n"
     )
+    assert files["components/g.a.md"] == "# Sensing\n\n[Sensing](../groups/g.md)\n\nPlain *words*.\n\nSensing\n"
 
 
 def test_hostile_text_stays_text() -> None:
@@ -168,3 +170,20 @@ def test_arrows_between_frames_lead_from_frame_to_frame() -> None:
 def test_what_is_no_graph_is_not_drawn(given: object) -> None:
     with pytest.raises(TypeError, match="`mermaid_graph` takes one of `graphs`"):
         draw_mermaid(given)
+
+
+def test_above_forty_arrows_a_neighbour_has_one_arrow_to_the_frame() -> None:
+    inside = tuple(Box(f"a.{at}", f"A {at}", cluster="a") for at in range(41))
+    arrows = tuple(Arrow(f"e{at}", "n", f"a.{at}", "label") for at in range(41))
+    graph = Graph("g", "G", "group", (*inside, Box("n", "N")), arrows, (Cluster("a", "A"),), kind="group")
+    drawn = draw_mermaid(shape_to_plain(graph)).split("\n")
+    assert [line for line in drawn if "-->" in line] == ['  n_n -->|"41"| n_cluster_20_a']
+    few = Graph("g", "G", "group", (*inside, Box("n", "N")), arrows[:40], (Cluster("a", "A"),), kind="group")
+    assert fold_for_mermaid(few) == few
+
+
+def test_frames_become_boxes_where_too_many_arrows_are_inside() -> None:
+    inside = tuple(Box(f"a.{at}", f"A {at}", cluster="a") for at in range(10))
+    arrows = tuple(Arrow(f"e{at}", f"a.{at % 10}", f"a.{at // 10}") for at in range(100))
+    graph = Graph("g", "G", "group", inside, arrows, (Cluster("a", "A"),), kind="group")
+    assert [box.title for box in fold_for_mermaid(graph).boxes] == ["A"]

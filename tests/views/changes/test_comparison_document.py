@@ -93,7 +93,8 @@ def test_all_formats_have_the_same_sections_in_the_same_order(read_sides: ReadSi
     document, texts = describe(read_sides(old, new))
     assert [group.kind for group in document.finding_groups] == ["new", "silenced", "cured"]
     for form in FORMS:
-        headings = ["Breaking changes", "old_one", "Latency of chains", "New findings", "Silenced findings"]
+        name = "Old One" if form == "page" else "old_one"
+        headings = ["Breaking changes", name, "Latency of chains", "New findings", "Silenced findings"]
         headings.append("cured finding" if form == "markdown" else "Cured findings")
         start = texts[form].index("Breaking changes")
         places = [texts[form].index(heading, start) for heading in headings]
@@ -137,7 +138,8 @@ def test_a_refused_change_says_what_to_write_in_every_format(read_sides: ReadSid
         assert f"review.breaking: error refuses this: {REFUSED.replace('`', '')}" in texts[form], form
         assert "names no breaking change here" not in texts[form], form
         # Behind the change that it speaks of.
-        places = [texts[form].index(part) for part in ("as sensing.camera.image", REFUSED, MISSING)]
+        name = "Camera · image" if form == "page" else "sensing.camera.image"
+        places = [texts[form].index(part) for part in (f"as {name}", REFUSED, MISSING)]
         assert places == sorted(places), form
     _, texts = describe(sides, only_breaking=True)
     for form in FORMS:
@@ -169,3 +171,15 @@ def test_the_headline(read_sides: ReadSides, new: str, only_breaking: bool, head
             "no change breaks another partner" if only_breaking else document.obstacle.replace("`", "") or "no changes"
         )
         assert texts["terminal"].endswith(f"{sentence}\n")
+
+
+def test_every_format_says_where_no_change_breaks_another_partner(read_sides: ReadSides) -> None:
+    harmless = (
+        OLD.replace("camera: {", "camera: {title: Eye, ", 1) if "camera: {" in OLD else OLD + "project: {version: 2}\n"
+    )
+    document, texts = describe(read_sides(OLD, harmless))
+    assert document.all_clear == "no change breaks another partner"
+    for form in FORMS:
+        assert "o change breaks another partner" in texts[form], form
+    _, broken_texts = describe(read_sides(OLD, RETYPED))
+    assert [form for form in FORMS if "o change breaks another partner" in broken_texts[form]] == []

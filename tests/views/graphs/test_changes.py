@@ -95,18 +95,21 @@ def test_added_removed_and_changed_stand_in_one_picture(found: Compared) -> None
         "sensing: Camera (grey)",
         "sensing: + Radar (added)",
         "sensing: \u2212 Lidar (removed)",
-        "display: Finder (grey)",
-        "display: Map (grey)",
+        "display: ! Finder",
+        "display: ! Map",
     ]
     assert lines(components) == [
-        "sensing.camera > display.finder ~ Image (changed)",
+        "sensing.camera > display.finder ! Image (changed)",
         "sensing.radar > display.map + People (added)",
-        "sensing.lidar > display.map \u2212 Scan (removed)",
+        "sensing.lidar > display.map ! Scan (removed)",
     ]
+    # What breaks another partner is marked, with whose it is.
+    assert [arrow.broken for arrow in components.arrows] == [True, False, True]
+    assert [(box.broken, box.lines) for box in components.boxes[3:]] == [(True, ("breaks SSSA",))] * 2
     assert components.notes == ("1 unchanged neighbour not drawn.",)
     radar = components.boxes[1]
     assert radar.tooltip.startswith("component `sensing.radar` is added with 1 output\nRadar (sensing.radar)")
-    assert "line:changed" in components.legend
+    assert "line:broken" in components.legend
     assert "change:removed" in components.legend
     assert "None: + radar (added)" in boxes(nodes)
     assert "None: \u2212 lidar (removed)" in boxes(nodes)

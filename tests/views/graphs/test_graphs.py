@@ -30,6 +30,7 @@ from archgen.views.graphs import (
 from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
 from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.architectures import generated, robot, topics
 from tests.timings import timed
 
@@ -165,7 +166,7 @@ def test_a_component_has_its_ports() -> None:
 
 def test_a_whole_group_as_source_has_an_asterisk() -> None:
     graph = draw_component(view(), "h.d")
-    assert text(graph) == ["<g > h.d: * 2 types"]
+    assert text(graph) == ["<g > h.d: * all of these"]
     assert graph.boxes[1].lines == ("whole group", "T x", "T y")
     assert "star" in graph.legend
 
@@ -180,8 +181,13 @@ def test_services_and_actions_run_from_client_to_server(kind: str) -> None:
     style = {"srv": "service", "action": "action"}[kind]
     architecture = make("g: server client", "g.server.ask > g.client.call", f"T ask = pkg/{kind}/Ask")
     assert text(draw_components(view(architecture))) == [f"g.client > g.server [{style}]"]
-    assert text(draw_component(view(architecture), "g.client")) == [f"g.client > <g.server: T ask [{style}]"]
-    assert text(draw_component(view(architecture), "g.server")) == [f">g.client > g.server: T ask [{style}]"]
+    client, server = (draw_component(view(architecture), name) for name in ("g.client", "g.server"))
+    assert text(client) == [f"g.client > >g.server: T ask [{style}]"]
+    assert text(server) == [f"<g.client > g.server: T ask [{style}]"]
+    # The caller is at the left and the server at the right, ports included.
+    assert (client.boxes[0].ports_in, client.boxes[0].ports_out) == ((), (("in call", "call"),))
+    assert (server.boxes[0].ports_in, server.boxes[0].ports_out) == ((("out ask", "ask"),), ())
+    assert [box.side for graph in (client, server) for box in graph.boxes[1:]] == ["right", "left"]
 
 
 def test_partners_outside_are_dashed() -> None:
@@ -272,16 +278,36 @@ def test_hosts_have_containers_nodes_and_links() -> None:
     )
     graph = draw_hosts(view(architecture))
     assert text(graph) == [
-        "pc > arm: CAN [link]",
-        "link lan > pc [link]",
-        "link lan > arm [link]",
-        "link lan > eye [link]",
+        "host pc > host arm: CAN [link]",
+        "link lan > host pc [link]",
+        "link lan > host arm [link]",
+        "link lan > host eye [link]",
     ]
-    assert [(box.id, box.cluster, box.lines) for box in graph.boxes] == [
-        ("container box", "pc", ("1 thread", "b")),
-        ("a", "pc", ()),
-        ("no host", None, ()),
-        ("link lan", None, ()),
+    own = "Nodes with a process of their own"
+    assert [(box.id, box.lines, box.rows) for box in graph.boxes] == [
+        ("host pc", ("4 cores, 2 nodes",), (("Box (1 thread)", ""), ("b", "\u2013"), (own, ""), ("a", "\u2013"))),
+        ("host arm", ("4 cores, 0 nodes",), ()),
+        ("host eye", ("4 cores, 0 nodes",), ()),
+        ("no host", (), ()),
+        ("link lan", (), ()),
+    ]
+
+
+LOADED = """\
+archgen: 1
+hosts: {pc: {cores: 2}, spare: {cores: 1}}
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Empty}, timing: {rate: 10 Hz, wcet: 50 ms}}}}}
+nodes: {n_a: {implements: a, host: pc}}
+"""
+
+
+def test_a_host_has_a_bar_of_its_load(tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(LOADED)
+    architecture = pipeline.check_project(tmp_path / "robot.yaml").architecture
+    graph = draw_hosts(replace(view(architecture), timing=analyse_with_chains(architecture)))
+    assert [(box.id, box.load, box.rows) for box in graph.boxes] == [
+        ("host pc", (25.0, "load 25 %"), (("n_a", "10 Hz, up to 50 ms"),)),
+        ("host spare", None, ()),
     ]
 
 
@@ -331,7 +357,7 @@ def test_views_choose_level_colour_and_direction() -> None:
     assert [box.colour for box in graph.boxes if box.emphasis == "normal"] == [0, 1]
 
 
-def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
+def test_above_the_budget_each_group_is_a_list_of_its_components() -> None:
     architecture = generated(3, 8, 20, 150)
     whole = draw_components(make_lookup(architecture))
     assert len(whole.boxes) > MAX_BOXES
@@ -339,11 +365,33 @@ def test_what_is_above_the_budget_is_folded_the_largest_first() -> None:
     assert len(graph.boxes) <= MAX_BOXES
     assert len(graph.arrows) <= MAX_ARROWS
     folded = [box for box in graph.boxes if box.style == "fold"]
-    left = max(sum(box.cluster == cluster.id for box in graph.boxes) for cluster in graph.clusters)
-    assert all(int(box.lines[0].split()[0]) >= left for box in folded)
+    assert [box.title for box in folded] == [cluster.title for cluster in whole.clusters]
+    for box in folded:
+        inside = [each.title for each in whole.boxes if each.cluster == box.id]
+        assert box.lines[0].startswith(f"{len(inside)} inside")
+        assert " · ".join(box.lines[1:]) == " · ".join(inside)
     hidden = whole.asked - graph.asked
-    said = f"{len(folded)} groups folded, because the picture would be larger than 70 boxes and 160 arrows; "
+    said = "Each group is one box that lists what is in it, because the picture would be larger than 70 boxes and 160 arrows; "
     assert graph.notes == (said + f"{hidden} flows inside not drawn.",)
+
+
+def test_a_long_list_ends_with_how_many_more_there_are() -> None:
+    boxes = tuple(Box(f"b{at}", f"A box of number {at:02}", cluster="big") for at in range(72))
+    (box,) = fold_graph(Graph("x", "X", "two-step", boxes, (), (Cluster("big", "Big"),), kind="ros")).boxes
+    assert box.lines[:2] == ("72 inside", "A box of number 00 · A box of number 01")
+    assert box.lines[13:] == ("A box of number 24 · A box of number 25", "and 46 more")
+
+
+def test_what_a_picture_is_about_stays_open_where_its_neighbours_fold() -> None:
+    boxes = tuple(Box(f"b{at}", "B", cluster="own" if at < 60 else f"other{at % 2}") for at in range(80))
+    frames = (
+        Cluster("own", "Own"),
+        Cluster("other0", "O", emphasis="neighbour"),
+        Cluster("other1", "P", emphasis="neighbour"),
+    )
+    graph = fold_graph(Graph("x", "X", "two-step", boxes, (), frames, kind="view"))
+    assert [box.id for box in graph.boxes if box.style == "fold"] == ["other0", "other1"]
+    assert graph.notes[0].startswith("Each group of neighbours is one box that lists what is in it, ")
 
 
 def test_what_cannot_be_folded_says_so() -> None:
@@ -353,7 +401,7 @@ def test_what_cannot_be_folded_says_so() -> None:
     )
 
 
-def test_folding_keeps_frames_that_fit() -> None:
+def test_folding_merges_what_runs_between_frames() -> None:
     boxes = tuple(Box(f"b{at}", "B", cluster="big" if at < 70 else "small") for at in range(72))
     arrows = (Arrow("1", "b0", "b1"), Arrow("2", "b1", "b71"), Arrow("3", "b2", "b71"), Arrow("4", "b70", "b71"))
     graph = fold_graph(
@@ -361,9 +409,9 @@ def test_folding_keeps_frames_that_fit() -> None:
             "x", "X", "two-step", boxes, arrows, (Cluster("big", "Big"), Cluster("small", "Small")), asked=4, kind="ros"
         )
     )
-    assert [box.id for box in graph.boxes] == ["b70", "b71", "big"]
-    assert text(graph) == ["big > b71 (2)", "b70 > b71"]
-    assert graph.boxes[-1].lines == ("70 inside", "1 flow inside")
+    assert [box.id for box in graph.boxes] == ["big", "small"]
+    assert text(graph) == ["big > small (2)"]
+    assert graph.boxes[0].lines[0] == "70 inside, 1 flow among them"
 
 
 def test_what_feeds_a_component_is_named_by_its_title() -> None:

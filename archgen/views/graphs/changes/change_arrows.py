@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from archgen.views.changes.change_wording import CHANGE_SIGNS
+from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graph_shapes import Arrow, ElementChange
 from archgen.views.graphs.component_flows import FlowStyle
 
 _MAX_LABELS = 3
-ArrowKey = tuple[str, str, FlowStyle, ElementChange | None]
+ArrowKey = tuple[str, str, FlowStyle, ElementChange | None, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,8 @@ class ConnectionLine:
     change: ElementChange | None
     sentence: str
     optional: bool = False
+    broken_partners: tuple[str, ...] = ()
+    """What people call the partners for whom it breaks."""
 
     @property
     def ends(self) -> frozenset[str]:
@@ -35,23 +37,25 @@ def bundle_arrows(lines: Iterable[ConnectionLine]) -> tuple[Arrow, ...]:
     """Return one arrow for each bundle of lines; only changed ones have a label."""
     bundles: dict[ArrowKey, list[ConnectionLine]] = {}
     for line in lines:
-        bundles.setdefault((line.tail, line.head, line.style, line.change), []).append(line)
+        bundles.setdefault((line.tail, line.head, line.style, line.change, line.broken_partners), []).append(line)
     return tuple(_draw_bundle(key, bundle) for key, bundle in bundles.items())
 
 
 def _draw_bundle(key: ArrowKey, bundle: Sequence[ConnectionLine]) -> Arrow:
-    tail, head, style, change = key
+    tail, head, style, change, broken_partners = key
+    label = _bundle_label(bundle, BREAK_SIGN if broken_partners else CHANGE_SIGNS[change or "changed"])
     return Arrow(
-        f"{tail}>{head}:{style}:{change or 'same'}",
+        f"{tail}>{head}:{style}:{change or 'same'}{':broken' if broken_partners else ''}",
         tail,
         head,
-        _bundle_label(bundle, CHANGE_SIGNS[change]) if change else "",
+        label if change or broken_partners else "",
         style=style,
         count=len(bundle),
         optional=all(line.optional for line in bundle),
-        faded=change is None,
+        faded=change is None and not broken_partners,
         flows=tuple(line.sentence for line in bundle),
         change=change,
+        broken=bool(broken_partners),
     )
 
 

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from archgen.compare import Comparison
-from archgen.views.changes.change_wording import CHANGE_SIGNS
+from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graph_shapes import Box, Cluster, ElementChange, Graph
 from archgen.views.graphs import element_boxes
+from archgen.views.graphs.changes.broken_readers import BrokenReaders
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
 from archgen.views.graphs.changes.group_folding import fold_to_budget
 from archgen.views.graphs.changes.merged_versions import (
@@ -38,6 +39,16 @@ class _OverlaidComponents:
     lines: Sequence[ConnectionLine]
 
     @property
+    def broken_components(self) -> Mapping[str, tuple[str, ...]]:
+        """Return the components that a change breaks, with what people call their partners."""
+        broken: dict[str, tuple[str, ...]] = {}
+        for line in self.lines:
+            if line.broken_partners:
+                reader = line.tail if line.style in {"service", "action"} else line.head
+                broken[reader] = tuple(dict.fromkeys((*broken.get(reader, ()), *line.broken_partners)))
+        return broken
+
+    @property
     def changed_components(self) -> frozenset[str]:
         """Return the components that changed themselves."""
         return frozenset(self.change_notes.component_changes)
@@ -59,7 +70,7 @@ def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Gra
         change_notes,
         tuple(_connection_lines(comparison, change_notes)),
     )
-    ends = {end for line in overlay.lines if line.change for end in line.ends}
+    ends = {end for line in overlay.lines if line.change or line.broken_partners for end in line.ends}
     changed_ids = {name for name in overlay.changed_components | ends if _component_exists(overlay, name)}
     if not changed_ids:
         return None
@@ -79,7 +90,7 @@ def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Gra
         line
         for line in overlay.lines
         if shown_components.issuperset(line.ends)
-        and (line.change or _is_worth_drawing(line, overlay, shown_components, changed_ids))
+        and (line.change or line.broken_partners or _is_worth_drawing(line, overlay, shown_components, changed_ids))
     ]
     undrawn_count = len(neighbours - shown_components)
     notes = (f"{count_noun(undrawn_count, 'unchanged neighbour')} not drawn.",) if undrawn_count else ()
@@ -125,20 +136,29 @@ def _connection_lines(comparison: Comparison, change_notes: ChangeNotes) -> Iter
     old_edges = merged_edges(comparison.before.architecture, comparison.matched_ids)
     new_edges = merged_edges(comparison.after.architecture, type(comparison.matched_ids)())
     may_be_unread = comparison.versions.may_be_unread
+    broken_readers = BrokenReaders(comparison)
+
+    def make_line(edge: MergedEdge, change: ElementChange | None, sentences: tuple[str, ...]) -> ConnectionLine:
+        if change == "added":  # what is new gives instead of what was lost
+            return _connection_line(edge, change, sentences)
+        old_input_id = comparison.matched_ids.old_ids.get("input", {}).get(edge.input_id, edge.input_id)
+        return replace(
+            _connection_line(edge, change, sentences), broken_partners=broken_readers.find_partners(edge, old_input_id)
+        )
+
     for key in (*new_edges, *(key for key in old_edges if key not in new_edges)):
         edge = new_edges.get(key) or old_edges[key]
         if key in new_edges and key in old_edges:
             sentences = tuple(describe_changed_flows(comparison.after.architecture, edge, change_notes))
-            yield _connection_line(edge, "changed" if sentences else None, sentences)
+            yield make_line(edge, "changed" if sentences else None, sentences)
         # In a part that could not be read: not known to be removed or added.
         elif may_be_unread(("output", edge.output_id)) or may_be_unread(("input", edge.input_id)):
             yield from [_connection_line(edge, None, ())] if key in new_edges else []
         elif edge.input_id in change_notes.sentences or not change_notes.component_changes.keys().isdisjoint(
             (edge.tail, edge.head)
         ):
-            yield _connection_line(
-                edge, "added" if key in new_edges else "removed", tuple(change_notes.sentences.get(edge.input_id, ()))
-            )
+            sentences = tuple(change_notes.sentences.get(edge.input_id, ()))
+            yield make_line(edge, "added" if key in new_edges else "removed", sentences)
 
 
 def _connection_line(edge: MergedEdge, change: ElementChange | None, sentences: tuple[str, ...]) -> ConnectionLine:
@@ -173,6 +193,12 @@ def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
     plain_box = replace(
         component_box, id=name, style="component", colour=None, cluster=group_id, ref=f"changes:{group_id}"
     )
+    broken_partners = overlay.broken_components.get(name, ())
+    if broken_partners:
+        sign = CHANGE_SIGNS[change] if change else BREAK_SIGN
+        plain_box = replace(plain_box, lines=(f"breaks {', '.join(broken_partners)}",), broken=True)
+        if change is None:
+            return replace(plain_box, title=f"{sign} {component_box.title}", badge=None)
     if change is None:
         return replace(plain_box, emphasis="neighbour", badge=None)
     tooltip_lines = (*overlay.change_notes.sentences.get(name, ()), component_box.tooltip)
