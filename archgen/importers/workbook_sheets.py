@@ -1,6 +1,6 @@
 """Read the sheets of a workbook (.xlsx): values as they are shown, merged cells, and what is hidden.
 
-Why openpyxl does not: docs/decisions/0017-workbooks.md.
+Why openpyxl does not: docs/decisions/0018-workbooks.md.
 """
 
 from __future__ import annotations
