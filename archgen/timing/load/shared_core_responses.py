@@ -33,12 +33,13 @@ from archgen.timing.load.event_streams import (
     earliest_arrivals,
     streams_of_calls,
 )
-from archgen.timing.load.idle_backlogs import IdleBacklog, find_idle_backlog
+from archgen.timing.load.idle_backlogs import find_idle_backlog
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.shared_core_limits import SharedCoreLimits, has_priorities, open_refining_budget
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.storing_waits import hold_beside_others
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
@@ -48,14 +49,6 @@ from archgen.timing.system.timing_system import samples_inputs
 
 _MAX_SWEEPS = 60
 """Sweeps over all runs of some cores before their responses are given up."""
-_REFINING_TERMS = 80_000
-"""Terms for which bounds in any order are looked for below the limits that a backlog gives: some 50 ms' worth."""
-_MAX_TERMS_PER_LOOK = 500
-"""Terms of one look at all ways: where it takes more, only what needs no search is looked for below the limits."""
-_RANKED_TERMS = 300_000
-"""The same where there are priorities, for what is urgent has far less in its way than in any order, and without limits."""
-_TERMS_PER_CALM_WAY = 16
-"""Terms that a way takes where nothing comes twice in its windows."""
 _MAX_WAITING_EVENTS = 50
 """Events of one origin that may come within a delay, before it is said to have run away."""
 
@@ -92,7 +85,8 @@ class SharedCoreSolver:
     ) -> None:
         """Take what enters the cores from the demand."""
         self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
-        self.known_responses, self.limits = known_bounds
+        self.known_responses, host_limits = known_bounds
+        self.limits = SharedCoreLimits(self.cores.ways_to, host_limits)
         self.step_responses: dict[str, int] = {}
         self.cause_of: dict[str, UnknownCause] = {}
         self.raised_names: set[str] = set()
@@ -107,7 +101,6 @@ class SharedCoreSolver:
             self.way_before.items(), key=lambda pair: -len(self.cores.ways_to[pair[0][0]][pair[0][1]].steps)
         )
         self.last_windows: dict[tuple[int, int], int] = {}
-        self.backlog: IdleBacklog | None = None
 
     def _find_way_before(self, way: EntryWay) -> WayKey:
         """Return the way to the step before the last one of a way."""
@@ -126,10 +119,10 @@ class SharedCoreSolver:
             return self._build_responses()
         self.work = PathWork(self.cores, self.demand)
         # Where there are priorities it is seldom the smaller bound: then it is looked for when nothing else ends.
-        is_ranked = self._has_priorities()
+        is_ranked = has_priorities(self.cores)
         if not is_ranked:
             self._find_backlog()
-        if self.backlog is None:
+        if self.limits.backlog is None:
             self._mark_full_threads()
         self.longest_wait = self._find_longest_wait()
         for name in sorted(self.cores.foreign_ids):
@@ -140,58 +133,20 @@ class SharedCoreSolver:
                 self._find_backlog()
             # What still grows has the bound of its limit, or none that is found; what it comes in the way of then has
             # none either.
-            self.raised_names.update(name for name in stuck_names if self._has_limit(name))
-            self._mark_boundless([name for name in stuck_names if not self._has_limit(name)], DIVERGED_CAUSE)
+            self.raised_names.update(name for name in stuck_names if self.limits.has_limit(name))
+            self._mark_boundless([name for name in stuck_names if not self.limits.has_limit(name)], DIVERGED_CAUSE)
         return self._build_responses()
 
     def _find_backlog(self) -> None:
         """Look for what may be pending, if it can be said, and cut down what may be spent on bounds that are smaller."""
         if not (self.cores.foreign_ids or self.cores.reentrant_units):
-            self.backlog = find_idle_backlog(self.cores, self.paths.way_works, self.demand, self.budget)
-            self.budget = self._open_refining_budget()
+            self.limits.backlog = find_idle_backlog(self.cores, self.paths.way_works, self.demand, self.budget)
+            self.budget = open_refining_budget(self.budget, self.paths, self.limits)
 
     def _find_longest_wait(self) -> int:
         """Return a delay above which a bound has run away."""
         streams = [stream for model in self.work.streams.values() for stream in model]
         return max((_MAX_WAITING_EVENTS * (stream.period + stream.jitter) for stream in streams), default=0)
-
-    def _has_priorities(self) -> bool:
-        return any(thread.highest_priority is not None for thread in self.cores.threads.values())
-
-    def _open_refining_budget(self) -> SearchBudget:
-        """Return what may be spent on bounds below the limits: where it is too little for some sweeps, next to nothing."""
-        way_count = len(self.paths.way_works)
-        terms_per_look = way_count * (len(self.work.streams) + len(self.cores.jobs))
-        if self.backlog is None or self._has_priorities():
-            term_count = _RANKED_TERMS
-        else:
-            term_count = _REFINING_TERMS if terms_per_look <= _MAX_TERMS_PER_LOOK else _TERMS_PER_CALM_WAY * way_count
-        return self.budget.open_part(term_count)
-
-    def _has_limit(self, name: str) -> bool:
-        """Whether an activity has a bound without regard to the bounds of others."""
-        return name in self.limits or (self.backlog is not None and (name, 0) in self.backlog.delays)
-
-    def _limit_delay(self, key: WayKey) -> int | None:
-        """Return what bounds a way without regard to other bounds: the whole host, and the backlog of the cores."""
-        limit = self.limits.get(key[0])
-        delays = [limit.delay] if limit else []
-        if self.backlog and key in self.backlog.delays:
-            delays.append(self.backlog.delays[key])
-        return min(delays, default=None)
-
-    def _limit_response(self, name: str) -> int | None:
-        """Return the same of a response."""
-        limit = self.limits.get(name)
-        responses = [limit.response] if limit else []
-        if self.backlog and (name, 0) in self.backlog.delays:
-            responses.append(
-                max(
-                    self.backlog.delays[name, number] - way.best_before
-                    for number, way in enumerate(self.cores.ways_to[name])
-                )
-            )
-        return min(responses, default=None)
 
     def _find_common_cause(self) -> UnknownCause | None:
         """Return why nothing is known of any response here, None where all is well."""
@@ -221,7 +176,7 @@ class SharedCoreSolver:
         full_names = [
             name
             for name in order
-            if name not in self.limits and shares.fills_core((name,), self.paths.look_up((name,)))
+            if name not in self.limits.of_host and shares.fills_core((name,), self.paths.look_up((name,)))
         ]
         self._mark_boundless([*boundless_ids, *full_names], DIVERGED_CAUSE)
 
@@ -269,7 +224,7 @@ class SharedCoreSolver:
     def _list_unsettled(self, name: str, delays: Mapping[WayKey, int]) -> list[str]:
         """Return what is given up where the budget is spent: all that has a limit, else one activity and what grew."""
         raisable_names = [each for each in self._list_bounded() if each not in self.raised_names]
-        limited_names = [each for each in raisable_names if self._has_limit(each)]
+        limited_names = [each for each in raisable_names if self.limits.has_limit(each)]
         if limited_names:
             return limited_names
         return list(
@@ -291,18 +246,18 @@ class SharedCoreSolver:
 
     def _find_way_delays(self, name: str, delays: dict[WayKey, int], spend: Callable[[int], None]) -> None:
         """Find the delays of the ways to an activity anew, for what may be pending now."""
-        response_limit = self._limit_response(name)
+        response_limit = self.limits.limit_response(name)
         if response_limit is not None and name in self.raised_names:
             self.step_responses[name] = response_limit
             for number in range(len(self.cores.ways_to[name])):
-                delays[name, number] = self._limit_delay((name, number)) or 0
+                delays[name, number] = self.limits.limit_delay((name, number)) or 0
             return
         response = self._find_delay(self.paths.look_up((name,)), spend, response_limit)
         # What a declared response says may be more than is computed: so long it may be pending.
         response = max(response, self.cores.system.activities[name].response or 0)
         self.step_responses[name] = response
         for number, way in enumerate(self.cores.ways_to[name]):
-            delay, limit = response, self._limit_delay((name, number))
+            delay, limit = response, self.limits.limit_delay((name, number))
             if len(way.steps) > 1:
                 delay += delays[self.way_before[name, number]]
             delay = delay if limit is None else min(delay, limit)
@@ -383,7 +338,7 @@ class SharedCoreSolver:
 
     def _find_storing_wait(self, name: str) -> WorstResponse:
         """Return how long a message that an activity only stores may wait until an activation that does not read it."""
-        limit = self.limits.get(name)
+        limit = self.limits.of_host.get(name)
         host_wait = None if limit is None else limit.storing_wait
         if name in self.cause_of:
             return WorstResponse(None, "cores", self.cause_of[name])
@@ -400,10 +355,10 @@ class SharedCoreSolver:
 
     def _hold_by_backlog(self, names: Iterable[str]) -> int | None:
         """Return how long the threads of some activities may have work all the time."""
-        if self.backlog is None:
+        if self.limits.backlog is None:
             return None
         try:
-            return max(self.backlog.find_busy_window(build_thread_work(self.cores, name)) for name in names)
+            return max(self.limits.backlog.find_busy_window(build_thread_work(self.cores, name)) for name in names)
         except DivergedError:
             return None
 
@@ -431,5 +386,5 @@ class SharedCoreSolver:
         if name in self.cause_of:
             return WorstResponse(None, tier, cause)
         response = min(self.step_responses[name], max((way.delay or 0) - way.best_before for way in ways))
-        is_limited = name in self.limits and response >= self.limits[name].response
+        is_limited = name in self.limits.of_host and response >= self.limits.of_host[name].response
         return WorstResponse(response, "whole host" if is_limited else tier)

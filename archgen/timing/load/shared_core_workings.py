@@ -73,8 +73,8 @@ class SharedCoreWorkings:
 
     def _list_backlog(self, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield how what may be pending bounds a way."""
-        if self.solver.backlog is not None:
-            yield from BacklogWorkings(self.solver.backlog, self.formulas).list_delays(way)
+        if self.solver.limits.backlog is not None:
+            yield from BacklogWorkings(self.solver.limits.backlog, self.formulas).list_delays(way)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         before, response = way.steps[-2], self.solver.step_responses.get(name)
@@ -132,8 +132,8 @@ class SharedCoreWorkings:
                 own_term = WorkTerm(((thread_id, path.last_step.cost),), count, OWN_JOBS)
                 own_terms = group_terms([own_term, *self._list_own_terms(path, hold)])
                 yield replace(working, terms=own_terms, activation=0, is_hold=True)
-            if self.solver.backlog is not None:
-                yield from BacklogWorkings(self.solver.backlog, self.formulas).list_holds(thread_id, hold)
+            if self.solver.limits.backlog is not None:
+                yield from BacklogWorkings(self.solver.limits.backlog, self.formulas).list_holds(thread_id, hold)
 
     def _explain_window(
         self, path: CorePath, steps: tuple[str, ...], count: int, arrival: int, window: int
