@@ -134,7 +134,7 @@ archgenExplorer.makeScene = (function () {
       arrow.lit = ask.lit ? litFlows.length > 0 : null;
       arrow.shownFlows = litFlows.length ? litFlows : arrow.flows;
       const sides = litFlows.map(ask.sideOf);
-      arrow.side = ["before", "after"].find((side) => sides.filter((each) => each === side).length * 2 >= sides.length) ?? "plain";
+      arrow.side = ["before", "after"].find((side) => sides.length && sides.filter((each) => each === side).length * 2 >= sides.length) ?? "plain";
       arrow.optional = arrow.flows.every((flow) => flow.optional);
       arrow.style = arrow.flows.every((flow) => flow.style === arrow.flows[0].style) ? arrow.flows[0].style : "data";
       arrow.picked = ask.pickedArrow === arrow.id;
