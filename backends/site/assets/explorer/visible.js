@@ -123,7 +123,8 @@ archgenExplorer.makeScene = (function () {
     const arrows = new Map();
     for (const flow of level.flows) {
       const [tail, head] = [boxOf[flow.tail], boxOf[flow.head]];
-      if (tail === head || !ask.shows(level.members[flow.tail]) || !ask.shows(level.members[flow.head])) continue;
+      // Nearly all would lead to the box that stands for everything else.
+      if (tail === head || tail.id === "rest" || head.id === "rest" || !ask.shows(level.members[flow.tail]) || !ask.shows(level.members[flow.head])) continue;
       const id = tail.id + ">" + head.id;
       if (!arrows.has(id)) arrows.set(id, { id, tail, head, flows: [] });
       arrows.get(id).flows.push(flow);
