@@ -24,8 +24,8 @@ _CROWDED_COST = 0.5
 """What a flow costs that stays in its column, or runs back, in columns of length; and a box too many in a column, in the
 flows of a box.
 """
-_MAX_IMPROVED = 300
-"""More items are only sorted: trying each of them in each column would take as long as the rest of the site."""
+_MAX_STEP = 2
+"""An item is tried in so many columns to the left and to the right at once: in all of them it would take too long."""
 _SWEEPS = 8
 
 
@@ -39,7 +39,7 @@ def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bo
     flows = {ends: weight for ends, weight in weights.items() if ends[0] != ends[1]}
     column_count = _choose_column_count(len(items), is_inner=is_inner)
     columns = _cut_evenly(_sort_forward(linked_items, flows), column_count)
-    columns = _shorten_flows(columns, flows) if 1 < len(linked_items) <= _MAX_IMPROVED else columns
+    columns = _shorten_flows(columns, flows) if linked_items else columns
     columns = _order_columns(columns, flows)
     heights = _align_heights(columns, flows)
     for item in (item for item in items if item not in linked_ids):
@@ -137,7 +137,8 @@ def _shorten_flows(columns: Sequence[Sequence[str]], flows: FlowWeights) -> list
     for _ in range(_SWEEPS):
         moved = False
         for item in links:
-            best_column = min(range(len(columns)), key=lambda column, item=item: cost(item, column))  # type: ignore[misc]
+            near = range(max(0, column_of[item] - _MAX_STEP), min(len(columns), column_of[item] + _MAX_STEP + 1))
+            best_column = min(near, key=lambda column, item=item: cost(item, column))  # type: ignore[misc]
             if cost(item, best_column) < cost(item, column_of[item]) - 1e-9:
                 sizes[column_of[item]] -= 1
                 sizes[best_column] += 1

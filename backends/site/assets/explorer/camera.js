@@ -54,9 +54,13 @@ archgenExplorer.makeCamera = function (stage, map, onMove, onRest) {
   // The whole of the map, or of some boxes, in the free part of the window.
   function fit(area = bounds, most = 1) {
     const margin = 28;
-    const width = Math.max(100, stage.clientWidth - 2 * margin), height = Math.max(100, stage.clientHeight - 2 * margin);
+    // The legend and the mini-map stand at the foot of a large window.
+    const foot = stage.clientHeight > 600 ? 60 : 0;
+    const width = Math.max(100, stage.clientWidth - 2 * margin), height = Math.max(100, stage.clientHeight - 2 * margin - foot);
     const next = Math.min(most, width / (area.right - area.left || 1), height / (area.bottom - area.top || 1));
-    set((stage.clientWidth - (area.left + area.right) * next) / 2, (stage.clientHeight - (area.top + area.bottom) * next) / 2, next);
+    const spare = stage.clientHeight - (area.bottom - area.top) * next;
+    const shift = spare / 2 > foot + margin ? 0 : foot;
+    set((stage.clientWidth - (area.left + area.right) * next) / 2, (stage.clientHeight - shift - (area.top + area.bottom) * next) / 2, next);
   }
 
   // Moves only as far as needed to have a box in sight.

@@ -85,6 +85,12 @@ archgenExplorer.layOut = (function () {
     return { width: Math.max(0, x - channel), top, bottom, columns: order.map((number) => columns.get(number)) };
   }
 
+  // What has no place of its own (what is folded, nodes without a home) stands below the last column.
+  function findEnd(places) {
+    const last = Math.max(0, ...places.map(([column]) => column));
+    return [last, Math.max(-1, ...places.filter(([column]) => column === last).map(([, height]) => height)) + 1];
+  }
+
   // The same whatever is open, so that positions stay.
   function choosePitch(known, last) {
     const heights = known.map(([, height]) => height);
@@ -107,16 +113,16 @@ archgenExplorer.layOut = (function () {
     }
     for (const [home, members] of inside) {
       if (!home.open) continue;
-      const last = Math.max(0, ...members.filter((box) => box.element).map((box) => level.placeOf(box.element)[0]));
-      const size = place(members, (box) => (box.element ? level.placeOf(box.element) : [last, 1e3]), INNER);
+      const below = findEnd(members.filter((box) => box.element).map((box) => level.placeOf(box.element)));
+      const size = place(members, (box) => (box.element ? level.placeOf(box.element) : below), INNER);
       home.inner = size;
       home.lines = wrap(home.title, Math.max(BOX.width, size.width) - 40, 1);
       home.width = Math.max(BOX.width + 40, size.width + 2 * FRAME.side);
       home.height = (members.length ? size.bottom - size.top : 0) + FRAME.top + FRAME.bottom;
     }
     const known = outer.map((box) => box.element && level.homePlaceOf(box.element)).filter(Boolean);
-    const last = Math.max(0, ...known.map(([column]) => column));
-    const size = place(outer, (box) => (box.element && level.homePlaceOf(box.element)) || [last, 1e3], { ...OUTER, pitch: choosePitch(known, last) });
+    const below = findEnd(known);
+    const size = place(outer, (box) => (box.element && level.homePlaceOf(box.element)) || below, { ...OUTER, pitch: choosePitch(known, below[0]) });
     for (const [home, members] of inside) {
       const indent = (home.width - (home.inner?.width ?? 0)) / 2;
       for (const box of members) {

@@ -17,8 +17,8 @@ archgenExplorer.makeLegend = function (actions) {
   function drawLines(scene, hasLit) {
     const has = (test) => scene.arrows.some(test);
     const rows = [];
-    if (hasLit && has(({ side }) => side === "before")) rows.push(entry(sample("arrow lit before"), "feeds it"));
-    if (hasLit && has(({ side }) => side === "after")) rows.push(entry(sample("arrow lit after"), "fed by it"));
+    if (hasLit && has(({ side, head }) => side === "before" || (side === "" && head.picked))) rows.push(entry(sample("arrow lit before"), "feeds it"));
+    if (hasLit && has(({ side, tail }) => side === "after" || (side === "" && tail.picked))) rows.push(entry(sample("arrow lit after"), "fed by it"));
     if (!hasLit && has(({ flows }) => flows.length > 3)) rows.push(entry(sample("arrow many"), "4 flows or more"));
     if (has(({ optional }) => optional)) rows.push(entry(sample("arrow one optional"), "optional input"));
     if (has(({ style }) => style === "physical")) rows.push(entry(sample("arrow one physical"), "physical"));

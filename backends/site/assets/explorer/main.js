@@ -14,7 +14,7 @@
   const map = shape("svg", { class: "map", role: "group", "aria-label": "Map. Arrow keys go from box to box, Enter shows details, question mark lists all keys." },
     layers.frames, layers.edges, layers.boxes, layers.lit, layers.labels);
   const stage = element("div", { className: "stage", tabIndex: -1 }, map);
-  let scene = null, bounds = null, level = null, choice = null, pickedArrow = null, drawnLevel = "";
+  let scene = null, bounds = null, level = null, choice = null, pickedArrow = null, drawnLevel = "", fitView = "", fitWidth = 0;
 
   const store = archgenExplorer.makeState((problems) => render(problems ?? []));
   const { state } = store;
@@ -76,7 +76,18 @@
   // Where the window looks: as the address says, else at all, else it moves only as far as what is lit needs.
   function place(old, isSame, litBoxes) {
     if (state.at) return camera.set(...state.at);
-    if (!old || !isSame) camera.fit();
+    // Where all was in sight, it stays so when the panel comes or goes.
+    const { x, y, zoom } = camera.view;
+    const wasFit = `${x} ${y} ${zoom}` === fitView;
+    if (!old || !isSame || (wasFit && stage.clientWidth !== fitWidth)) {
+      camera.fit();
+      fitWidth = stage.clientWidth;
+      fitView = `${camera.view.x} ${camera.view.y} ${camera.view.zoom}`;
+    }
+    showLit(litBoxes);
+  }
+
+  function showLit(litBoxes) {
     const boxes = [...(litBoxes ?? [])].filter((box) => !box.open);
     if (!boxes.length) return;
     const area = { left: Math.min(...boxes.map((box) => box.x)), right: Math.max(...boxes.map((box) => box.x + box.width)),

@@ -5,6 +5,7 @@ archgenExplorer.routeArrows = (function () {
   const SPREAD = 9; // px between two ends on one side
   const MARGIN = 13; // px between a line and a box that it passes
   const LOOP = 46; // px that a line between boxes of one column swings out
+  const TURN = [26, 80]; // px that a curve takes before it is level again: more, the higher it climbs
 
   const middle = (box) => box.y + box.height / 2;
   const right = (box) => box.x + box.width;
@@ -43,10 +44,11 @@ archgenExplorer.routeArrows = (function () {
     const [left, to] = arrow.turn === "forward" ? [arrow.tail, arrow.head] : [arrow.head, arrow.tail];
     const strips = [];
     const add = (boxes, min, max) => {
-      const own = boxes.filter((box) => box !== left && box !== to && box !== left.parent && box !== to.parent);
-      if (own.length && own[0].columnX >= min - 1 && own[0].columnX + own[0].columnWidth <= max + 1) {
-        strips.push({ from: own[0].columnX, to: own[0].columnX + own[0].columnWidth, boxes: own });
-      }
+      const [{ columnX, columnWidth }] = boxes;
+      // A narrow box in a wide column: the line passes what is beside it.
+      const [from, end] = [Math.max(columnX, min), Math.min(columnX + columnWidth, max)];
+      const own = boxes.filter((box) => box !== left && box !== to && box !== left.parent && box !== to.parent && right(box) > from + 1 && box.x < end - 1);
+      if (own.length && end - from > 4) strips.push({ from, to: end, boxes: own });
     };
     const [start, end] = [right(left), to.x];
     if (left.parent && left.parent === to.parent) for (const column of left.parent.inner.columns) add(column, start, end);
@@ -71,6 +73,12 @@ archgenExplorer.routeArrows = (function () {
     return best + (best === wish ? 0 : (count % 2 ? -1 : 1) * Math.ceil(count / 2) * 2.5);
   }
 
+  // A line that goes to the right does not turn back to the left, and the other way round.
+  function keepAhead(x, y, [lastX, lastY], direction) {
+    const turn = Math.min(TURN[1], Math.max(TURN[0], Math.abs(y - lastY) / 3));
+    return direction > 0 ? Math.max(x, lastX + turn) : Math.min(x, lastX - turn);
+  }
+
   const num = (value) => Math.round(value * 10) / 10;
   const curve = ([x1, y1], [x2, y2]) => {
     const bend = (x2 - x1) * 0.5;
@@ -92,8 +100,10 @@ archgenExplorer.routeArrows = (function () {
       const [near, far] = arrow.direction > 0 ? [strip.from, strip.to] : [strip.to, strip.from];
       const share = ((near + far) / 2 - start[0]) / (stop[0] - start[0] || 1);
       const y = findGap(strip, start[1] + (stop[1] - start[1]) * share, used);
-      way.push([near - arrow.direction * 8, y], [far + arrow.direction * 8, y]);
+      way.push([keepAhead(near - arrow.direction * 8, y, way.at(-1), arrow.direction), y], [far + arrow.direction * 8, y]);
     }
+    // The last curve needs room as well.
+    if (way.length > 1) way.at(-1)[0] = keepAhead(way.at(-1)[0], way.at(-1)[1], stop, -arrow.direction);
     way.push(stop);
     arrow.points = way;
     let path = `M${num(start[0])} ${num(start[1])}`;

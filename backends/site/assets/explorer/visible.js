@@ -123,7 +123,8 @@ archgenExplorer.makeScene = (function () {
     const arrows = new Map();
     for (const flow of level.flows) {
       const [tail, head] = [boxOf[flow.tail], boxOf[flow.head]];
-      if (tail === head || !ask.shows(level.members[flow.tail]) || !ask.shows(level.members[flow.head])) continue;
+      // Nearly all would lead to the box that stands for everything else.
+      if (tail === head || tail.id === "rest" || head.id === "rest" || !ask.shows(level.members[flow.tail]) || !ask.shows(level.members[flow.head])) continue;
       const id = tail.id + ">" + head.id;
       if (!arrows.has(id)) arrows.set(id, { id, tail, head, flows: [] });
       arrows.get(id).flows.push(flow);
@@ -134,7 +135,7 @@ archgenExplorer.makeScene = (function () {
       arrow.lit = ask.lit ? litFlows.length > 0 : null;
       arrow.shownFlows = litFlows.length ? litFlows : arrow.flows;
       const sides = litFlows.map(ask.sideOf);
-      arrow.side = ["before", "after"].find((side) => sides.filter((each) => each === side).length * 2 >= sides.length) ?? "plain";
+      arrow.side = ["before", "after"].find((side) => sides.length && sides.filter((each) => each === side).length * 2 >= sides.length) ?? "plain";
       arrow.optional = arrow.flows.every((flow) => flow.optional);
       arrow.style = arrow.flows.every((flow) => flow.style === arrow.flows[0].style) ? arrow.flows[0].style : "data";
       arrow.picked = ask.pickedArrow === arrow.id;
