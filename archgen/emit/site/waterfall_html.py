@@ -31,8 +31,8 @@ def write_waterfall(
     cards = "\n".join([write_card(card) for card in waterfall.cards])
     remark = f'<p class="muted">{escape_html(waterfall.remark)}</p>\n' if waterfall.remark else ""
     return (
-        f'<div class="cards waterfall">\n<section class="card known">\n<p>{write_inlines(waterfall.lead)}</p>\n'
-        f'{_write_total(waterfall)}\n<ul class="figures">\n{figures}\n</ul>\n</section>\n'
+        f'<div class="cards waterfall">\n<div class="card known">\n<p>{write_inlines(waterfall.lead)}</p>\n'
+        f'{_write_total(waterfall)}\n<ul class="figures">\n{figures}\n</ul>\n</div>\n'
         '<section class="card">\n<div class="head"><h2>Where the time goes</h2>'
         f'<span class="legend" aria-hidden="true">{_write_legend(waterfall)}</span></div>\n'
         f'{_write_axis(waterfall)}\n<ol class="steps">\n{rows}\n</ol>\n{remark}</section>\n{cards}\n</div>'
