@@ -94,11 +94,9 @@ class ProductInputs:
             for block in section.blocks
             if isinstance(block, Figure)
         }
-        return {
-            drawing.id: drawing
-            for drawing in make_report_drawings(self.views.lookup, self.views.drawings).values()
-            if drawing.id in shown_ids
-        }
+        shows_ros = self._report_edition.level == "implementation"
+        drawings = make_report_drawings(self.views.lookup, self.views.drawings, shows_ros=shows_ros)
+        return {drawing.id: drawing for drawing in drawings.values() if drawing.id in shown_ids}
 
     @cached_property
     def pages(self) -> tuple[Page, ...]:

@@ -27,7 +27,8 @@ _LARGE_DRAWINGS = ("components", "ros", "timing")
 def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     """Make the outline of the printed report; appendices are at the end."""
     outline = report_outline.make_report(lookup, edition)
-    printer = _ReportPrinter(lookup, edition, make_report_drawings(lookup, edition.drawings))
+    shows_ros = edition.level == "implementation"
+    printer = _ReportPrinter(lookup, edition, make_report_drawings(lookup, edition.drawings, shows_ros=shows_ros))
     sections = [part for section in outline.sections for part in printer.print_section(section)]
     overview = next((section for section in sections if section.anchor == "page:index"), None)
     summary = summary_section.make_summary(lookup, edition, overview)
@@ -43,7 +44,10 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
             mention_section(print_section_figures(each)) for each in (*body, *printer.make_ros_annexes(), *annexes)
         ),
         title_table=front_pages.make_partner_table(lookup),
-        front_sections=tuple(front_pages.make_front_sections(lookup, edition, printer.find_legend())),
+        front_sections=tuple(
+            print_section_figures(each)
+            for each in front_pages.make_front_sections(lookup, edition, printer.find_legend())
+        ),
         properties=front_pages.list_properties(lookup, edition),
         lists=edition.settings.lists,
         has_large_paper=edition.settings.has_large_paper,

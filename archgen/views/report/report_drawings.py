@@ -16,9 +16,18 @@ _MAX_INSIDE_BOXES = 10
 """Groups of more components are drawn without their neighbours."""
 
 
-def make_report_drawings(lookup: Lookup, drawings: Mapping[str, Drawing]) -> dict[str, Drawing]:
-    """Return the report's drawings by the names of the usual ones; those that differ have ids of their own."""
-    fitted = {name: _fit_drawing(lookup, drawing) for name, drawing in drawings.items()}
+def make_report_drawings(
+    lookup: Lookup, drawings: Mapping[str, Drawing], *, shows_ros: bool = True
+) -> dict[str, Drawing]:
+    """Return the report's drawings by the names of the usual ones; those that differ have ids of their own.
+
+    A report of the functional level has no pictures of nodes, and no forms of theirs in its legend.
+    """
+    fitted = {
+        name: _fit_drawing(lookup, drawing)
+        for name, drawing in drawings.items()
+        if shows_ros or not (isinstance(drawing, Graph) and drawing.kind in {"implementation", "group-timing"})
+    }
     legend = _draw_legend([drawing for drawing in fitted.values() if isinstance(drawing, Graph)])
     fitted = {name: _leave_legend(drawing) for name, drawing in fitted.items()}
     return fitted | ({LEGEND_NAME: legend} if legend.legend else {})
@@ -26,7 +35,8 @@ def make_report_drawings(lookup: Lookup, drawings: Mapping[str, Drawing]) -> dic
 
 def _draw_legend(graphs: Sequence[Graph]) -> Graph:
     """Return a picture with the legend of all pictures that the report draws anew, under a flow as an example."""
-    keys = {key for graph in graphs if graph.id.startswith(_PREFIX) for key in add_legend_keys(graph).legend}
+    graphs = [graph for graph in graphs if graph.id.startswith(_PREFIX)]
+    keys = {key for graph in graphs for key in add_legend_keys(graph).legend}
     boxes = (
         Box("from", "Neighbour", ("what it gives, or calls",), emphasis="neighbour", side="left"),
         Box("subject", "What it is about", ("role, owner, host",), emphasis="subject"),
