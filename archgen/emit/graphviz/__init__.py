@@ -18,6 +18,7 @@ from typing import Final
 from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
 from archgen.emit.graphviz.drawing_worker import DrawingTask
+from archgen.emit.graphviz.hidden_texts import hide_texts
 from archgen.emit.graphviz.palette import dark_rules
 from archgen.emit.graphviz.worker_pool import (
     DrawingObserver,
@@ -56,14 +57,14 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     cache = cache if cache and _is_usable(cache) else None
     wanted_formats = tuple(form for form in PICTURE_FORMATS if form in formats)
     # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
-    addresses = [dict(_link_addresses(graph, resolve_link)) for graph in drawings]
-    keys = [store.picture_key(graph, links) for graph, links in zip(drawings, addresses, strict=True)]
+    hidden = [hide_texts(graph, dict(_link_addresses(graph, resolve_link))) for graph in drawings]
+    keys = [store.picture_key(each.drawing, each.links) for each in hidden]
     pictures = {
         at: hit for at, name in enumerate(keys) if cache and (hit := store.load_picture(cache, name, wanted_formats))
     }
     missing = [at for at in range(len(drawings)) if at not in pictures]
     if missing:
-        tasks = [DrawingTask(drawings[at], addresses[at], wanted_formats) for at in missing]
+        tasks = [DrawingTask(hidden[at].drawing, dict(hidden[at].links), wanted_formats) for at in missing]
 
         def keep_picture(index: int, picture: Picture) -> None:
             # A picture with a warning is drawn anew each time: a layout that was only too slow may succeed in the next
@@ -83,7 +84,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
         pictures.update(zip(missing, drawn, strict=True))
         if cache:
             store.prune_pictures(cache, len(drawings))
-    return {graph.id: pictures[at] for at, graph in enumerate(drawings)}
+    return {graph.id: hidden[at].restore(pictures[at]) for at, graph in enumerate(drawings)}
 
 
 @contextmanager

@@ -65,7 +65,7 @@ def _place_labels(
 def _reach_of(part: ScenePart, path: Sequence[ScenePoint]) -> Rectangle:
     """Return the rectangle round all places where a label may stand."""
     xs, ys = [part.x, *(x for x, _ in path)], [part.y, *(y for _, y in path)]
-    aside = part.width / 2 + _LINE_GAP, 2 * part.height + _LINE_GAP
+    aside = part.width + 2 * _LINE_GAP, 3 * part.height + _LINE_GAP
     return (min(xs) - aside[0], min(ys) - aside[1], max(xs) + aside[0], max(ys) + aside[1])
 
 
@@ -103,9 +103,10 @@ def _candidate_spots(part: ScenePart, path: Sequence[ScenePoint]) -> Iterator[Sc
     points = sorted(path, key=lambda spot: (abs(spot[0] - part.x) + abs(spot[1] - part.y), spot))
     yield from (replace(part, x=x, y=y) for x, y in points)
     yield part
-    # Close above and below the arrow, and one more label's height away.
-    for side in (part.height * 0.6, -part.height * 0.6, part.height * 1.4, -part.height * 1.4):
-        yield from (replace(part, x=x, y=y + side) for x, y in points)
+    # Close above and below the arrow, beside it, then one and two more label's heights away.
+    aside = part.width / 2 + _LINE_GAP
+    for dx, dy in ((0, 0.6), (0, -0.6), (aside, 0), (-aside, 0), (0, 1.4), (0, -1.4), (0, 2.4), (0, -2.4)):
+        yield from (replace(part, x=x + dx, y=y + dy * part.height) for x, y in points)
 
 
 def sample_line(line: SceneLine, steps: int = 8) -> Iterator[ScenePoint]:

@@ -138,7 +138,9 @@ def _candidate_layouts(
     # Labels beside vertical arrows need height for their lines, beside horizontal ones width for their longest words.
     for direction in _DIRECTIONS[styled_graph.graph.direction]:
         ranksep = 0.5 + 0.16 * label_lines if direction == "TB" else 0.5 + 0.9 * bool(label_lines)
-        settings = f'rankdir="{direction}" nodesep="0.35" ranksep="{ranksep:.2f}" splines="spline"'
+        # Two boxes side by side in a row need room for the words of the arrow between them, too.
+        nodesep = 0.35 + (0.75 * bool(label_lines) if direction == "TB" else 0.16 * label_lines)
+        settings = f'rankdir="{direction}" nodesep="{nodesep:.2f}" ranksep="{ranksep:.2f}" splines="spline"'
         yield settings, plain_edges
         yield settings, forward_edges
         sizes = {name: (each.width, each.height)[:: 1 if direction == "TB" else -1] for name, each in tiles.items()}

@@ -114,7 +114,7 @@ def _draw_homeless(lookup: Lookup) -> Iterator[Box]:
     if homeless and architecture.hosts:
         yield Box(
             "no host",
-            f"{count_noun(len(homeless), 'process')} without a host",
+            f"{len(homeless)} without a host",
             style="fold",
             emphasis="neighbour",
             tooltip="\n".join(["No host is decided yet for", *homeless]),

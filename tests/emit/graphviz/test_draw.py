@@ -187,6 +187,22 @@ def test_what_changed_is_drawn_anew(change: Graph, tmp_path: Path) -> None:
     )
 
 
+def test_what_nobody_sees_draws_nothing_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    draw_pictures((TINY,), ("svg", "png"), resolve_link=lambda _: None, cache=tmp_path)
+    monkeypatch.setattr("archgen.emit.graphviz.draw_all", no_workers)
+    boxes = tuple(replace(box, tooltip='</title><b onclick="x">\nsecond', ref="page") for box in TINY.boxes)
+    arrows = tuple(replace(arrow, flows=("archgen.tip/b0 & more",), ref=None) for arrow in TINY.arrows)
+    told = replace(TINY, boxes=boxes, arrows=arrows, alt="Two <boxes>")
+    made = draw_pictures((told,), ("svg", "png"), resolve_link=lambda _: 'a"b.html', cache=tmp_path)["tiny"]
+    svg = (made.svg or b"").decode()
+    assert svg.count("<title>&lt;/title&gt;&lt;b onclick=&quot;x&quot;&gt;&#10;second</title>") == len(boxes)
+    assert svg.count('<a xlink:href="a&quot;b.html"') == len(boxes)
+    assert "<desc>Two &lt;boxes&gt;</desc>" in svg
+    assert "<title>archgen.tip/b0 &amp; more</title>" in svg
+    assert 'URL="a\\"b.html"' in made.dot
+    assert "second" in made.dot
+
+
 @pytest.mark.parametrize("damage", [b"", b"{}\n", b'{"parts": 3}\n', b"\xff\xfe", b"[]\n"])
 def test_a_damaged_cache_is_not_taken(damage: bytes, tmp_path: Path) -> None:
     first = draw_pictures((TINY,), ("svg",), resolve_link=lambda _: None, cache=tmp_path)
