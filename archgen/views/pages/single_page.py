@@ -38,9 +38,9 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
             return page_maker.chapter_pages()
         case "rule":
             return page_maker.rule_pages()
-        case "timing" | "chain":
-            return page_maker.timing_pages()
-        case "page" if name in {"timing", "chains"}:
+        case "chain":
+            return page_maker.chain_pages()
+        case "timing" | "page" if kind == "timing" or name in {"timing", "chains"}:
             return page_maker.timing_pages()
         case "component" | "group" | "node" | "topic":
             return ()

@@ -299,6 +299,11 @@ class PageMaker:
                 path = f"timing/{section.anchor.partition(':')[2]}.html"
                 yield Page(path, section.anchor, section.title, "timing", section, crumbs, "Timing")
         yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
+        yield from self.chain_pages()
+
+    def chain_pages(self) -> Iterator[Page]:
+        """Make a page for each chain."""
+        graphs = self.edition.drawings
         crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
         results = {f"chain:{result.id}": result for result in self.lookup.timing.chains} if self.lookup.timing else {}
         for section in timing_chapter.make_chain_sections(self.lookup, graphs):
