@@ -23,7 +23,7 @@ _WORDS = {
     "terms of the bound": "parts of the bound",
     "Where rates differ": "Where a reader is slower than its source",
     "Edges that lose samples or beat": "Topics that are read less often than published",
-    "archgen finds": "the check of the architecture finds",
+    "archgen finds": "The check of the architecture finds",
     "Where the rate is from": "Source of the rate",
     "any scheduler that never idles": "any order that never idles",
 }
