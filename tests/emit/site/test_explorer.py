@@ -448,6 +448,22 @@ def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
     assert box(page, long).locator(".title.near").last.text_content().endswith("…")  # type: ignore[union-attr]
 
 
+def test_levels_that_a_project_has_not_are_empty(visit: Open, tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(
+        "archgen: 1\nproject: {id: r}\nnodes: {a: {publishes: {x: {topic: /x}}}, b: {subscribes: {x: {topic: /x}}}}\n",
+        "utf-8",
+    )
+    site = write_site(tmp_path / "robot.yaml", tmp_path / "site")
+    page = visit(root=site)
+    assert page.locator(".stage .box").count() == 1
+    page.get_by_role("button", name="Open all").click()
+    expect(page.locator(".stage .box")).to_have_count(3)
+    expect(page.get_by_role("button", name="Hosts", exact=True)).to_be_hidden()
+    page.evaluate("location.hash = '#level=hosts&open=*'")
+    page.evaluate("location.hash = '#level=components'")
+    expect(page.locator(".stage .box")).to_have_count(0)
+
+
 @pytest.fixture(scope="module")
 def large(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write a site of 30 groups with 10 components each, wired at random but always alike."""

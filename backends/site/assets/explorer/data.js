@@ -91,6 +91,9 @@ const archgenExplorer = (function () {
     model.nodeSteps = steps;
   }
 
+  // A level that the project has not (hosts, where no node runs on one) has no places.
+  const orNull = (place) => (place?.length ? place : null);
+
   const newSteps = (count) => ({ after: Array.from({ length: count }, () => new Set()), before: Array.from({ length: count }, () => new Set()) });
 
   function addStep(steps, tail, head) {
@@ -103,7 +106,7 @@ const archgenExplorer = (function () {
   function readLevel(model, name) {
     if (name === "components" || name === "groups") {
       return { name, members: model.components, flows: model.flows, homes: model.groups, homeOf: (member) => member.group,
-        placeOf: (member) => member.place, homePlaceOf: (home) => home.place, opens: name === "components" };
+        placeOf: (member) => orNull(member.place), homePlaceOf: (home) => orNull(home.place), opens: name === "components" };
     }
     const byHost = name === "hosts";
     const homes = byHost ? model.hosts : model.groups;
@@ -113,8 +116,8 @@ const archgenExplorer = (function () {
       owners: "", line: "", summary: "", address: "", place: null };
     return { name, members: model.nodes, flows: model.links, homes: isOpen ? [...homes, rest] : homes,
       homeOf: (node) => (node[field] < 0 ? homes.length : node[field]),
-      placeOf: (node) => (byHost ? node.hostPlace : node.place),
-      homePlaceOf: (home) => (byHost ? home.place : home.nodePlace), opens: true };
+      placeOf: (node) => orNull(byHost ? node.hostPlace : node.place),
+      homePlaceOf: (home) => orNull(byHost ? home.place : home.nodePlace), opens: true };
   }
 
   // An element with properties and children: text is text, whatever it holds.

@@ -69,7 +69,7 @@ archgenExplorer.layOut = (function () {
       if (!columns.has(column)) columns.set(column, []);
       columns.get(column).push(box);
     }
-    let x = 0, top = Infinity, bottom = -Infinity;
+    let x = 0, top = boxes.length ? Infinity : 0, bottom = boxes.length ? -Infinity : 0;
     const order = [...columns.keys()].sort((a, b) => a - b);
     order.forEach((number, at) => {
       const column = columns.get(number).sort((a, b) => a.place[1] - b.place[1]);
@@ -113,8 +113,8 @@ archgenExplorer.layOut = (function () {
     }
     for (const [home, members] of inside) {
       if (!home.open) continue;
-      const below = findEnd(members.filter((box) => box.element).map((box) => level.placeOf(box.element)));
-      const size = place(members, (box) => (box.element ? level.placeOf(box.element) : below), INNER);
+      const below = findEnd(members.map((box) => box.element && level.placeOf(box.element)).filter(Boolean));
+      const size = place(members, (box) => (box.element && level.placeOf(box.element)) || below, INNER);
       home.inner = size;
       home.lines = wrap(home.title, Math.max(BOX.width, size.width) - 40, 1);
       home.width = Math.max(BOX.width + 40, size.width + 2 * FRAME.side);

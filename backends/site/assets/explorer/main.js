@@ -230,7 +230,11 @@
   }
 
   new ResizeObserver(() => minimap.follow(camera.view)).observe(stage);
-  const start = () => render(store.read());
+  function start() {
+    const hints = store.read();
+    if (!location.hash && !model.components.length) state.level = "nodes";
+    render(hints);
+  }
   // Widths of texts are those of the font that is drawn; where it does not come, those of the next best.
   Promise.race([document.fonts.load("600 13px Inter"), new Promise((done) => setTimeout(done, 400))]).then(start, start);
 })();

@@ -8,7 +8,7 @@ archgenExplorer.makeMinimap = function (camera, stage) {
   let scale = 1, offset = [0, 0];
 
   function draw(scene, bounds) {
-    const width = bounds.right - bounds.left, height = bounds.bottom - bounds.top;
+    const width = Math.max(1, bounds.right - bounds.left), height = Math.max(1, bounds.bottom - bounds.top);
     scale = Math.min((WIDTH - 12) / width, (HEIGHT - 12) / height);
     offset = [(WIDTH - width * scale) / 2 - bounds.left * scale, (HEIGHT - height * scale) / 2 - bounds.top * scale];
     const shown = scene.boxes.filter((box) => !box.hidden);
