@@ -81,7 +81,7 @@ def test_what_the_page_says(tmp_path: Path) -> None:
     html = comparison_documents.render_comparison_html(*robot(tmp_path), OutputOptions()).decode()
     text = unescape(re.sub(r"<[^>]+>", " ", html[html.index("<main") :]))
     said = " ".join(text.split())
-    assert "Robot What changed: before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
+    assert "What changed in Robot before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
     assert "Breaks CERTH, SSSA Concerns CERTH, SSSA Breaking changes" in said
     assert (
         "~ display.finder of SSSA: worst case execution time 20 ms → 60 ms breaks CERTH (promise): takes away the proof that the chain see meets"
