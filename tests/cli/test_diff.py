@@ -64,7 +64,7 @@ def test_a_branch_against_where_it_left_the_main_line(run: Run, robot: Path) -> 
         "Latency of chains\n"
         "  see: 107 ms → 207 ms (+100 ms), deadline 300 ms: met\n"
         "\n"
-        "1 change (1 changed); concerns CERTH, SSSA\n"
+        "1 change (1 changed); concerns CERTH, SSSA; no change breaks another partner\n"
     )
     assert run("diff", "main", "-C", robot).out == ran.out
     assert run("diff", "main..slow").out == ran.out
@@ -110,7 +110,7 @@ def test_consequences_and_cured_findings(run: Run, robot: Path) -> None:
     )
     assert "  warning[unread-output]: nobody reads `image` of `sensing.camera` (archgen.yaml:8:26)\n" in out
     assert "Latency of chains\n  see: 107 ms → 102 ms (-5 ms), deadline 300 ms: met\n" in out
-    assert out.rstrip().endswith("; concerns CERTH, SSSA")
+    assert out.rstrip().endswith("; concerns CERTH, SSSA; no change breaks another partner")
 
 
 def test_json_follows_its_schema(run: Run, robot: Path) -> None:

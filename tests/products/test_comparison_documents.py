@@ -81,13 +81,13 @@ def test_what_the_page_says(tmp_path: Path) -> None:
     html = comparison_documents.render_comparison_html(*robot(tmp_path), OutputOptions()).decode()
     text = unescape(re.sub(r"<[^>]+>", " ", html[html.index("<main") :]))
     said = " ".join(text.split())
-    assert "Robot What changed: before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
+    assert "What changed in Robot before → after From before To after Changes 4 changes (1 added, 3 changed)" in said
     assert "Breaks CERTH, SSSA Concerns CERTH, SSSA Breaking changes" in said
     assert (
-        "~ display.finder of SSSA: worst case execution time 20 ms → 60 ms breaks CERTH (promise): takes away the proof that the chain see meets"
+        "~ Finder of SSSA: worst case execution time 20 ms → 60 ms breaks CERTH (promise): takes away the proof that the chain see meets"
         in said
     )
-    assert "Other changes Display (SSSA) + component display.lamp is added" in said
+    assert "Other changes Display (SSSA) + component Lamp is added" in said
     assert "see 127 ms 167 ms +40 ms 150 ms not proven (was met)" in said
     assert re.search(r"camera of CERTH is on it found as late-chain at robot\.yaml:\d+:10", said)
     assert (
