@@ -258,9 +258,12 @@ def _unpack_png(data: bytes) -> list[bytes]:
     palette = data[data.index(b"PLTE") + 4 :]
     start = data.index(b"IDAT") + 4
     (length,) = struct.unpack(">I", data[start - 8 : start - 4])
-    rows = zlib.decompress(data[start : start + length])
-    indices = b"".join(rows[at * (width + 1) + 1 : (at + 1) * (width + 1)] for at in range(height))
-    return [palette[3 * index : 3 * index + 3] for index in indices]
+    lines = zlib.decompress(data[start : start + length])
+    size = len(lines) // height
+    rows = [lines[at + 1 : at + size] for at in range(0, len(lines), size)]
+    if data[24] == 4:  # two pixels in a byte
+        rows = [bytes(half for pair in row for half in (pair >> 4, pair & 15))[:width] for row in rows]
+    return [palette[3 * index : 3 * index + 3] for row in rows for index in row]
 
 
 def test_colours_of_the_drawing_stay_exact_and_others_are_taken_together() -> None:
@@ -270,6 +273,26 @@ def test_colours_of_the_drawing_stay_exact_and_others_are_taken_together() -> No
     assert data
     grey = smooth[0]
     assert _unpack_png(data) == [*tints, grey, grey, grey, smooth[3]]
+
+
+def test_few_colours_take_half_a_byte_and_the_rarest_shades_become_their_neighbours() -> None:
+    own = [bytes.fromhex(colour) for colour in ("f3f2f0", "0072b2")]
+    shades = [bytes((0, 0, 32 * step)) for step in range(8)] + [bytes((0, 32 * step, 0)) for step in range(1, 7)]
+    rare = bytes((0, 32, 32))
+    row = [*own, *shades, rare]
+    data = png_palette.index_pixels(_plain_pixels(17, row), frozenset(own))
+    assert data
+    assert data[24] == 4
+    colours = _unpack_png(data)
+    assert colours[:16] == row[:16]
+    assert colours[16] in {shades[1], shades[8]}
+
+
+def test_where_the_drawing_has_many_colours_none_is_given_up() -> None:
+    own = [bytes((20 * step, 0, 0)) for step in range(11)]
+    data = png_palette.index_pixels(_plain_pixels(11, own), frozenset(own))
+    assert data
+    assert (data[24], _unpack_png(data)) == (8, own)
 
 
 def test_more_than_256_colours_have_no_palette() -> None:

@@ -11,7 +11,7 @@ from archgen.views.shapes import Column, Section, Table, Text
 @pytest.mark.parametrize(
     ("text", "printed"),
     [
-        ("<= 10.004 Hz · >= 99.96 ms", "≤ 10\u202fHz · ≥ 100\u202fms"),
+        ("<= 10.004 Hz · >= 99.96 ms", "≤ 10.1\u202fHz · ≥ 99.9\u202fms"),
         (
             "7954.667 ms, 7045.333 ms before the deadline of 15 s",
             "7.95\u202fs, 7.05\u202fs before the deadline of 15\u202fs",
