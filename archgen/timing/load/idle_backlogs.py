@@ -106,7 +106,7 @@ class IdleBacklog:
     @property
     def pending_work(self) -> int:
         """Return K."""
-        return sum(share.work for share in self.pending_shares)
+        return _sum_works(self.pending_shares)
 
     def find(self) -> None:
         """Find all of it, by repetition where some thread serves several ways."""
@@ -207,9 +207,12 @@ class IdleBacklog:
         return -(-growth // core_count)
 
     def _find_pending(self) -> tuple[PendingShare, ...]:
-        """Return K: what the m - 1 threads that can have most pending may have, and all that waits for containers."""
+        """Return K: what the m - 1 threads that can have most pending may have, and all that waits for containers.
+
+        It is no more than all that the events lead to which can be pending, in whatever threads.
+        """
         share_of: dict[tuple[object, Origin], PendingShare] = {}
-        most_of_origin: dict[Origin, int] = {}
+        whole_shares: dict[Origin, PendingShare] = {}
         for way_work in self.way_works.values():
             origin = way_work.origin
             if origin not in self.streams:
@@ -220,13 +223,17 @@ class IdleBacklog:
             age, rest = max(age, share.age), max(way_work.left, share.rest)
             count = max_arrivals(self.streams[origin], age) if age > 0 else 0
             share_of[lane, origin] = PendingShare(share.name, origin, age, count, rest, count * rest)
-            most_of_origin[origin] = max(most_of_origin.get(origin, 0), count * self.cores.cascades.volumes[origin])
+            if origin not in whole_shares or count > whole_shares[origin].events:
+                volume = self.cores.cascades.volumes[origin]
+                whole_shares[origin] = PendingShare(share.name, origin, age, count, volume, count * volume)
         crowd_shares = [share for (lane, _), share in share_of.items() if lane in self.small_crowds]
         lanes: dict[object, list[PendingShare]] = {}
         for (lane, _), share in share_of.items():
             if lane not in self.small_crowds:
                 lanes.setdefault(lane, []).append(share)
-        return (*crowd_shares, *choose_largest_lanes(list(lanes.values()), most_of_origin, self.core_count - 1))
+        most_of_origin = {origin: share.work for origin, share in whole_shares.items()}
+        lane_shares = choose_largest_lanes(list(lanes.values()), most_of_origin, self.core_count - 1)
+        return min((*crowd_shares, *lane_shares), tuple(whole_shares.values()), key=_sum_works)
 
     def _find_lane(self, name: str) -> object:
         """Return what an activity waits for while a core is idle: its thread, or those of its container."""
@@ -274,6 +281,10 @@ class IdleBacklog:
             early = self.scaled_rates[origin] * self.delays[way_before] if way_before else 0
             total += work * (self.bursts[origin] - (-early >> _SHARE_BITS))
         return total
+
+
+def _sum_works(shares: Iterable[PendingShare]) -> int:
+    return sum(share.work for share in shares)
 
 
 def _find_burst(streams: EventStreams) -> int:

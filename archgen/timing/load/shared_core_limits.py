@@ -56,12 +56,12 @@ def has_priorities(cores: SharedCores) -> bool:
     return any(thread.highest_priority is not None for thread in cores.threads.values())
 
 
-def open_refining_budget(budget: SearchBudget, paths: CorePaths, limits: SharedCoreLimits) -> SearchBudget:
-    """Return what may be spent on bounds below the limits: where it is too little for some sweeps, next to nothing."""
-    if limits.backlog is None or has_priorities(paths.cores):
+def open_refining_budget(budget: SearchBudget, paths: CorePaths, backlog: IdleBacklog | None) -> SearchBudget:
+    """Return what may be spent on bounds below those of a backlog: where it is too little for some sweeps, next to nothing."""
+    if backlog is None or has_priorities(paths.cores):
         return budget.open_part(_RANKED_TERMS)
     way_count = len(paths.way_works)
-    terms_per_look = way_count * (len(limits.backlog.streams) + len(paths.cores.jobs))
+    terms_per_look = way_count * (len(backlog.streams) + len(paths.cores.jobs))
     return budget.open_part(
         _REFINING_TERMS if terms_per_look <= _MAX_TERMS_PER_LOOK else _TERMS_PER_CALM_WAY * way_count
     )

@@ -84,7 +84,8 @@ class SharedCoreSolver:
         budget: SearchBudget,
     ) -> None:
         """Take what enters the cores from the demand."""
-        self.paths, self.cores, self.demand, self.budget = paths, paths.cores, demand, budget
+        self.paths, self.cores, self.demand = paths, paths.cores, demand
+        self.whole_budget = self.budget = budget
         self.known_responses, host_limits = known_bounds
         self.limits = SharedCoreLimits(self.cores.ways_to, host_limits)
         self.step_responses: dict[str, int] = {}
@@ -118,9 +119,10 @@ class SharedCoreSolver:
             self.cause_of = dict.fromkeys(self.cores.inner_triggers.order, cause)
             return self._build_responses()
         self.work = PathWork(self.cores, self.demand)
-        # Where there are priorities it is seldom the smaller bound: then it is looked for when nothing else ends.
-        is_ranked = has_priorities(self.cores)
-        if not is_ranked:
+        is_backlog_late = self._wants_backlog_late()
+        if is_backlog_late:
+            self.budget = open_refining_budget(self.whole_budget, self.paths, None)
+        else:
             self._find_backlog()
         if self.limits.backlog is None:
             self._mark_full_threads()
@@ -128,8 +130,8 @@ class SharedCoreSolver:
         for name in sorted(self.cores.foreign_ids):
             self.work.note_delay((name, 0), self.known_responses[name].value or 0)
         while stuck_names := self._repeat_sweeps():
-            if is_ranked:
-                is_ranked = False
+            if is_backlog_late:
+                is_backlog_late = False
                 self._find_backlog()
             # What still grows has the bound of its limit, or none that is found; what it comes in the way of then has
             # none either.
@@ -139,9 +141,20 @@ class SharedCoreSolver:
 
     def _find_backlog(self) -> None:
         """Look for what may be pending, if it can be said, and cut down what may be spent on bounds that are smaller."""
-        if not (self.cores.foreign_ids or self.cores.reentrant_units):
-            self.limits.backlog = find_idle_backlog(self.cores, self.paths.way_works, self.demand, self.budget)
-            self.budget = open_refining_budget(self.budget, self.paths, self.limits)
+        if self._can_have_backlog():
+            way_works, budget = self.paths.way_works, self.whole_budget
+            self.limits.backlog = find_idle_backlog(self.cores, way_works, self.demand, budget)
+            self.budget = open_refining_budget(budget, self.paths, self.limits.backlog)
+
+    def _wants_backlog_late(self) -> bool:
+        """Whether the backlog is looked for only when nothing else ends: with priorities it is seldom the smaller bound."""
+        # Where something comes later than when the next of its kind is due, delays may have come back as jitter, and would
+        # grow from turn to turn of the whole analysis though each has an end here.
+        is_jitter_long = any(stream.jitter > stream.period for model in self.work.streams.values() for stream in model)
+        return has_priorities(self.cores) and self._can_have_backlog() and not is_jitter_long
+
+    def _can_have_backlog(self) -> bool:
+        return not (self.cores.foreign_ids or self.cores.reentrant_units)
 
     def _find_longest_wait(self) -> int:
         """Return a delay above which a bound has run away."""

@@ -18,11 +18,14 @@ from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
 from archgen.timing.load.way_works import build_thread_work, build_way_works
+from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.trigger_graph import find_triggers
 from tests.timing.exceeded import exceeded
 from tests.timing.printed import MS
+from tests.timing.random_styles import random_style_text
+from tests.timing.random_systems import architecture
 from tests.timing.sketches import analyse_sketch, read_sketch, sketch
 
 EVENT = "behaviour: event, trigger: any"
@@ -154,6 +157,27 @@ def test_threads_of_several_origins_count_as_a_whole() -> None:
     both = [PendingShare("a", x, 1, 1, 4, 4), PendingShare("a", y, 1, 1, 3, 3)]
     alone = [PendingShare("b", x, 1, 1, 6, 6)]
     assert [share.work for share in choose_largest_lanes([alone, both], {x: 6, y: 3}, 1)] == [4, 3]
+
+
+def test_no_more_is_pending_than_pending_events_lead_to() -> None:
+    """The two fullest of four threads could have 30 + 20 ms, but one event of each row is all there is: 30 + 1 + 1 ms."""
+    nodes = {
+        "a @pc": "period: 1 s, wcet: 10 ms",
+        "b @pc": f"{EVENT}, wcet: 10 ms",
+        "c @pc": f"{EVENT}, wcet: 10 ms",
+        "t +box": "period: 1 s, wcet: 1 ms",
+        "u +box": "period: 1 s, wcet: 1 ms",
+    }
+    cores = prepare(nodes, "a>b b>c", "hosts: {pc: {cores: 3}}\ncontainers: {box: {threads: 1, host: pc}}")
+    backlog = find_backlog(cores)
+    assert backlog is not None
+    assert in_ms(cores, backlog.pending_work) == 32
+
+
+def test_delays_that_come_back_as_jitter_have_an_end_with_priorities_too() -> None:
+    """Here each turn of the analysis ends by itself, with more jitter than the one before: the backlog ends all of them."""
+    responses = analyse_architecture(architecture(random_style_text(17))).responses
+    assert all(response.worst.value is not None for response in responses.values())
 
 
 def test_twice_as_many_hosts_take_twice_as_long() -> None:

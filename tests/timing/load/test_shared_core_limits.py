@@ -29,11 +29,9 @@ def test_the_smaller_limit_counts() -> None:
 )
 def test_large_hosts_have_next_to_nothing_for_smaller_bounds(count: int, priority: str, is_small: bool) -> None:  # noqa: FBT001
     cores = prepare({f"n{at} @pc": f"period: 100 ms, wcet: 1 ms{priority}" for at in range(count)}, "", HOST)
-    limits = SharedCoreLimits(cores.ways_to, {})
-    limits.backlog = find_backlog(cores)
     assert has_priorities(cores) is bool(priority)
     whole = SearchBudget(1_000_000)
-    spend = open_refining_budget(whole, CorePaths(cores), limits).start_search()
+    spend = open_refining_budget(whole, CorePaths(cores), find_backlog(cores)).start_search()
     if is_small:
         with pytest.raises(DivergedError):
             spend(10_000)
