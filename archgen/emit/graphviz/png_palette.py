@@ -20,7 +20,7 @@ _GD_HEADER_SIZE = 11
 transparent colour.
 """
 _FEW_COLOURS = 16
-_MAX_OWN_COLOURS = 10
+_MAX_OWN_COLOURS = 12
 """Of 16 colours so many may be the drawing's own."""
 _HIGH_HALVES = bytes((index << 4) & 0xFF for index in range(256))
 _STEP_BITS = 5

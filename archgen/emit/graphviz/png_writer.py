@@ -16,19 +16,20 @@ _TRUE_COLOUR_WRITER = "png:cairo"
 _LAST_WRITER = "png"
 _PALETTE_WRITER = "png:cairo:gd"
 _PIXEL_WRITER = "gd:cairo:gd"
-_PAGE_WIDTH = 700.0
-"""The width of pictures on a landscape page, in points."""
+_PAGE_WIDTH, _UPRIGHT_WIDTH = 700.0, 480.0
+"""The width of pictures on a landscape and on an upright page, in points."""
 _COLOUR = re.compile(r'"#([0-9a-f]{6})"')
 _FILL_COLOUR = re.compile(r'(?:fillcolor|BGCOLOR|bgcolor)="#([0-9a-f]{6})"')
 
 
 def render_png(scene: Scene, name: str, graph_attributes: DotAttributes, *, quick: bool) -> bytes:
-    """Render a scene at 150 dots per inch. One that is wider than a page, and will be shown smaller, gets 110.
+    """Render a scene at 144 dots per inch, two to a point. One that is wider than a page, and will be shown smaller, gets 110.
 
     `quick` tries gd's own palette first: worth it where there are few hues.
     """
     left, bottom, right, top = scene.bounds()
-    dpi = 150 if right - left <= _PAGE_WIDTH else 110
+    # Pictures of many colours take twice the bytes.
+    dpi = 144 if right - left <= (_PAGE_WIDTH if quick else _UPRIGHT_WIDTH) else 110
     # A viewport of whole pixels. 14 points are the padding at both sides (`pad`, 0.08 inch each) and a little more.
     width, height = (math.ceil((size + 14) * dpi / 72) * 72 / dpi for size in (right - left, top - bottom))
     dot = scene.to_dot(name, {**graph_attributes, "viewport": f'"{width:.4f},{height:.4f}"'}, dpi)

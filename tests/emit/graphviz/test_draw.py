@@ -51,7 +51,7 @@ def test_all_formats() -> None:
     assert b"20000101000000" in (made.pdf or b"")
     assert (made.png or b"")[:8] == b"\x89PNG\r\n\x1a\n"
     width, _ = struct.unpack(">II", (made.png or b"")[16:24])
-    assert abs(width / (made.width + 14) - 150 / 72) < 0.1, "150 dots per inch"
+    assert abs(width / (made.width + 14) - 144 / 72) < 0.1, "144 dots per inch"
     assert made.dot.startswith('digraph "tiny" {')
 
 
@@ -289,8 +289,8 @@ def test_few_colours_take_half_a_byte_and_the_rarest_shades_become_their_neighbo
 
 
 def test_where_the_drawing_has_many_colours_none_is_given_up() -> None:
-    own = [bytes((20 * step, 0, 0)) for step in range(11)]
-    data = png_palette.index_pixels(_plain_pixels(11, own), frozenset(own))
+    own = [bytes((18 * step, 0, 0)) for step in range(13)]
+    data = png_palette.index_pixels(_plain_pixels(13, own), frozenset(own))
     assert data
     assert (data[24], _unpack_png(data)) == (8, own)
 
