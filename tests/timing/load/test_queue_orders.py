@@ -19,18 +19,9 @@ from archgen.timing.load.queue_orders import (
 )
 
 
-def task(
-    cost: int,
-    period: int,
-    jitter: int = 0,
-    *,
-    priority: int | None = None,
-    deadline: int | None = None,
-    rank: int = 1,
-    entities: int = 1,
-) -> QueuedTask:
+def task(cost: int, period: int, jitter: int = 0, **rest: int) -> QueuedTask:
     """Make a task that waits in a queue."""
-    return QueuedTask("t", cost, (EventStream(period, jitter),), priority, deadline, rank, entities)
+    return QueuedTask("t", cost, (EventStream(period, jitter),))._replace(**rest)
 
 
 def ignore(_: int) -> None:

@@ -67,3 +67,10 @@ def test_a_window_begins_as_soon_as_others_are_busy() -> None:
     spend = SearchBudget().start_search()
     assert hold_beside_others(lambda window: min(window, 2), 0, (EventStream(10),), spend) == 2
     assert hold_beside_others(lambda _: 0, 0, (EventStream(10),), spend) == 0
+
+
+def test_what_begins_later_does_not_hold_up_what_is_stored_at_once() -> None:
+    """In the first tick nobody else works."""
+    spent: list[int] = []
+    assert hold_beside_others(lambda window: 2 if window > 1 else 0, 0, (EventStream(10),), spent.append) == 0
+    assert spent == [1]
