@@ -11,6 +11,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from archgen.serve.live_site import LiveSite
 from archgen.serve.site_server import SiteServer
+from tests.browser_polling import wait_until
 from tests.serve.conftest import ROBOT
 
 LONG_TEXT = "# Words\n\n" + "".join(f"## Part {number}\n\n{'Some words. ' * 80}\n\n" for number in range(30))
@@ -102,7 +103,7 @@ def test_the_reader_stays_where_he_is(visit: Visit, save: Save) -> None:
     page = visit("chapters/docs-text.html")
     expect(page.locator("main")).to_contain_text("Part 29")
     page.evaluate("window.scrollTo(0, 2000)")
-    page.wait_for_function("window.scrollY === 2000")
+    wait_until(page, "window.scrollY === 2000")
     save(LONG_TEXT.replace("Part 29", "Part the last"), "docs/text.md")
     expect(page.locator("main")).to_contain_text("Part the last")
     assert page.evaluate("window.scrollY") == 2000

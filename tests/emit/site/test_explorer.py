@@ -17,6 +17,7 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.views.explorer import make_explorer_map
 from archgen.views.search import make_search_entries
+from tests.browser_polling import wait_until
 
 ROOT = Path(__file__).resolve().parents[3]
 AXE = ROOT / "tests" / "judges" / "node_modules" / "axe-core" / "axe.min.js"
@@ -256,7 +257,7 @@ def test_moving_is_kept_in_the_address_but_is_no_step_for_back(visit: Open) -> N
     page.mouse.move(500, 240, steps=4)
     page.mouse.up()
     page.mouse.wheel(0, -240)
-    page.wait_for_function("location.hash.includes('at=')")
+    wait_until(page, "location.hash.includes('at=')")
     assert page.evaluate("history.length") == length
     x, y, zoom = map(float, address(page)["at"].split(","))
     page.reload()
@@ -311,7 +312,7 @@ def test_everything_by_keyboard(visit: Open) -> None:
     assert {"sel", "pick"}.isdisjoint(address(page))
     before = page.locator(".map").evaluate("m => m.style.transform")
     page.keyboard.press("+")
-    page.wait_for_function(f"document.querySelector('.map').style.transform !== '{before}'")
+    wait_until(page, f"document.querySelector('.map').style.transform !== '{before}'")
     page.keyboard.press("?")
     expect(page.get_by_role("dialog", name="Keys")).to_be_visible()
     page.keyboard.press("Escape")
@@ -419,7 +420,7 @@ def test_pinch_zooms_on_a_phone(visit: Open) -> None:
       for (let step = 1; step < 12; step += 1) { send("pointermove", 1, 150 - step * 6); send("pointermove", 2, 200 + step * 6); }
       send("pointerup", 1, 90); send("pointerup", 2, 260);
     }""")
-    page.wait_for_function(f"({scale})() > {before * 1.5}")
+    wait_until(page, f"({scale})() > {before * 1.5}")
 
 
 # --- hostile, large -------------------------------------------------------------------------------------------------
