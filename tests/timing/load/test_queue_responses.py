@@ -1,0 +1,74 @@
+"""Which responses the order of a queue bounds: in ticks, worked out by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_streams import EventStream, EventStreams
+from archgen.timing.load.queue_orders import QueuedTask
+from archgen.timing.load.queue_responses import CoreQueue, QueueOrder
+
+A = QueuedTask("a", 3, (), priority=2, deadline=50, rank=0)
+B = QueuedTask("b", 5, (), priority=1, deadline=90)
+MODELS: dict[str, EventStreams | UnknownCause] = {"a": (EventStream(100),), "b": (EventStream(200),)}
+
+
+def bound(queue: CoreQueue, models: dict[str, EventStreams | UnknownCause], budget: int = 1000) -> dict[str, int]:
+    """Return the responses in a busy period of 20 ticks."""
+    return queue.bound_responses(models.__getitem__, 20, SearchBudget(budget))
+
+
+@pytest.mark.parametrize(
+    ("order", "is_core", "responses"),
+    [
+        ("fifo", False, {"a": 8, "b": 8}),
+        ("fifo", True, {"a": 8, "b": 8}),
+        ("non_preemptive", True, {"a": 8, "b": 8}),
+        ("edf", True, {"a": 3, "b": 8}),
+        ("edf", False, {"a": 8, "b": 8}),
+        ("ros2_executor", False, {"a": 8 + 3, "b": 8 + 8}),
+    ],
+)
+def test_each_order_has_a_bound_of_its_own(order: QueueOrder, is_core: bool, responses: dict[str, int]) -> None:  # noqa: FBT001
+    assert bound(CoreQueue(order, is_core, (A, B)), MODELS) == responses
+
+
+def test_what_is_alone_or_unknown_has_no_bound() -> None:
+    queue = CoreQueue("fifo", is_core=False, tasks=(A, B))
+    assert bound(queue, MODELS | {"b": UnknownCause(("b",))}) == {}
+    assert bound(queue, MODELS | {"b": ()}) == {}
+    assert bound(replace(queue, tasks=(A,)), MODELS) == {}
+    assert bound(queue, MODELS, budget=0) == {}
+
+
+def test_what_takes_no_time_need_not_be_known() -> None:
+    tasks = (A, B, QueuedTask("c", 0, ()))
+    queue = CoreQueue("fifo", is_core=False, tasks=tasks)
+    assert bound(queue, MODELS | {"c": UnknownCause(("c",))}) == {"a": 8, "b": 8}
+    assert bound(queue, MODELS | {"c": ()}) == {"a": 8, "b": 8}
+    assert bound(queue, MODELS | {"c": (EventStream(300),)}) == {"a": 8, "b": 8, "c": 8}
+
+
+@pytest.mark.parametrize(("period", "is_bounded"), [(7, False), (8, True)])
+def test_several_callbacks_have_a_bound_where_no_two_wait_at_once(period: int, is_bounded: bool) -> None:  # noqa: FBT001
+    """`b` responds within 8 ticks. On a thread the order of arrival is that of all callbacks."""
+    models = MODELS | {"b": (EventStream(100 + period, 100),)}
+    queue = CoreQueue("fifo", is_core=True, tasks=(A, B._replace(entities=2)))
+    assert ("b" in queue.bound_responses(models.__getitem__, 1, SearchBudget())) is is_bounded
+    in_thread = replace(queue, is_core=False)
+    assert "b" in in_thread.bound_responses(models.__getitem__, 1, SearchBudget())
+
+
+@pytest.mark.parametrize(
+    ("order", "is_core", "stores"), [("fifo", False, True), ("fifo", True, False), ("edf", False, False)]
+)
+def test_messages_are_stored_in_time_by_a_thread_in_the_order_of_arrival(
+    order: QueueOrder,
+    is_core: bool,  # noqa: FBT001
+    stores: bool,  # noqa: FBT001
+) -> None:
+    assert CoreQueue(order, is_core).stores_in_time is stores
