@@ -10,7 +10,10 @@ from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.queue_orders import QueuedTask
-from archgen.timing.load.queue_responses import CoreQueue, QueueOrder
+from archgen.timing.load.queue_responses import CoreQueue, QueueOrder, find_core_queue
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.timing_system import Activity, Executor, ResourceUse
+from tests.simulation.systems import event, system, timed
 
 A = QueuedTask("a", 3, (), priority=2, deadline=50, rank=0)
 B = QueuedTask("b", 5, (), priority=1, deadline=90)
@@ -72,3 +75,73 @@ def test_messages_are_stored_in_time_by_a_thread_in_the_order_of_arrival(
     stores: bool,  # noqa: FBT001
 ) -> None:
     assert CoreQueue(order, is_core).stores_in_time is stores
+
+
+ON_CORE = ProcessingResource("pc:0", "pc", 1, (("a",), ("b",)), core_set=(0,))
+"""Two threads on one core."""
+IN_THREAD = ProcessingResource("e", "pc", 1, (("a", "b"),))
+TIMER = timed("a", 100, 3, host="pc", deadline=50, executor="e", callback_group="g")
+SERVER = event("b", 5, host="pc", executor="e", callback_group="h", behaviour="on_demand")
+
+
+def find_queue(resource: ProcessingResource, timer: Activity = TIMER, threads: int = 1) -> CoreQueue | None:
+    """Return the queue of a core in the order of arrival, or of a thread by deadlines."""
+    made = system(
+        (timer, SERVER),
+        cores={"pc": 1},
+        host_orders={"pc": "fifo"},
+        executors={"e": Executor("e", threads, "pc", "edf")},
+    )
+    return find_core_queue(made, resource, {"a": 7, "b": None})
+
+
+def test_what_waits_for_a_core_or_for_a_thread() -> None:
+    tasks = (
+        QueuedTask("a", 3, (), 7, 50, rank=0),
+        QueuedTask("b", 5, (), None, None, rank=2),
+    )
+    assert find_queue(ON_CORE) == CoreQueue("fifo", is_core=True, tasks=tasks)
+    assert find_queue(IN_THREAD) == CoreQueue("edf", is_core=False, tasks=tasks)
+
+
+def test_what_has_no_deadline_is_to_end_with_its_period() -> None:
+    queue = find_queue(ON_CORE, replace(TIMER, deadline=None))
+    assert queue is not None
+    assert queue.tasks[0].deadline == 100
+
+
+@pytest.mark.parametrize(
+    "rest",
+    [
+        {"cores": 2},
+        {"joined": True},
+        {"missing": ("cores",)},
+        {"foreign_units": (("b",),)},
+        {"units": ()},
+        {"host": None},
+        {"core_set": (0, 1)},
+        {"core_set": ()},
+    ],
+)
+def test_where_more_than_one_queue_decides_there_is_none(rest: dict[str, object]) -> None:
+    assert find_queue(replace(ON_CORE, **rest)) is None  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("timer", "is_queued"),
+    [
+        (replace(TIMER, wcet=None), False),
+        (replace(TIMER, behaviour="once"), False),
+        (replace(TIMER, behaviour="once", wcet=0), True),
+        (replace(TIMER, wcet=0), True),
+        (replace(TIMER, uses={"gpu": ResourceUse(1, 1)}), False),
+    ],
+)
+def test_what_waits_in_a_queue_has_an_execution_time_alone(timer: Activity, is_queued: bool) -> None:  # noqa: FBT001
+    assert (find_queue(ON_CORE, timer) is not None) is is_queued
+    assert (find_queue(IN_THREAD, timer) is not None) is is_queued
+
+
+def test_several_threads_are_no_queue() -> None:
+    assert find_queue(IN_THREAD, threads=2) is None
+    assert find_queue(ON_CORE, replace(TIMER, callback_group=None), threads=3) is None

@@ -226,3 +226,17 @@ def test_a_resource_that_is_full(
 ) -> None:
     state = prepare(join([user(name, use) for name, use in zip("abc", uses, strict=True)], order=order))
     assert find_use_time(state, "a", "gpu", SearchBudget()) == time
+
+
+def test_what_cannot_end_is_not_searched_for() -> None:
+    budget = SearchBudget()
+    state = prepare(join([user(name, use) for name, use in zip("abc", (0, 60, 40), strict=True)], order=None))
+    find_use_time(state, "a", "gpu", budget)
+    assert budget.spent_terms == 0
+
+
+def test_each_look_costs_two_terms_for_each_rival_and_one() -> None:
+    """Looks at 10 + 20 + 5 and once more, each of two rivals."""
+    budget = SearchBudget()
+    assert find_use_time(prepare(join([user(*each) for each in ALONE], order=None)), "a", "gpu", budget) == 35
+    assert budget.spent_terms == 2 * (2 * 2 + 1)

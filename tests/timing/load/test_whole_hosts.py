@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.level_cascades import Origin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
-from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_host_limits
+from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.timing_system import ResourceUse
+from archgen.timing.system.trigger_graph import find_triggers
+from tests.simulation.systems import arc, event, system, timed
 from tests.timing.sketches import analyse_sketch, list_responses
 
 WAYS = {"s": "core: 0", "a": "core: 1", "b": "core: 0", "c": "core: 1", "d": "core: 0", "e": "core: 1"}
@@ -101,3 +107,31 @@ def test_a_longer_wait_is_cut(wait: int | None, limit: int | None, expected: Wor
     waits = {"a": WorstResponse(wait, "host"), "b": WorstResponse(99, "host")}
     found = limit_responses(CoreResponses({}, {}, waits), {"a": HostLimit(8, 20, limit)})
     assert found.storing_waits == {"a": expected, "b": waits["b"]}
+
+
+def core(name: str, cores: int = 1, **rest: object) -> ProcessingResource:
+    """Return cores of the host that run some activities, each called by one letter."""
+    return ProcessingResource(name, "pc", cores, tuple((each,) for each in name), **rest)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("resources", "hosts"),
+    [
+        ([core("a"), core("b")], ["pc"]),
+        ([core("ab", 2)], ["pc"]),
+        ([core("ab")], []),  # one core is what it is anyway
+        ([core("ab", undisturbed=True)], ["pc"]),  # one of several
+        ([core("ab", missing=("cores",))], []),
+        ([core("a"), core("c")], []),  # nothing fires anything
+        ([core("a"), core("b"), core("g")], []),  # what waits for a GPU leaves all cores idle
+        ([core("abg", 2)], []),
+        ([replace(core("ab", 2), host=None)], []),
+        ([core("c"), core("ab", 2, missing=("cores",))], []),
+    ],
+)
+def test_hosts_of_several_cores_on_which_activities_fire_one_another(
+    resources: list[ProcessingResource], hosts: list[str]
+) -> None:
+    user = timed("g", 100, 1, uses={"gpu": ResourceUse(1, 1)})
+    made = system((timed("a", 100, 1), event("b", 1, "a"), timed("c", 100, 1), user), (arc("a", "b"),))
+    assert list(find_whole_hosts(made, find_triggers(made), resources)) == hosts
