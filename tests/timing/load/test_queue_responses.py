@@ -48,6 +48,12 @@ def test_what_is_alone_or_unknown_has_no_bound() -> None:
     assert bound(queue, MODELS, budget=0) == {}
 
 
+def test_one_of_three_that_is_unknown_leaves_none_a_bound() -> None:
+    queue = CoreQueue("fifo", is_core=False, tasks=(A, B, QueuedTask("c", 1, ())))
+    assert bound(queue, MODELS | {"c": UnknownCause(("c",))}) == {}
+    assert bound(queue, MODELS | {"c": ()}) == {}
+
+
 def test_what_takes_no_time_need_not_be_known() -> None:
     tasks = (A, B, QueuedTask("c", 0, ()))
     queue = CoreQueue("fifo", is_core=False, tasks=tasks)
@@ -84,7 +90,7 @@ TIMER = timed("a", 100, 3, host="pc", deadline=50, executor="e", callback_group=
 SERVER = event("b", 5, host="pc", executor="e", callback_group="h", behaviour="on_demand")
 
 
-def find_queue(resource: ProcessingResource, timer: Activity = TIMER, threads: int = 1) -> CoreQueue | None:
+def find_queue(resource: ProcessingResource, timer: Activity = TIMER, threads: int | None = 1) -> CoreQueue | None:
     """Return the queue of a core in the order of arrival, or of a thread by deadlines."""
     made = system(
         (timer, SERVER),
@@ -102,6 +108,12 @@ def test_what_waits_for_a_core_or_for_a_thread() -> None:
     )
     assert find_queue(ON_CORE) == CoreQueue("fifo", is_core=True, tasks=tasks)
     assert find_queue(IN_THREAD) == CoreQueue("edf", is_core=False, tasks=tasks)
+
+
+def test_a_thread_of_one_callback_has_a_queue_too() -> None:
+    queue = find_queue(replace(IN_THREAD, units=(("a",),)))
+    assert queue is not None
+    assert [task.name for task in queue.tasks] == ["a"]
 
 
 def test_what_has_no_deadline_is_to_end_with_its_period() -> None:
@@ -145,3 +157,5 @@ def test_what_waits_in_a_queue_has_an_execution_time_alone(timer: Activity, is_q
 def test_several_threads_are_no_queue() -> None:
     assert find_queue(IN_THREAD, threads=2) is None
     assert find_queue(ON_CORE, replace(TIMER, callback_group=None), threads=3) is None
+    assert find_queue(ON_CORE, replace(TIMER, callback_group=None), threads=None) is None
+    assert find_queue(ON_CORE, threads=None) is not None
