@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pytest
 
 from archgen.timing.figures.timing_values import UnknownCause
@@ -25,7 +27,7 @@ def way(steps: str, delay: int | None, entry: Origin = ENTRY, **rest: int) -> En
 
 
 def order_core(
-    ways_to: dict[str, tuple[EntryWay, ...]],
+    ways_to: Mapping[str, tuple[EntryWay, ...]],
     model: EventStreams | UnknownCause = OFTEN,
     *,
     silent: str = "",

@@ -8,8 +8,9 @@ import pytest
 
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.search.chain_surroundings import list_chain_elements, list_waiting_elements
+from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours, list_waiting_elements
 from tests.timing.made import MS, analysis, event, ms, periodic
+from tests.timing.sketches import analyse_sketch
 
 Figure = float | None
 
@@ -20,7 +21,10 @@ def _value(figure: Figure) -> TimingValue:
 
 def _chain(*terms: tuple[str, Figure, Figure, Figure]) -> ChainResult:
     """Return a chain of steps: sampling, response, link."""
-    made = tuple(ChainTerm(name, *map(_value, figures), "") for name, *figures in terms)
+    made = tuple(
+        ChainTerm(name, _value(sampling), _value(response), _value(link), "")
+        for name, sampling, response, link in terms
+    )
     none = UNKNOWN_VALUE
     return ChainResult("c", tuple(term.activity for term in made), made, none, none, none, none, None, "open")
 
@@ -76,3 +80,13 @@ def test_what_is_declared_waits_for_nobody() -> None:
     declared = {name: replace(each, tier="declared") for name, each in made.responses.items()}
     chain = _chain(("a", 0, 9, 0), ("b", 0, 9, 0))
     assert list_waiting_elements(replace(made, responses=declared), chain) == []
+
+
+def test_what_takes_most_of_the_hosts_of_a_chain_comes_first() -> None:
+    loads = {"a @p": 50, "b @p": 10, "c @q": 30, "d @p": 20, "e @q": 1, "far @r": 40}
+    nodes = {head: f"period: 100 ms, wcet: {load} ms" for head, load in loads.items()}
+    made = analyse_sketch(nodes, "", "hosts: {p: {cores: 1}, q: {cores: 1}, r: {cores: 1}}")
+    elements = [made.system.activities[name] for name in "ae"]
+    assert _names([*list_neighbours(made, elements)]) == ["c", "d", "b"]
+    # A host whose load nobody knows adds nothing.
+    assert _names([*list_neighbours(replace(made, hosts={"q": made.hosts["q"]}), elements)]) == ["c"]
