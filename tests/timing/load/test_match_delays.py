@@ -147,6 +147,7 @@ LEFT, RIGHT = replace(TO_FUSE, input="left"), replace(TO_FUSE, input="right", ou
     ("inputs", "model", "conditional", "expected"),
     [
         ({"left": (LEFT,), "right": (RIGHT,)}, (EventStream(100),), "", True),
+        ({"left": (LEFT,)}, (EventStream(100),), "", True),
         ({"left": (LEFT,), "right": (RIGHT,)}, (EventStream(100), EventStream(100)), "", False),
         ({"left": (LEFT,), "right": (RIGHT,)}, (EventStream(100, 100),), "", False),  # two jobs may begin at once
         ({"left": (LEFT,), "right": (RIGHT,)}, UnknownCause(("s",)), "", False),

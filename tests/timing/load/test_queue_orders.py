@@ -21,7 +21,7 @@ from archgen.timing.load.queue_orders import (
 
 def task(cost: int, period: int, jitter: int = 0, **rest: int) -> QueuedTask:
     """Make a task that waits in a queue."""
-    return QueuedTask("t", cost, (EventStream(period, jitter),))._replace(**rest)
+    return QueuedTask("t", cost, (EventStream(period, jitter),))._replace(**rest)  # type: ignore[arg-type]
 
 
 def ignore(_: int) -> None:

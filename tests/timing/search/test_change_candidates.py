@@ -123,3 +123,8 @@ def test_single_changes_come_before_pairs_and_none_comes_twice() -> None:
         "n.threads=2+n.callback_groups.b=g.b",
         "n.threads=2+n.reentrant=true",
     ]
+
+
+def test_threads_that_nobody_wrote_are_as_many_as_are_asked_for() -> None:
+    text = sketch({"a +box": _load(1), "b +box": _load(1)}, "", "hosts: {p: {cores: 1}}\ncontainers: {box: {host: p}}")
+    assert _list_texts(text, "a") == ["a.timing.priority=1"]
