@@ -34,6 +34,16 @@ class CoreShares:
         """Whether a thread is busy all the time."""
         return self._unit_shares[unit] >= self.cores.reentrant_units.get(unit, 1)
 
+    def choose_full_units(self) -> list[ThreadUnit]:
+        """Return the threads that are busy all the time; else the one that comes nearest, if it leaves no backlog an end."""
+        full_units = [unit for unit in self._unit_shares if self.fills_thread(unit)]
+        if full_units or not self._unit_shares:
+            return full_units
+        unit, share = max(self._unit_shares.items(), key=lambda pair: pair[1])
+        core_count = self.cores.core_count
+        total = sum_fractions(self._unit_shares.values())
+        return [unit] if share * (core_count - 1) + total >= core_count else []
+
     def fills_core(self, steps: tuple[str, ...], path: CorePath) -> bool:
         """Whether the threads of some steps, and what keeps all cores busy beside them, fill a core in the long run."""
         units = {unit: None for step in steps if (unit := self.cores.unit_of[step]) not in self.cores.reentrant_units}

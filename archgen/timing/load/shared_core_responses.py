@@ -33,6 +33,7 @@ from archgen.timing.load.event_streams import (
     earliest_arrivals,
     streams_of_calls,
 )
+from archgen.timing.load.full_threads import find_demand_left, find_full_ids, leave_out_threads
 from archgen.timing.load.idle_backlogs import find_idle_backlog
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import Origin
@@ -91,6 +92,7 @@ class SharedCoreSolver:
         self.step_responses: dict[str, int] = {}
         self.cause_of: dict[str, UnknownCause] = {}
         self.raised_names: set[str] = set()
+        self.rest_solver: SharedCoreSolver | None = None
         self.way_before = {
             (name, number): self._find_way_before(way)
             for name, ways in self.cores.ways_to.items()
@@ -113,7 +115,41 @@ class SharedCoreSolver:
         )
 
     def solve(self) -> CoreResponses:
-        """Find the responses of all runs together, from below, and those of the activities."""
+        """Find the responses of all runs together, and those of the activities, where need be without full threads."""
+        core_responses = self._solve_together()
+        if self.cause_of and not self._find_unknown_causes():
+            self.rest_solver = self._open_rest_solver()
+        if self.rest_solver is not None:
+            self._take_over(core_responses, self.rest_solver.solve())
+        return core_responses
+
+    def _take_over(self, core_responses: CoreResponses, rest_responses: CoreResponses) -> None:
+        """Take the bounds that the cores left beside full threads give to what has none."""
+        for name, response in rest_responses.response_of.items():
+            # Without one, the cause stays: what fills the cores that are left need not fill all of them.
+            if name in self.cause_of and response.value is not None:
+                core_responses.response_of[name] = response
+                core_responses.ways_to[name] = rest_responses.ways_to[name]
+                if name in rest_responses.storing_waits:
+                    core_responses.storing_waits[name] = rest_responses.storing_waits[name]
+
+    def _open_rest_solver(self) -> SharedCoreSolver | None:
+        """Return a solver for the cores that full threads leave to all others, None where nothing is full or left."""
+        full_units = CoreShares(self.cores, self.demand).choose_full_units()
+        boundless_units = [self.cores.unit_of[name] for name in self._list_boundless_foreign()]
+        full_ids = find_full_ids(self.cores, [*full_units, *boundless_units])
+        rest_cores = leave_out_threads(self.cores, full_ids) if full_ids else None
+        if rest_cores is None:
+            return None
+        return SharedCoreSolver(
+            CorePaths(rest_cores),
+            find_demand_left(rest_cores, self.demand),
+            (self.known_responses, self.limits.of_host),
+            self.whole_budget,
+        )
+
+    def _solve_together(self) -> CoreResponses:
+        """Find the responses of all runs together, from below."""
         cause = self._find_common_cause()
         if cause is not None:
             self.cause_of = dict.fromkeys(self.cores.inner_triggers.order, cause)
@@ -165,14 +201,17 @@ class SharedCoreSolver:
         """Return why nothing is known of any response here, None where all is well."""
         if self.demand.share() >= self.cores.core_count:
             return OVERLOAD_CAUSE
+        unknown_causes = self._find_unknown_causes()
+        return unite_causes(unknown_causes) if unknown_causes else None
+
+    def _find_unknown_causes(self) -> list[UnknownCause]:
+        """Return what is missing of all that comes, and of how long it takes."""
         unknown_costs = [
             UnknownCause((name,))
             for name in self.cores.cascades.unknown_costs
             if name not in self.cores.inner_triggers.silent_ids
         ]
-        if unknown_costs or self.demand.causes:
-            return unite_causes((*unknown_costs, *self.demand.causes))
-        return None
+        return [*unknown_costs, *self.demand.causes]
 
     def _mark_full_threads(self) -> None:
         """Mark what has no bound as its thread, or a core with what is beside it, is busy all the time."""
@@ -180,11 +219,7 @@ class SharedCoreSolver:
         for unit in self.cores.own_units:
             if shares.fills_thread(unit):
                 self._mark_boundless(unit, OVERLOAD_CAUSE)
-        boundless_ids = [
-            name
-            for name in sorted(self.cores.foreign_ids)
-            if (response := self.known_responses.get(name)) is None or response.value is None
-        ]
+        boundless_ids = self._list_boundless_foreign()
         order = self.cores.inner_triggers.order
         full_names = [
             name
@@ -192,6 +227,13 @@ class SharedCoreSolver:
             if name not in self.limits.of_host and shares.fills_core((name,), self.paths.look_up((name,)))
         ]
         self._mark_boundless([*boundless_ids, *full_names], DIVERGED_CAUSE)
+
+    def _list_boundless_foreign(self) -> list[str]:
+        return [
+            name
+            for name in sorted(self.cores.foreign_ids)
+            if (response := self.known_responses.get(name)) is None or response.value is None
+        ]
 
     def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
         """Note that some activities have no bound: any amount of what is pending comes in the way of others at last."""

@@ -168,6 +168,8 @@ class FigureWorking:
     unfinished: int = 0
     is_backlog: bool = False
     """Whether all cores may be busy with `beside_terms` and what was pending, less `unfinished` and the own terms."""
+    full_ids: tuple[str, ...] = ()
+    """What may be busy all the time, on cores that are not among `core_count`."""
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
     is_queue: bool = False
