@@ -55,7 +55,9 @@ def write_standalone_page(outline: Outline, pictures: Mapping[str, Picture]) -> 
 
 def _write_natural_widths(pictures: Iterable[Picture]) -> str:
     """Return the style of pictures that scroll before they get too small to read, a class for each width."""
-    return "".join(f".{name} {{ --natural: {name[1:]}px; }}\n" for name in sorted(set(map(name_natural_width, pictures))))
+    return "".join(
+        f".{name} {{ --natural: {name[1:]}px; }}\n" for name in sorted(set(map(name_natural_width, pictures)))
+    )
 
 
 def _navigation_html(outline: Outline, current_page: CurrentPage) -> Iterator[str]:

@@ -122,6 +122,8 @@ class ComparisonDocument:
     graphs: tuple[Graph, ...] = field(default=())
     element_titles: Mapping[str, str] = field(default_factory=dict)
     """What people call components and their ports, by id: `Navigator`, `Navigator · goal`."""
+    element_addresses: Mapping[str, str] = field(default_factory=dict)
+    """Where on the web these are written, by id; empty where the project names no repository."""
 
     @property
     def versions(self) -> tuple[NamedVersion, NamedVersion]:

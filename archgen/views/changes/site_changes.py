@@ -120,7 +120,7 @@ def _make_changes_page(
     blocks: tuple[Block, ...] = (*outline.notices, Facts(outline.facts))
     section = Section(CHANGES_ANCHOR, "Changes", blocks, sections)
     crumbs = (("Overview", first_page.anchor),)
-    return Page("changes.html", CHANGES_ANCHOR, "Changes", "spanning", section, crumbs, outline.subtitle)
+    return Page("changes.html", CHANGES_ANCHOR, "Changes", "spanning", section, crumbs, f"What changed: {outline.subtitle}")
 
 
 def _link_section(section: Section, ids: Mapping[str, str]) -> Section:
