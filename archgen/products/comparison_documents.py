@@ -81,7 +81,7 @@ def render_comparison_markdown(
 def _list_addresses(old_version: ProjectVersion, new_version: ProjectVersion) -> Mapping[str, str]:
     """Return where elements are written: in the commits that are compared, whose lines are those of the comparison."""
     from archgen.products.project_views import locate_repository
-    from archgen.views.changes.element_addresses import list_element_addresses
+    from archgen.views.changes.named_elements import list_element_addresses
 
     # The later version says where the repository is, and where the project lies in it: the earlier one may not know yet.
     repository = locate_repository(new_version.checked_project)

@@ -1,12 +1,25 @@
-"""Where on the web the elements of a comparison are written: what the comment on a pull request links to."""
+"""What people call the elements of a comparison, and where on the web these are written."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from archgen.compare import Comparison
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
+from archgen.model.component import Input, Output
 from archgen.model.source_repository import SourceRepository
+
+
+def name_elements(comparison: Comparison) -> Mapping[str, str]:
+    """Return the titles of groups, components and ports by their ids, those of now where both versions have one."""
+    titles: dict[str, str] = {}
+    for architecture in (comparison.before.architecture, comparison.after.architecture):
+        titles |= {name: group.title for name, group in architecture.groups.items()}
+        titles |= {name: component.title for name, component in architecture.components.items()}
+        ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
+        titles |= {port.id: f"{architecture.components[port.component].title} · {port.name}" for port in ports}
+    return titles
 
 
 def list_element_addresses(
