@@ -16,7 +16,7 @@ from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages import partner_pages
 from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table
 from archgen.views.timing.timing_lookup import analyse_with_chains
-from tests.repositories import commit, git
+from tests.repositories import git, repository
 
 ROBOT = """\
 ros: {distro: jazzy}
@@ -158,9 +158,7 @@ def test_a_part_shows_only_interfaces_with_an_end_in_it(tmp_path: Path) -> None:
 
 
 def test_signatures_of_all_pairs_are_found_by_the_names_of_tags(tmp_path: Path) -> None:
-    (tmp_path / "robot.yaml").write_text(ROBOT, encoding="utf-8")
-    git(tmp_path, "init")
-    commit(tmp_path, "first")
+    repository(tmp_path, {"robot.yaml": ROBOT})
     for name in ("signed/north-south/1", "signed/west-north/a", "signed/north-nobody/1", "signed/stray", "v1"):
         git(tmp_path, "tag", "-a", name, "-m", f"words of {name}")
     tags = list_signed_tags(check_project(tmp_path / "robot.yaml"))

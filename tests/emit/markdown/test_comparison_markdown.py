@@ -255,5 +255,5 @@ def test_where_the_repository_is_known_elements_are_titles_with_links(tmp_path: 
     )
     text = comparison_markdown.write_comparison_markdown(document)
     link = "https://github.com/lab/a%20b/blob/1a2b3c4/robot.yaml#L12%3E%29%3C"
-    assert f"- \\~ [Finder \\[x\\] @&#8203;all](<{link}>) of SSSA: worst case" in text
+    assert f"- \\~ [Finder \\[&#8203;x\\] @&#8203;all](<{link}>) of SSSA: worst case" in text
     assert "`display.finder`" not in text
