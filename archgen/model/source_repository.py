@@ -17,6 +17,7 @@ _FORGE_NAMES: tuple[tuple[str, Forge], ...] = (
 )
 """What in a host's name tells the forge; of the others GitLab is what most run themselves."""
 _FILE_PATHS = {"github": "/blob/{0}/{1}", "gitlab": "/-/blob/{0}/{1}", "gitea": "/src/branch/{0}/{1}"}
+_COMMIT_PATHS = {**_FILE_PATHS, "gitea": "/src/commit/{0}/{1}"}
 DEFAULT_BRANCH = "main"
 
 
@@ -31,6 +32,8 @@ class SourceRepository:
     branch: str = DEFAULT_BRANCH
     folder: str | None = None
     forge: Forge | None = None
+    commit: str = ""
+    """The commit whose files are meant; empty for those of the branch."""
 
     def file_address(self, file: str, line: int) -> str | None:
         """Return the address of a line of a file, given from the project's folder; None where it leads out."""
@@ -38,7 +41,8 @@ class SourceRepository:
         if not file or path.startswith(("../", "/")):
             return None
         base = self.address.rstrip("/").removesuffix(".git")
-        file_path = _FILE_PATHS[self.forge or self._guess_forge()].format(quote(self.branch), quote(path))
+        paths = _COMMIT_PATHS if self.commit else _FILE_PATHS
+        file_path = paths[self.forge or self._guess_forge()].format(quote(self.commit or self.branch), quote(path))
         return f"{base}{file_path}#L{line}"
 
     def _guess_forge(self) -> Forge:

@@ -6,6 +6,7 @@ Pages and pictures import late: `archgen diff` in a terminal needs neither.
 from __future__ import annotations
 
 import shlex
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from archgen.compare import Comparison
@@ -15,6 +16,7 @@ from archgen.views.changes.comparison_document import ComparisonDocument, descri
 from archgen.views.changes.reading_errors import ReadingErrors
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from archgen.emit.picture import Picture
@@ -70,9 +72,26 @@ def render_comparison_markdown(
 
     graphs = pictures.draw_changes(comparison, pictures.SMALL_BUDGET)
     document = describe_versions(comparison, old_version, new_version, graphs)
+    document = replace(document, element_addresses=_list_addresses(old_version, new_version))
     return comparison_markdown.write_comparison_markdown(
         document, command or _terminal_command(old_version, new_version)
     )
+
+
+def _list_addresses(old_version: ProjectVersion, new_version: ProjectVersion) -> Mapping[str, str]:
+    """Return where elements are written: in the commits that are compared, whose lines are those of the comparison."""
+    from archgen.products.project_views import locate_repository
+    from archgen.views.changes.named_elements import list_element_addresses
+
+    # The later version says where the repository is, and where the project lies in it: the earlier one may not know yet.
+    repository = locate_repository(new_version.checked_project)
+    if repository is None:
+        return {}
+    old_side, new_side = (
+        (version.checked_project.architecture, replace(repository, commit=version.commit))
+        for version in (old_version, new_version)
+    )
+    return list_element_addresses(old_side, new_side)
 
 
 def _terminal_command(old_version: ProjectVersion, new_version: ProjectVersion) -> str:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 from archgen import git
+from archgen.diagnostics.common_wording import shorten_hash
 from archgen.findings import rule_pages
 from archgen.git.project_revision import find_revision, find_revision_date
+from archgen.git.tag_list import list_tags_below
 from archgen.history import count_history
 from archgen.model import selector_evaluation
+from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.model.selector_parser import SelectorProblem
@@ -19,6 +23,7 @@ from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
+from archgen.views.agreement import SignedTag
 from archgen.views.changes.site_changes import mark_drawings
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
@@ -91,7 +96,10 @@ def make_views(
         all_drawings = mark_drawings(all_drawings, options.changes)
     revision = choose_revision(checked_project, options)
     edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)
-    edition = replace(edition, changes=options.changes, date=_find_date(checked_project, options))
+    signed_tags = list_signed_tags(checked_project) if options.show_history else {}
+    edition = replace(
+        edition, changes=options.changes, date=_find_date(checked_project, options), signed_tags=signed_tags
+    )
     return ProjectViews(lookup, edition, all_drawings)
 
 
@@ -126,6 +134,21 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
         return replace(repository, folder=git.find_repository(checked_project.root).prefix)
     except git.GitError:
         return repository
+
+
+def list_signed_tags(checked_project: CheckedProject) -> Mapping[PartnerPair, tuple[SignedTag, ...]]:
+    """Return the tags that record signatures of two partners, newest first, by pairs in the order of their declaration."""
+    partners = checked_project.architecture.partners
+    pairs = {f"{first}-{second}": (first, second) for first, second in combinations(partners, 2)}
+    pairs |= {f"{second}-{first}": (first, second) for first, second in pairs.values()}
+    tags: dict[PartnerPair, tuple[SignedTag, ...]] = {}
+    # One call for all pairs: a project of 30 partners has 435 of them.
+    for tag in list_tags_below(checked_project.root, ["signed"]) if pairs else ():
+        pair = pairs.get(tag.name.split("/")[1])
+        if pair:
+            signed_tag = SignedTag(tag.name, tag.date, tag.tagger, tag.subject, shorten_hash(tag.commit))
+            tags[pair] = (*tags.get(pair, ()), signed_tag)
+    return tags
 
 
 def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:

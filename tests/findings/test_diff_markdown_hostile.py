@@ -159,7 +159,9 @@ def check(found: Comparison, text: str) -> None:
         assert shape(parsed) == shape(tokens(write(found, "word")))
         assert {token.type for token in inner(parsed)} <= LINES
         assert {token.content for token in inner(parsed) if token.type == "html_inline"} <= {"<sub>", "</sub>"}
-        assert not CALLS.search(words(parsed)), CALLS.search(words(parsed))
+        # The alert above what breaks is ours, and stands there once.
+        text_words = words(parsed).replace("[!CAUTION]", "", 1)
+        assert not CALLS.search(text_words), CALLS.search(text_words)
         assert len(made) <= MAX_COMMENT_SIZE
 
 

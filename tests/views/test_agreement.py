@@ -204,6 +204,23 @@ def test_open_points(tmp_path: Path) -> None:
     ]
 
 
+def test_what_is_open_at_many_interfaces_is_one_row_behind_the_others(tmp_path: Path) -> None:
+    source = DUO.replace(", qos: sensor_data", "").replace(", qos: {reliability: reliable}", "")
+    names = ("info", "calibration", "depth", "grey")
+    outputs = ", ".join(f"{name}: sensor_msgs/msg/CameraInfo" for name in names)
+    inputs = ", ".join(f"{name}: camera.{name}" for name in names)
+    source = source.replace("info: sensor_msgs/msg/CameraInfo", outputs).replace(
+        "joints: arm.joints}", f"joints: arm.joints, {inputs}}}"
+    )
+    records = made(tmp_path, source=source).outline
+    rows = [[text(cell) for cell in row] for row in _table(records, "Open points").rows]
+    (shared,) = [row for row in rows if row[1] == "The size of a message is not known."]
+    assert re.match(r"\d of \d interfaces\nCamera · info, Camera · calibration, ", shared[0])
+    assert shared in rows[-2:]
+    assert sum("The size of a message" in row[1] for row in rows) == 1
+    assert rows[0][0] == "Planner · plan"
+
+
 def test_the_project_s_own_business_is_no_part_of_an_agreement(tmp_path: Path) -> None:
     """Findings (a requirement that nobody declared, an output that nobody reads) concern neither of the two."""
     source = DUO.replace(

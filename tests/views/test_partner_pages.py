@@ -8,12 +8,15 @@ import pytest
 
 from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import check_project
+from archgen.products.project_views import list_signed_tags
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.partner_exchanges import gather_exchanges
+from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages import partner_pages
-from archgen.views.shapes import Inlines, Page, Paragraph, Table
+from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table
 from archgen.views.timing.timing_lookup import analyse_with_chains
+from tests.repositories import git, repository
 
 ROBOT = """\
 ros: {distro: jazzy}
@@ -96,6 +99,27 @@ def test_each_interface_has_a_page_with_its_terms(tmp_path: Path) -> None:
     assert any(isinstance(block, Table) and block.anchor.startswith("table:promises/") for block in page.section.blocks)
 
 
+def test_the_page_of_an_interface_says_who_owns_and_who_reads_it_and_what_was_signed(tmp_path: Path) -> None:
+    lookup = look_up(tmp_path)
+    tag = SignedTag("signed/north-south/1", "2026-03-31", "Ada", "Signed", "1a2b3c4")
+    pages = {
+        page.anchor: page for page in partner_pages.make_partner_pages(lookup, tuple, {("north", "south"): (tag,)})
+    }
+    facts = next(b for b in pages["interface:g.eye.picture:north:south"].section.blocks if isinstance(b, Facts))
+    assert [(name, read(value)) for name, value in facts.rows[:3]] == [
+        ("Owner", "North: Eye"),
+        ("Readers", "South: Brain"),
+        ("History", "1 signature of the agreement, the last on 2026-03-31 as signed/north-south/1"),
+    ]
+    assert facts.rows[3][0] == "Version"
+    signed = pages["pair:north:south"].section.sections[-1]
+    assert rows_of(signed.blocks[0]) == [["signed/north-south/1", "2026-03-31", "Ada", "1a2b3c4", "Signed"]]
+    facts = next(
+        b for b in make_pages(lookup)["interface:g.eye.picture:north:south"].section.blocks if isinstance(b, Facts)
+    )
+    assert read(facts.rows[2][1]) == "no signature of the agreement is recorded"
+
+
 def test_above_a_limit_interfaces_have_no_pages_and_that_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -131,3 +155,14 @@ def test_a_part_shows_only_interfaces_with_an_end_in_it(tmp_path: Path) -> None:
     lookup = look_up(tmp_path, scope=DocumentScope(selection.components, selection.nodes, "g.mouth"))
     (exchange,) = gather_exchanges(lookup)
     assert [terms.interface.key for terms in exchange.interfaces] == ["g.brain.word"]
+
+
+def test_signatures_of_all_pairs_are_found_by_the_names_of_tags(tmp_path: Path) -> None:
+    repository(tmp_path, {"robot.yaml": ROBOT})
+    for name in ("signed/north-south/1", "signed/west-north/a", "signed/north-nobody/1", "signed/stray", "v1"):
+        git(tmp_path, "tag", "-a", name, "-m", f"words of {name}")
+    tags = list_signed_tags(check_project(tmp_path / "robot.yaml"))
+    assert {pair: [tag.name for tag in found] for pair, found in tags.items()} == {
+        ("north", "south"): ["signed/north-south/1"],
+        ("north", "west"): ["signed/west-north/a"],
+    }

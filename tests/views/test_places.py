@@ -36,6 +36,14 @@ def test_each_forge_has_its_form(address: str, forge: Forge | None, expected: st
     assert repository.file_address("a b.yaml", 3) == expected
 
 
+@pytest.mark.parametrize(
+    ("forge", "path"), [("github", "blob/1a2b"), ("gitlab", "-/blob/1a2b"), ("gitea", "src/commit/1a2b")]
+)
+def test_a_commit_has_an_address_of_its_own(forge: Forge, path: str) -> None:
+    repository = SourceRepository("https://git.lab.org/robot", forge=forge, commit="1a2b")
+    assert repository.file_address("a.yaml", 3) == f"https://git.lab.org/robot/{path}/a.yaml#L3"
+
+
 @pytest.mark.parametrize("file", ["", "../../outside.yaml", "/etc/passwd"])
 def test_a_file_outside_of_the_repository_has_no_address(file: str) -> None:
     assert SourceRepository("https://github.com/lab/robot", folder="arch").file_address(file, 1) is None

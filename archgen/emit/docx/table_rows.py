@@ -20,6 +20,8 @@ from archgen.emit.docx.word_xml import escape_text, format_paragraph, points_to_
 _SPACER_HEIGHT = 8.0
 _SHORT_HEIGHT = 130.0
 """Points below which a table stays on one page."""
+_FACTS_HEIGHT = 300.0
+"""The same for a table of facts, which has no header row to repeat: its rows are read together."""
 _LINE_HEIGHT = 0.25
 """Points that the line between two rows takes; measured with LibreOffice."""
 _KEEP_WHOLE = "<w:cantSplit/>"
@@ -60,7 +62,7 @@ def write_table_rows(
     styles = writer.styles
     heights = [_measure_row(row, frame.widths, styles.find_face(frame.styles.text)) for row in body]
     header_height = _measure_row(header, frame.widths, styles.find_face(frame.styles.heading)) if header else 0.0
-    short = header_height + math.fsum(heights) <= _SHORT_HEIGHT
+    short = header_height + math.fsum(heights) <= (_SHORT_HEIGHT if header else _FACTS_HEIGHT)
     # A template's plain grid does not tell its first row from the others.
     shade = _HEADER_SHADE if styles.find_style_id(frame.style) == styles.find_style_id("Table Grid") else ""
     starts = [f'<w:tc><w:tcPr><w:tcW w:w="{points_to_twips(width)}" w:type="dxa"/>' for width in frame.widths]

@@ -77,7 +77,7 @@ _KEY_SENTENCES = {
 
 def add_graph_legend(scene: Scene, graph: Graph) -> Scene:
     """Add a graph's legend and notes below a scene, at its left."""
-    entries = [entry for key in graph.legend for entry in _legend_entries(key)]
+    entries = [entry for key in graph.legend for entry in _legend_entries(key, graph)]
     entries += [(_colour_sample(index), text) for index, text in graph.legend_colours]
     return add_legend(
         scene, entries, [_KEY_SENTENCES[key] for key in graph.legend if key in _KEY_SENTENCES] + list(graph.notes)
@@ -93,7 +93,7 @@ def add_legend(scene: Scene, entries: Sequence[tuple[Scene, str]], sentences: Se
     return scene.joined(*(part.moved(left, bottom - 20) for part in (legend, notes)))
 
 
-def _legend_entries(key: str) -> Iterator[tuple[Scene, str]]:
+def _legend_entries(key: str, graph: Graph) -> Iterator[tuple[Scene, str]]:
     if key in _BOX_SAMPLES:
         box, words = _BOX_SAMPLES[key]
         yield _box_sample(box), words
@@ -101,7 +101,9 @@ def _legend_entries(key: str) -> Iterator[tuple[Scene, str]]:
         arrow, words = _ARROW_SAMPLES[key]
         yield _arrow_sample(key, arrow, merged=False), words
     if key == "width":
-        for count, words in _WIDTH_SAMPLES:
+        # Only the widths that the picture has: a small one has a legend wider than itself otherwise.
+        used = {max(count for count, _ in _WIDTH_SAMPLES if count <= max(arrow.count, 1)) for arrow in graph.arrows}
+        for count, words in (sample for sample in _WIDTH_SAMPLES if sample[0] in used):
             yield _arrow_sample(f"{key}{count}", Arrow("", "", "", count=count), merged=True), words
 
 

@@ -2,19 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from urllib.parse import quote
+
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.markdown.inert_text import escape_inert
 from archgen.emit.text.template_filters import make_code_span
 from archgen.views.changes.change_wording import text_runs
 
+_ADDRESS_SIGNS = ":/?#@!$&'*+,;=%"
 _MAX_SENTENCE, _MAX_TITLE = 700, 100
 """Maximal number of characters of a sentence, and of a title."""
 
 
-def write_sentence(text: str) -> str:
-    """Return a sentence as Markdown; what is in backticks is code."""
+@dataclass(frozen=True, slots=True)
+class ElementNames:
+    """Titles of elements and the addresses of where they are written, by id."""
+
+    titles: Mapping[str, str]
+    addresses: Mapping[str, str]
+
+
+NO_ELEMENTS = ElementNames({}, {})
+
+
+def write_sentence(text: str, elements: ElementNames = NO_ELEMENTS) -> str:
+    """Return a sentence as Markdown; what is in backticks is code, or where `elements` has an address, a title with a link."""
     runs = text_runs(_shorten_text(make_visible(" ".join(text.split())), _MAX_SENTENCE))
-    return "".join(_escape_piece(run.text) if not run.code else make_code_span(run.text) for run in runs)
+    return "".join(_escape_piece(run.text) if not run.code else _write_name(run.text, elements) for run in runs)
+
+
+def _write_name(name: str, elements: ElementNames) -> str:
+    address = elements.addresses.get(name)
+    title = write_title(elements.titles.get(name, ""))
+    # A place is no text: in an address nothing is made to a mention, and `<` and `>` end it.
+    return f"[{title}](<{quote(address, safe=_ADDRESS_SIGNS)}>)" if address and title else make_code_span(name)
 
 
 def write_title(text: str) -> str:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.emit.markdown.comment_sentences import shorten_name, write_code, write_sentence, write_title
+from archgen.emit.markdown.comment_sentences import ElementNames, shorten_name, write_code, write_sentence, write_title
 from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
@@ -51,10 +51,11 @@ def write_comparison_markdown(
         _add_reading_errors(comment, version)
     if document.all_clear:
         comment.add_block(f"{document.all_clear[:1].upper()}{document.all_clear[1:]}.")
-    _add_breaking_changes(comment, document)
-    _add_changes(comment, document)
-    _add_figures(comment, comparison_document.BOUNDARY_HEADING, document.boundary_lines)
-    _add_figures(comment, comparison_document.LOAD_HEADING, document.load_lines)
+    elements = ElementNames(document.element_titles, document.element_addresses)
+    _add_breaking_changes(comment, document, elements)
+    _add_changes(comment, document, elements)
+    _add_figures(comment, comparison_document.BOUNDARY_HEADING, document.boundary_lines, elements)
+    _add_figures(comment, comparison_document.LOAD_HEADING, document.load_lines, elements)
     _add_chains(comment, document.chain_rows)
     for group in document.finding_groups:
         _add_findings(comment, group)
@@ -99,7 +100,7 @@ def _add_reading_errors(comment: LimitedComment, version: NamedVersion) -> None:
     comment.add_items("", items, uncounted_items=len(version.errors) - _MAX_ERRORS)
 
 
-def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
+def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument, elements: ElementNames) -> None:
     if document.breaking_changes:
         comment.add_block(f"#### {comparison_document.BREAKING_HEADING}")
         # An alert: hosts set it in red. Elsewhere it is a quotation.
@@ -107,7 +108,7 @@ def _add_breaking_changes(comment: LimitedComment, document: ComparisonDocument)
         comment.add_block(
             f"> [!CAUTION]\n> {count_noun(count, 'change')} {'breaks' if count == 1 else 'break'} another partner."
         )
-        comment.add_items("", [_breaking_item(item) for item in document.breaking_changes])
+        comment.add_items("", [_breaking_item(item, elements) for item in document.breaking_changes])
         if document.refusal_help:
             comment.add_block(write_sentence(document.refusal_lead + document.refusal_help))
         for entries in document.missing_entries:
@@ -126,16 +127,16 @@ def _entries_block(entries: str) -> str:
     return f"<details><summary>{line_count} lines to copy</summary>\n\n{block}\n\n</details>"
 
 
-def _breaking_item(item: BreakingChange) -> str:
+def _breaking_item(item: BreakingChange, elements: ElementNames) -> str:
     losses = (
-        f"  - **breaks {_join_partners(loss.partners)}** ({loss.category}): {write_sentence(loss.reason)}"
+        f"  - **breaks {_join_partners(loss.partners)}** ({loss.category}): {write_sentence(loss.reason, elements)}"
         for loss in item.losses
     )
-    change = f"- {_MARKDOWN_SIGNS[item.change.kind]} {write_sentence(item.short_text)}"
+    change = f"- {_MARKDOWN_SIGNS[item.change.kind]} {write_sentence(item.short_text, elements)}"
     return "\n".join((change, *losses, *(f"  - {write_sentence(line)}" for line in item.agreements)))
 
 
-def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
+def _add_changes(comment: LimitedComment, document: ComparisonDocument, elements: ElementNames) -> None:
     if document.weighty_groups:
         comment.add_block(f"#### {document.changes_heading}")
     open_left = _MAX_OPEN_TOTAL
@@ -151,12 +152,12 @@ def _add_changes(comment: LimitedComment, document: ComparisonDocument) -> None:
         open_left -= open_count
         comment.add_items(
             f"**{_group_heading(change_group)}**",
-            [_change_item(change) for change in change_group.changes],
+            [_change_item(change, elements) for change in change_group.changes],
             "{} more changes" if open_count else "{} changes",
             open_count,
         )
     if document.textual_changes:
-        items = [_change_item(change) for change in document.textual_changes]
+        items = [_change_item(change, elements) for change in document.textual_changes]
         if len(items) == 1:
             comment.add_items("**Texts and pictures only**", items)
         else:
@@ -170,14 +171,14 @@ def _group_heading(change_group: ChangeGroup) -> str:
     return f"{heading} ({write_sentence(change_group.owner)})" if change_group.owner else heading
 
 
-def _change_item(change: Edit) -> str:
-    return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text)}"
+def _change_item(change: Edit, elements: ElementNames) -> str:
+    return f"- {_MARKDOWN_SIGNS[change.kind]} {write_sentence(change.text, elements)}"
 
 
-def _add_figures(comment: LimitedComment, heading: str, lines: Sequence[FigureLine]) -> None:
+def _add_figures(comment: LimitedComment, heading: str, lines: Sequence[FigureLine], elements: ElementNames) -> None:
     if lines:
         comment.add_block(f"#### {heading}")
-        items = [f"- {_MARKDOWN_SIGNS[line.kind]} {write_sentence(line.text)}" for line in lines]
+        items = [f"- {_MARKDOWN_SIGNS[line.kind]} {write_sentence(line.text, elements)}" for line in lines]
         open_count = _MAX_OPEN_ITEMS if len(items) > _MAX_OPEN_ITEMS + 1 else len(items)
         comment.add_items("", items, "{} more", open_count)
 

@@ -196,14 +196,11 @@ class PageWriter:
             )
         svg = page_pictures.inline_svg(picture.svg, self.current_page.href, alt)
         warning = f'<p class="notice warning">{escape_html(picture.warning)}</p>\n' if picture.warning else ""
+        canvas = f"canvas {name_natural_width(picture)}" if self.standalone else "canvas"
         return (
-            f'<figure class="picture"{self._id_attribute(figure.anchor)}>\n<div class="canvas"{self._natural_width(picture)}>{svg}</div>\n{warning}'
+            f'<figure class="picture"{self._id_attribute(figure.anchor)}>\n<div class="{canvas}">{svg}</div>\n{warning}'
             f"<figcaption><span>{caption}</span>{self._picture_link(figure.graph, caption)}</figcaption>\n</figure>"
         )
-
-    def _natural_width(self, picture: Picture) -> str:
-        """Return the style for a picture that has no file of its own: it scrolls before it gets too small to read."""
-        return f' style="--natural: {picture.width * 4 / 3:.0f}px"' if self.standalone else ""
 
     def _picture_link(self, graph: str, caption: str) -> str:
         """Return the link to the picture's own file."""
@@ -222,6 +219,11 @@ class PageWriter:
             return ""
         self.written_anchors.add(anchor)
         return f' id="{self.current_page.id_for(anchor)}"'
+
+
+def name_natural_width(picture: Picture) -> str:
+    """Return the class that tells how wide a picture is by itself: a page's policy refuses style attributes."""
+    return f"n{picture.width * 4 / 3:.0f}"
 
 
 def _write_sort_number(cell: Inlines) -> str:

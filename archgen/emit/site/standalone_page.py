@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,9 +13,10 @@ from archgen.emit import backend_manifests
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures as drawing
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.html_blocks import PageWriter
+from archgen.emit.site.html_blocks import PageWriter, name_natural_width
 from archgen.emit.site.html_text import escape_breakable, escape_html, replace_forbidden
 from archgen.emit.site.page_links import CurrentPage, collect_links, open_page
+from archgen.emit.site.page_policy import write_standalone_policy
 from archgen.views.shapes import Facts, Outline, Page, Section
 
 if TYPE_CHECKING:
@@ -37,17 +38,26 @@ def write_standalone_page(outline: Outline, pictures: Mapping[str, Picture]) -> 
     # Pictures of chapters would be files of their own, so there are none here.
     writer = PageWriter(current_page, pictures, ChapterWriter(lambda _path: None), standalone=True)
     folder = backend_manifests.read_shipped_backend("site").folder
+    style = f"\n{_page_style(folder)}{_write_natural_widths(pictures.values())}\n"
     variables = {
         "heading": replace_forbidden(outline.title),
         "lead": replace_forbidden(outline.subtitle),
         "language": replace_forbidden(outline.language),
-        "style": _page_style(folder),
+        "policy": write_standalone_policy(style),
+        "style": style,
         "facts": writer.write_facts(Facts(outline.facts)) if outline.facts else "",
         "notices": [writer.write_paragraph(notice) for notice in outline.notices],
         "navigation": "\n".join(_navigation_html(outline, current_page)),
         "content": writer.write_content(section),
     }
     return _standalone_template(folder).render(variables).encode()
+
+
+def _write_natural_widths(pictures: Iterable[Picture]) -> str:
+    """Return the style of pictures that scroll before they get too small to read, a class for each width."""
+    return "".join(
+        f".{name} {{ --natural: {name[1:]}px; }}\n" for name in sorted(set(map(name_natural_width, pictures)))
+    )
 
 
 def _navigation_html(outline: Outline, current_page: CurrentPage) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.model.partner_interfaces import PartnerInterface
 from archgen.views import inline_text
@@ -12,6 +12,9 @@ from archgen.views.agreement.promise_rows import SOURCE_PHRASE
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
+
+_MAX_OWN_ROWS = 2
+"""With the same point open at more interfaces than these, it has one row with all of them: it would drown the others."""
 
 
 def write_summary_section(content: AgreementContent) -> Section:
@@ -143,18 +146,36 @@ def change_mark(changes: AgreementChanges | None, record: InterfaceRecord) -> In
 
 
 def write_open_points_section(content: AgreementContent) -> Section:
-    """List what the two have not settled yet."""
-    rows = tuple(
-        (
-            inline_text.to_inlines(Text(record.terms.title, ref=record.terms.interface.anchor)),
-            inline_text.join_lines(map(inline_text.message_to_inlines, record.terms.open_points)),
-        )
-        for record in content.records
-        if record.terms.open_points
-    )
-    columns = (Column("Interface"), Column("Not settled yet", 1.8))
-    table = Table("table:missing", "What is not settled yet", columns, rows, numbered=False)
+    """List what the two have not settled yet, what is open at one or two interfaces first."""
+    records_by_point = _group_open_points(content.records)
+    shared_points = [point for point, records in records_by_point.items() if len(records) > _MAX_OWN_ROWS]
+    rows: list[tuple[Inlines, ...]] = []
+    for record in content.records:
+        own_points = [point for point in record.terms.open_points if point not in shared_points]
+        if own_points:
+            points = inline_text.join_lines(map(inline_text.message_to_inlines, own_points))
+            rows.append(((_interface_link(record),), points))
+    for point in shared_points:
+        count = f"{len(records_by_point[point])} of {inline_text.count_noun(len(content.records), 'interface')}"
+        links = inline_text.join_inlines(((_interface_link(record),) for record in records_by_point[point]), ", ")
+        interfaces = inline_text.join_lines([inline_text.to_inlines(Text(count, strong=True)), links])
+        rows.append((interfaces, inline_text.message_to_inlines(point)))
+    columns = (Column("Interface", 1.4), Column("Not settled yet", 1.6))
+    table = Table("table:missing", "What is not settled yet", columns, tuple(rows), numbered=False)
     nothing = Paragraph(
         inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
     )
     return Section("page:open", "Open points", (table if rows else nothing,))
+
+
+def _group_open_points(records: Sequence[InterfaceRecord]) -> Mapping[str, Sequence[InterfaceRecord]]:
+    """Return the interfaces at which each point is open."""
+    grouped: dict[str, list[InterfaceRecord]] = {}
+    for record in records:
+        for point in record.terms.open_points:
+            grouped.setdefault(point, []).append(record)
+    return grouped
+
+
+def _interface_link(record: InterfaceRecord) -> Text:
+    return Text(record.terms.title, ref=record.terms.interface.anchor)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from archgen.views import inline_text
@@ -30,13 +30,16 @@ class SectionWriter:
     signatures: SignatureRecord = field(default_factory=SignatureRecord)
     anchors_by_message: dict[str, str] = field(default_factory=dict)
 
-    def write_section(self, record: InterfaceRecord, anchor: str, mark: Inlines) -> Section:
-        """Return the section of one interface."""
+    def write_section(
+        self, record: InterfaceRecord, anchor: str, mark: Inlines, first_facts: Iterable[tuple[str, Inlines]] = ()
+    ) -> Section:
+        """Return the section of one interface; `first_facts` are above all others."""
         interface_terms = record.terms
         blocks = [
             *self._change_blocks(record, mark),
             Facts(
                 (
+                    *first_facts,
                     ("Version", inline_text.to_inlines(self.signatures.describe_version(record))),
                     *interface_terms.facts,
                     *_further_facts(interface_terms),

@@ -167,7 +167,7 @@ class _GivenPace:
 
 
 def _spell_rate(pace: EventPace) -> str:
-    words = _spell_signs(rate_phrases.format_rate_words(pace))
+    words = _spell_signs(rate_phrases.format_short_rate(pace))
     return f"{words}-driven" if words.endswith(", event") else words
 
 

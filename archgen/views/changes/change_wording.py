@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -90,20 +90,24 @@ def count_by_kind(changes: Iterable[Edit]) -> str:
     return ", ".join(f"{kinds[kind]} {kind}" for kind in CHANGE_SIGNS if kinds[kind])
 
 
-def text_runs(text: str, titles: Mapping[str, str] | None = None, ref: str | None = None) -> Inlines:
+def text_runs(
+    text: str, titles: Mapping[str, str] | None = None, find_reference: Callable[[str], str | None] = lambda _id: None
+) -> Inlines:
     """Split a sentence into runs, with what is in backticks as code; a backtick without a second one is a backtick.
 
-    With `titles`, elements are called by them, each a link to `ref`.
+    With `titles`, elements are called by them, each a link to what `find_reference` returns for its id.
     """
     # Splitting with one capturing group alternates: odd pieces were in backticks.
     pieces = re.split(r"`([^`]*)`", text)
     return tuple(
-        _name_run(piece, titles or {}, ref) if index % 2 else Text(piece) for index, piece in enumerate(pieces) if piece
+        _name_run(piece, titles or {}, find_reference) if index % 2 else Text(piece)
+        for index, piece in enumerate(pieces)
+        if piece
     )
 
 
-def _name_run(name: str, titles: Mapping[str, str], ref: str | None) -> Text:
-    return Text(titles[name], ref=ref, emphasis=True) if name in titles else Text(name, code=True)
+def _name_run(name: str, titles: Mapping[str, str], find_reference: Callable[[str], str | None]) -> Text:
+    return Text(titles[name], ref=find_reference(name), emphasis=True) if name in titles else Text(name, code=True)
 
 
 def choose_mark(kind: EditKind) -> Literal["added", "removed", "changed"]:

@@ -14,7 +14,6 @@ from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.model.component import Input, Output
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.breaking_items import (
@@ -26,6 +25,7 @@ from archgen.views.changes.breaking_items import (
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.figure_lines import FigureLine, write_load_lines
+from archgen.views.changes.named_elements import name_elements
 from archgen.views.changes.owned_edits import name_owner
 from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
@@ -122,6 +122,10 @@ class ComparisonDocument:
     graphs: tuple[Graph, ...] = field(default=())
     element_titles: Mapping[str, str] = field(default_factory=dict)
     """What people call components and their ports, by id: `Navigator`, `Navigator · goal`."""
+    element_addresses: Mapping[str, str] = field(default_factory=dict)
+    """Where on the web these are written, by id; empty where the project names no repository."""
+    element_pages: Mapping[str, str] = field(default_factory=dict)
+    """The anchors of their pages, by id; empty outside of a site."""
 
     @property
     def versions(self) -> tuple[NamedVersion, NamedVersion]:
@@ -202,18 +206,8 @@ def describe_comparison(
         chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
         finding_groups=finding_groups,
         graphs=graphs,
-        element_titles=_name_elements(comparison),
+        element_titles=name_elements(comparison),
     )
-
-
-def _name_elements(comparison: Comparison) -> Mapping[str, str]:
-    titles: dict[str, str] = {}
-    for architecture in (comparison.before.architecture, comparison.after.architecture):
-        titles |= {name: group.title for name, group in architecture.groups.items()}
-        titles |= {name: component.title for name, component in architecture.components.items()}
-        ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
-        titles |= {port.id: f"{architecture.components[port.component].title} · {port.name}" for port in ports}
-    return titles
 
 
 def sort_by_severity(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -125,9 +125,10 @@ def _change_runs(change: Edit, document: ComparisonDocument) -> Inlines:
 
 
 def _titled_runs(text: str, document: ComparisonDocument) -> Inlines:
-    """Split a sentence into runs; elements are called by their titles, each a link to the picture of what changed."""
+    """Split a sentence into runs; elements are called by their titles, each a link to its page or what changed in a picture."""
     graph = document.main_graph
-    return text_runs(text, document.element_titles, f"figure:{graph.id}" if graph else None)
+    figure = f"figure:{graph.id}" if graph else None
+    return text_runs(text, document.element_titles, lambda name: document.element_pages.get(name) or figure)
 
 
 def _sign_runs(kind: EditKind) -> Inlines:

@@ -110,8 +110,11 @@ def add_changes(pages: Iterable[Page], site_changes: SiteChanges, drawings: Mapp
 def _make_changes_page(
     site_changes: SiteChanges, first_page: Page, drawings: Mapping[str, Drawing], anchors: Collection[str]
 ) -> Page:
-    outline = write_comparison_outline(site_changes.document)
     ids = {anchor.partition(":")[2]: anchor for anchor in sorted(anchors) if anchor.partition(":")[0] in _PAGE_KINDS}
+    names = site_changes.document.element_titles
+    # A port's id leads to its component.
+    pages = {name: page for name in names if (page := ids.get(name) or ids.get(name.rpartition(".")[0]))}
+    outline = write_comparison_outline(replace(site_changes.document, element_pages=pages))
     sections = tuple(
         _link_section(section, ids)
         for section in outline.sections
@@ -120,7 +123,9 @@ def _make_changes_page(
     blocks: tuple[Block, ...] = (*outline.notices, Facts(outline.facts))
     section = Section(CHANGES_ANCHOR, "Changes", blocks, sections)
     crumbs = (("Overview", first_page.anchor),)
-    return Page("changes.html", CHANGES_ANCHOR, "Changes", "spanning", section, crumbs, outline.subtitle)
+    return Page(
+        "changes.html", CHANGES_ANCHOR, "Changes", "spanning", section, crumbs, f"What changed: {outline.subtitle}"
+    )
 
 
 def _link_section(section: Section, ids: Mapping[str, str]) -> Section:

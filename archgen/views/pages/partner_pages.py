@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.model.architecture import Partner
 from archgen.model.partner_interfaces import PartnerPair
@@ -12,6 +12,7 @@ from archgen.views.agreement.exchange_tables import pair_title
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
 from archgen.views.agreement.partner_exchanges import PartnerExchange, gather_exchanges
+from archgen.views.agreement.signature_record import SignedTag, write_signature_table
 from archgen.views.agreement.term_changes import InterfaceRecord
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
@@ -45,8 +46,13 @@ _PROMISE_NOTE = (
 )
 
 
-def make_partner_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
-    """Make the page of each partner; where partners give each other something, also who owes whom, pairs, interfaces."""
+def make_partner_pages(
+    lookup: Lookup, keep_drawn: FigureFilter, signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] | None = None
+) -> Iterator[Page]:
+    """Make the page of each partner; where partners give each other something, also who owes whom, pairs, interfaces.
+
+    `signed_tags` record what was signed, newest first.
+    """
     exchanges = gather_exchanges(lookup)
     if exchanges:
         yield _overview_page(lookup, exchanges)
@@ -55,9 +61,10 @@ def make_partner_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Pag
         yield _partner_page(lookup, partner, own_exchanges, keep_drawn)
     has_interface_pages = sum(len(exchange.interfaces) for exchange in exchanges) <= MAX_INTERFACE_PAGES
     for exchange in exchanges:
-        yield _pair_page(lookup, exchange, has_interface_pages=has_interface_pages)
+        tags = (signed_tags or {}).get(exchange.pair, ())
+        yield _pair_page(lookup, exchange, tags, has_interface_pages=has_interface_pages)
         for terms in exchange.interfaces if has_interface_pages else ():
-            yield _interface_page(lookup, exchange, terms)
+            yield _interface_page(lookup, exchange, terms, tags)
 
 
 def pair_reference(pair: Sequence[str]) -> str:
@@ -128,10 +135,14 @@ def _open_cell(exchange: PartnerExchange) -> Inlines:
     return (Text(str(count), sort_number=str(count), status="open"),) if count else (Text("none", status="met"),)
 
 
-def _pair_page(lookup: Lookup, exchange: PartnerExchange, *, has_interface_pages: bool) -> Page:
+def _pair_page(
+    lookup: Lookup, exchange: PartnerExchange, signed_tags: tuple[SignedTag, ...], *, has_interface_pages: bool
+) -> Page:
     """Make the page of two partners: figures, what is open, then what each gives, promised beside derived."""
     title = pair_title(lookup, exchange.pair)
     sections = tuple(_list_direction_sections(lookup, exchange))
+    if signed_tags:
+        sections += (Section(_signed_reference(exchange.pair), "Signed", (write_signature_table(signed_tags),)),)
     note = Paragraph(inline_text.to_inlines(_PROMISE_NOTE))
     command = Text(f"archgen interfaces --between {exchange.pair[0]} {exchange.pair[1]}", code=True)
     hint = (
@@ -190,12 +201,38 @@ def _list_direction_sections(lookup: Lookup, exchange: PartnerExchange) -> Itera
         yield Section(f"given:{giver}", title, (table or nothing,))
 
 
-def _interface_page(lookup: Lookup, exchange: PartnerExchange, terms: InterfaceTerms) -> Page:
+def _signed_reference(pair: Sequence[str]) -> str:
+    return f"signed:{pair[0]}:{pair[1]}"
+
+
+def _list_interface_facts(
+    lookup: Lookup, exchange: PartnerExchange, terms: InterfaceTerms, signed_tags: tuple[SignedTag, ...]
+) -> Iterator[tuple[str, Inlines]]:
+    """Yield who owns an interface, who reads it, and what was signed of it."""
+    sides: dict[bool, list[Inlines]] = {False: [], True: []}
+    for end in terms.ends:
+        component = (Text(": "), inline_text.component_link(end.component)) if end.component else ()
+        sides[end.is_taker].append((*inline_text.owner_links(lookup.architecture, end.owners), *component))
+    for name, lines in (("Owner", sides[False]), ("Readers", sides[True])):
+        yield name, inline_text.join_lines(dict.fromkeys(lines))
+    if signed_tags:
+        last_tag = signed_tags[0]
+        count = inline_text.count_noun(len(signed_tags), "signature")
+        signed = Text(f"{count} of the agreement, the last on {last_tag.date}", ref=_signed_reference(exchange.pair))
+        yield "History", inline_text.to_inlines(signed, " as ", Text(last_tag.name, code=True))
+    else:
+        yield "History", inline_text.to_inlines(Text("no signature of the agreement is recorded", muted=True))
+
+
+def _interface_page(
+    lookup: Lookup, exchange: PartnerExchange, terms: InterfaceTerms, signed_tags: tuple[SignedTag, ...]
+) -> Page:
     """Make the page of an interface: what it is, promised and expected, ends, fields, chains, what is open."""
     interface = terms.interface
     record = InterfaceRecord(terms, (interface.key, interface.pair), {})
     # A writer for each page: it writes the fields of a message once, and later refers to them.
-    section = SectionWriter(lookup).write_section(record, exchange_tables.interface_reference(terms), ())
+    facts = _list_interface_facts(lookup, exchange, terms, signed_tags)
+    section = SectionWriter(lookup).write_section(record, exchange_tables.interface_reference(terms), (), facts)
     giver, taker = interface.pair
     path = f"partners/{make_page_slug(giver)}/{make_page_slug(taker)}/{make_page_slug(interface.key)}.html"
     crumbs = (HOME_CRUMB, _OVERVIEW_CRUMB, (pair_title(lookup, exchange.pair), pair_reference(exchange.pair)))

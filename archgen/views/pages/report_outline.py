@@ -8,9 +8,11 @@ from typing import Literal
 
 from archgen.model.component import Component, Group
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
+from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
+from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
@@ -47,6 +49,8 @@ class DocumentEdition:
     """The model has errors; documents show what is sound, and say so."""
     changes: SiteChanges | None = None
     """What changed since an earlier version, where the site is to show it."""
+    signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] = field(default_factory=dict)
+    """The tags that record signatures of two partners, newest first."""
 
 
 def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:

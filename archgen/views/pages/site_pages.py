@@ -46,7 +46,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     surrounding_pages = [
         *page_maker.message_pages().make_pages(),
         *context_pages.make_context_pages(lookup, page_maker.keep_drawn),
-        *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn),
+        *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags),
     ]
     implementation_pages = (
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []

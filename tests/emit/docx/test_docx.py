@@ -17,7 +17,7 @@ import pytest
 
 from archgen.emit.docx import write
 from archgen.emit.picture import Picture
-from archgen.views.shapes import Column, Figure, Markdown, Outline, Paragraph, Section, Table, Text
+from archgen.views.shapes import Column, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text
 from tests.emit.docx import inspection, judges, sample
 
 
@@ -191,6 +191,13 @@ def test_neither_the_first_nor_the_last_row_of_a_table_is_alone_on_a_page() -> N
     xml = document(report(Outline("T", sections=(Section("a", "A", (table,)),))))
     rows = [row for row in re.findall(r"<w:tr>.*?</w:tr>", xml) if "row " in row]
     assert [index for index, row in enumerate(rows) if "<w:keepNext/>" in row] == [0, 38]
+
+
+def test_a_table_of_facts_stays_on_one_page() -> None:
+    facts = Facts(tuple((f"fact {row}", (Text(f"value {row}"),)) for row in range(12)))
+    xml = document(report(Outline("T", sections=(Section("a", "A", (facts,)),))))
+    rows = [row for row in re.findall(r"<w:tr>.*?</w:tr>", xml) if "value " in row]
+    assert ["<w:keepNext/>" in row for row in rows] == 11 * [True] + [False]
 
 
 def test_wide_things_turn_the_page_and_back() -> None:

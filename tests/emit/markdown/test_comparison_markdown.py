@@ -242,3 +242,18 @@ def test_a_whole_comment_keeps_to_the_limit_of_the_host(told: Told) -> None:
     text = told(("      finder:", f"{many}      finder:"))
     assert 60_000 < len(text) <= 65_336
     assert " more: `archgen diff main arm`" in text
+
+
+def test_where_the_repository_is_known_elements_are_titles_with_links(tmp_path: Path) -> None:
+    found, broken = comparison(tmp_path, ROBOT, ROBOT.replace("wcet: 20 ms", "wcet: 60 ms"))
+    document = describe_comparison(found, "main", "arm", broken)
+    address = "https://github.com/lab/a b/blob/1a2b3c4/robot.yaml#L12"
+    document = replace(
+        document,
+        element_titles={"display.finder": "Finder [x] @all"},
+        element_addresses={"display.finder": f"{address}>)<"},
+    )
+    text = comparison_markdown.write_comparison_markdown(document)
+    link = "https://github.com/lab/a%20b/blob/1a2b3c4/robot.yaml#L12%3E%29%3C"
+    assert f"- \\~ [Finder \\[&#8203;x\\] @&#8203;all](<{link}>) of SSSA: worst case" in text
+    assert "`display.finder`" not in text

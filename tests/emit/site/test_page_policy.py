@@ -12,9 +12,12 @@ from playwright.sync_api import Browser, sync_playwright
 
 from archgen import pipeline
 from archgen.emit.file_tree import FileTree
+from archgen.emit.picture import Picture
 from archgen.emit.site.page_policy import PAGE_POLICY
+from archgen.emit.site.standalone_page import write_standalone_page
 from archgen.products import project_outputs
 from archgen.products.output_options import OutputOptions
+from archgen.views.shapes import Figure, Outline, Section
 
 ROOT = Path(__file__).resolve().parents[3]
 MOST_BYTES = 100_000
@@ -135,4 +138,24 @@ def test_on_paper_there_is_neither_bar_nor_button(browser: Browser, example: Pat
             page.locator("main button:visible:not(.sort, .fold, .back-list button), .bar button:visible").count() == 0
         ), path
         assert page.evaluate("getComputedStyle(document.body).color") == "rgb(27, 33, 39)"
+    page.close()
+
+
+def test_a_browser_refuses_nothing_of_a_page_that_stands_by_itself(browser: Browser, tmp_path: Path) -> None:
+    outline = Outline("Hands", sections=(Section("a", "A", (Figure("figure:f", "f", "Flow", "alt"),)),))
+    svg = b'<svg xmlns="http://www.w3.org/2000/svg" width="90pt" height="9pt" viewBox="0 0 90 9"><text>x</text></svg>'
+    text = write_standalone_page(outline, {"f": Picture("f", 90, 9, svg)}).decode()
+    assert "unsafe" not in text
+    assert len(_INLINE.findall(text)) == 1  # the element with the style, by its hash
+    (tmp_path / "x.html").write_text(text, encoding="utf-8")
+    messages: list[str] = []
+    page = browser.new_page()
+    page.on("console", lambda message: messages.append(message.text))
+    page.goto(f"file://{tmp_path}/x.html")
+    assert messages == []
+    assert page.evaluate("getComputedStyle(document.querySelector('.canvas')).getPropertyValue('--natural')") == "120px"
+    assert page.evaluate("[...document.fonts].some(face => face.status == 'loaded')")
+    (tmp_path / "y.html").write_text(text.replace("<main", "<style>h1 { color: red; }</style><main", 1), "utf-8")
+    page.goto(f"file://{tmp_path}/y.html")
+    assert page.evaluate("getComputedStyle(document.querySelector('h1')).color") != "rgb(255, 0, 0)"
     page.close()

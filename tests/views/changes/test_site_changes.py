@@ -71,6 +71,7 @@ def test_the_page_of_changes_tells_them_and_links_them(site: Path) -> None:
     for words in ("g.arm", "renamed", "g.horn", "is added", "g.gone", "is removed", "g.eye"):
         assert words in text
     assert '<a href="components/g.horn.html"><code>g.' in html
+    assert '<a href="components/g.horn.html"><em>Horn</em></a>' in html
     assert "<b>" not in html
     assert "figures/changes/components.svg" in html
 

@@ -1,0 +1,24 @@
+"""What the legend below a picture explains."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.emit.graphviz.drawn_legend import add_graph_legend
+from archgen.emit.graphviz.placed_scene import Scene
+from archgen.views.graph_shapes import Arrow, Graph
+
+
+@pytest.mark.parametrize(
+    ("counts", "samples"),
+    [
+        ((1, 4), ["width1", "width4"]),
+        ((2, 3, 5), ["width2", "width4"]),
+        ((1, 2, 9), ["width1", "width2", "width4"]),
+    ],
+)
+def test_only_the_widths_of_the_picture_are_explained(counts: tuple[int, ...], samples: list[str]) -> None:
+    arrows = tuple(Arrow(str(count), "a", "b", count=count) for count in counts)
+    scene = add_graph_legend(Scene(), Graph("g", "G", "overview", (), arrows, kind="overview", legend=("width",)))
+    names = {part.name[:-1] for part in scene.parts if part.name.startswith("width")}
+    assert sorted(names) == samples
