@@ -15,6 +15,7 @@ from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
 from archgen.views.report.figure_mentions import mention_section
+from archgen.views.report.message_annex import make_message_annex
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import LEGEND_NAME, make_report_drawings
 from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -125,6 +126,8 @@ class _ReportPrinter:
                 yield Section("page:nodes", "ROS side of the components", (lead,), sections, True, True)  # noqa: FBT003
         if table := ros_blocks.make_parameter_table(self.lookup):
             yield Section("page:parameters", "Parameters", (table,), appendix=True, page_break=False)
+        if section := make_message_annex(self.lookup):
+            yield section
 
     def _list_ros_groups(self) -> Iterator[Section]:
         for group_id in self.lookup.shown_groups():
