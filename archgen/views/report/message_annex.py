@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
@@ -49,16 +50,20 @@ def make_message_annex(lookup: Lookup) -> Section | None:
 
 
 def _list_lines(definition: Interface) -> Iterator[Inlines]:
-    """Yield a line for the comment of a definition, each field, and each constant."""
+    """Yield lines: the comment of a definition, fields with a meaning one by one, others and constants side by side."""
     if definition.comment:
         yield inline_text.to_inlines(" ".join(definition.comment.split()))
     constants = definition.constants or ((),) * len(definition.parts)
     for part, fields, part_constants in zip(definition.part_names, definition.parts, constants, strict=True):
         title = (Text(f"{_PART_TITLES.get(part, part)}: "),) if part else ()
-        for field in fields:
-            yield (*title, *_phrase_field(field))
-        for constant in part_constants:
-            yield (*title, *_phrase_constant(constant))
+        for is_explained, same_fields in itertools.groupby(fields, key=lambda field: bool(field.comment)):
+            phrases = [_phrase_field(field) for field in same_fields]
+            lines = phrases if is_explained else [inline_text.join_inlines(phrases)]
+            yield from ((*title, *line) for line in lines)
+        for is_explained, same_constants in itertools.groupby(part_constants, key=lambda each: bool(each.comment)):
+            phrases = [_phrase_constant(constant) for constant in same_constants]
+            lines = phrases if is_explained else [inline_text.join_inlines(phrases)]
+            yield from ((*title, *line) for line in lines)
 
 
 def _phrase_field(field: InterfaceField) -> Inlines:
@@ -66,7 +71,7 @@ def _phrase_field(field: InterfaceField) -> Inlines:
     default = f" = {field.default}" if field.default else ""
     return (
         Text(field.name, code=True),
-        Text("  "),
+        Text(" "),
         field_type_run(field.type, f"{type_text}{default}"),
         *_phrase_comment(field.comment),
     )
@@ -82,4 +87,4 @@ def _phrase_constant(constant: InterfaceConstant) -> Inlines:
 
 
 def _phrase_comment(comment: str) -> Inlines:
-    return (Text(f"  {' '.join(comment.split())}", muted=True),) if comment else ()
+    return (Text(f": {' '.join(comment.split())}", muted=True),) if comment else ()

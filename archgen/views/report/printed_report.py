@@ -79,9 +79,10 @@ class _ReportPrinter:
         blocks = tuple(_flatten(self._keep_legible(section.blocks)))
         if section.anchor == "page:requirements" and (table := front_pages.make_use_case_table(self.lookup)):
             blocks = (table, *blocks)
-        return dataclasses.replace(
-            section, blocks=blocks, sections=tuple(self._print_others(each) for each in section.sections)
-        )
+        sections = tuple(self._print_others(each) for each in section.sections)
+        # Annexes are looked up, not read: they follow one another without the rest of a page between them.
+        page_break = section.page_break and not section.appendix
+        return dataclasses.replace(section, blocks=blocks, sections=sections, page_break=page_break)
 
     def _keep_legible(self, blocks: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks with the report's own pictures; those of the whole architecture come on large paper alone."""
