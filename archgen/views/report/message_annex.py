@@ -55,7 +55,7 @@ def _list_lines(definition: Interface) -> Iterator[Inlines]:
         yield inline_text.to_inlines(" ".join(definition.comment.split()))
     constants = definition.constants or ((),) * len(definition.parts)
     for part, fields, part_constants in zip(definition.part_names, definition.parts, constants, strict=True):
-        title = (Text(f"{_PART_TITLES.get(part, part)}: "),) if part else ()
+        title = (Text(f"{_PART_TITLES.get(part, part)} ", emphasis=True),) if part else ()
         for is_explained, same_fields in itertools.groupby(fields, key=lambda field: bool(field.comment)):
             phrases = [_phrase_field(field) for field in same_fields]
             lines = phrases if is_explained else [inline_text.join_inlines(phrases)]
@@ -71,7 +71,7 @@ def _phrase_field(field: InterfaceField) -> Inlines:
     default = f" = {field.default}" if field.default else ""
     return (
         Text(field.name, code=True),
-        Text(" "),
+        Text(": "),
         field_type_run(field.type, f"{type_text}{default}"),
         *_phrase_comment(field.comment),
     )
@@ -87,4 +87,4 @@ def _phrase_constant(constant: InterfaceConstant) -> Inlines:
 
 
 def _phrase_comment(comment: str) -> Inlines:
-    return (Text(f": {' '.join(comment.split())}", muted=True),) if comment else ()
+    return (Text(f" ({' '.join(comment.split())})", muted=True),) if comment else ()

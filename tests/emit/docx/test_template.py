@@ -221,10 +221,11 @@ def test_contents_stand_where_the_cover_asks_for_them() -> None:
     assert flat.startswith("DeliverableContents1  First")
     assert flat.index("Second") < flat.index("End of the cover")
     assert flat.count("Contents") == 1
-    assert [text for text in warnings if "contents" in text] == [
-        "the template asks for {{contents}} in a header or footer, which the report does not have: it stays empty "
-        "(it goes into a paragraph of its own on the cover)"
-    ]
+    (warning,) = [text for text in warnings if "contents" in text]
+    assert warning.startswith(
+        "the template asks for {{contents}} in a header or footer, which the report does not have"
+    )
+    assert warning.endswith("it stays empty (it goes into a paragraph of its own on the cover)")
 
 
 def test_a_name_that_word_cut_into_runs_is_filled_in() -> None:
