@@ -149,7 +149,7 @@ class _ReportPrinter:
         sections = tuple(self._print_others(each) for each in section.sections)
         sections = tuple(each for each in sections if each.blocks)
         if sections:
-            yield Section("page:rates", _TIMING_ANNEX, (), sections, appendix=True, page_break=True)
+            yield Section("page:rates", _TIMING_ANNEX, (), sections, appendix=True, page_break=False)
 
 
 def walk_sections(sections: Iterable[Section]) -> Iterator[Section]:
