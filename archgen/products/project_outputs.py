@@ -42,7 +42,8 @@ def write_report_pdf(
         inputs = ProductInputs(checked_project, options, template)
         started_products = start_products(inputs, (REPORT,))
         document = make_content(inputs, started_products, REPORT)
-        content = convert_document(document.content if isinstance(document.content, bytes) else b"")
+        data = document.content if isinstance(document.content, bytes) else b""
+        content = convert_document(data, inputs.views.edition.date)
     except LibreOfficeError as error:
         raise file_tree.OutputError(str(error)) from None
     write_product_file(checked_project, target, content)

@@ -8,7 +8,7 @@ import shutil
 import pytest
 
 from archgen.emit.docx import write
-from archgen.emit.pdf_conversion import LibreOfficeError, convert_document
+from archgen.emit.pdf_conversion import LibreOfficeError, convert_document, replace_clock
 from archgen.emit.written_formats import name_written_format
 from archgen.views.shapes import Outline, Paragraph, Section, Text
 
@@ -19,6 +19,18 @@ def test_without_libreoffice_it_says_what_to_install(monkeypatch: pytest.MonkeyP
     monkeypatch.setenv("PATH", "")
     with pytest.raises(LibreOfficeError, match="there is no `soffice` on the path: install it"):
         convert_document(b"")
+
+
+def test_a_pdf_says_the_day_of_the_revision_and_not_the_time_of_its_making() -> None:
+    pdfs = [
+        f"%PDF-1.6\n<</CreationDate(D:{time}+01'00')>>\n/ID [ <{number:032X}>\n<{number:032X}> ]\n/DocChecksum /{number + 1:032X}\n".encode()
+        for time, number in (("20261122120547", 77), ("20270101235959", 78))
+    ]
+    first, second = (replace_clock(pdf, "2026-03-31") for pdf in pdfs)
+    assert first == second
+    assert len(first) == len(pdfs[0])
+    assert b"/CreationDate(D:20260331000000+00'00')" in first
+    assert b"/CreationDate(D:20000101000000" in replace_clock(pdfs[0], "March 2026")
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ and holds the package: styles, sections, headers, pictures, properties. The text
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -18,7 +19,12 @@ from archgen.emit.docx.page_flow import assign_sheets, estimate_pages
 from archgen.emit.docx.report_template import open_template
 from archgen.emit.docx.section_pieces import list_anchors, write_sections
 from archgen.emit.docx.template_checks import TemplateError
-from archgen.emit.docx.template_placeholders import fill_placeholders, find_placeholders
+from archgen.emit.docx.template_placeholders import (
+    fill_placeholders,
+    find_contents_mark,
+    find_placeholders,
+    place_contents,
+)
 from archgen.emit.docx.title_page import list_placeholder_values, write_front_sections, write_title_page
 from archgen.emit.docx.writer_setup import create_writer, warn_of_template
 from archgen.emit.picture import Picture
@@ -40,8 +46,9 @@ def write(
     Raises TemplateError, with a message for the user, if the template cannot be used.
     """
     report_template = open_template(template)
-    cover_names = find_placeholders(report_template.before)
-    unknown_names = fill_placeholders(report_template, list_placeholder_values(outline))
+    cover_names = find_placeholders(report_template.before) - {"contents"}
+    contents_mark = find_contents_mark(report_template.before)
+    unknown_names = fill_placeholders(report_template, list_placeholder_values(outline), contents_mark)
     language = outline.language if template is None else ""
     writer = create_writer(report_template, pictures, chapter_files, list_anchors(outline), language)
     if not outline.has_large_paper:
@@ -53,12 +60,20 @@ def write(
     sections = tuple(write_sections(writer, outline))
     # The lists take pages themselves: they are written once to be measured, and once with the numbers.
     base = writer.paper.base
-    flow = assign_sheets((*front, *write_contents(writer, {}, outline.lists), *sections), base)
+    in_cover = contents_mark is not None
+    contents = tuple(write_contents(writer, {}, outline.lists, one_column=in_cover))
+    flow = assign_sheets((*front, *(() if in_cover else contents), *sections), base)
     pages = estimate_pages((*title_page, *flow), base, section_start=len(title_page))
-    # How long a cover is, only Word knows; nearly all take one page.
+    # How long a cover is, only Word knows; nearly all take one page, and contents in it begin another.
     cover_pages = 1 if report_template.before else 0
+    if in_cover:
+        cover_pages += math.ceil(math.fsum(piece.height for piece in contents) / base.text_height)
     numbers = {bookmark: page + cover_pages for bookmark, page in pages.items()}
-    flow = assign_sheets((*front, *write_contents(writer, numbers, outline.lists), *sections), base)
+    contents = tuple(write_contents(writer, numbers, outline.lists, one_column=in_cover))
+    if contents_mark is None:
+        flow = assign_sheets((*front, *contents, *sections), base)
+    else:
+        report_template = place_contents(report_template, contents_mark, "".join(piece.xml for piece in contents))
     document = report_template.document
     clean_settings(document)
     write_core_properties(document, report_template.package, outline)

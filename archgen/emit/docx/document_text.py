@@ -46,7 +46,14 @@ def _iter_body(
         sheet = piece.sheet or paper.base
         after = main[index + 1].sheet if index + 1 < len(main) else sheet
         turns = after and after != sheet
-        yield _close_section(piece.xml, paper.create_section_properties(sheet)) if turns else piece.xml
+        if not turns:
+            yield piece.xml
+        elif piece.marks or piece.xml.endswith("</w:tbl>"):
+            # LibreOffice loses the bookmarks of a paragraph that ends a section: a reference to its number would be empty.
+            yield piece.xml
+            yield _format_section_end(paper.create_section_properties(sheet))
+        else:
+            yield _close_section(piece.xml, paper.create_section_properties(sheet))
     if template.after:
         if sheet != paper.base:
             yield _format_section_end(paper.create_section_properties(sheet))

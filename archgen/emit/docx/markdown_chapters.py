@@ -182,11 +182,11 @@ def _write_table(writer: DocxWriter, node: SyntaxTreeNode, context: BlockContext
 
 
 def _write_picture(writer: DocxWriter, node: SyntaxTreeNode, context: BlockContext) -> list[FlowPiece]:
-    """Write a picture that is a paragraph of its own; with a title it is a numbered figure. Nothing if it cannot be shown."""
+    """Write a picture that is a paragraph of its own: a numbered figure, by its title or else by its text. Nothing if it cannot be shown."""
     picture = read_chapter_picture(writer, context.source.resolve_picture(node), node.content)
     if picture is None:
         return []
-    title = str(node.attrs.get("title", "") or "")
+    title = " ".join(str(node.attrs.get("title", "") or node.content).split())
     pieces = [write_picture(writer, picture, None, keep_next=bool(title))]
     if title:
         pieces.append(write_caption(writer, f"{context.source.anchor}!{title}", title, None))

@@ -65,7 +65,10 @@ def assign_sheets(pieces: Sequence[FlowPiece], base: PaperSheet) -> tuple[FlowPi
         if math.fsum(piece.height for piece in pieces[start:end]) <= _MIN_PAGE_TEXT:
             before = sheets[start - 1] if start and not pieces[start].new_page else base
             after = sheets[end] if end < len(pieces) and not pieces[end].new_page else base
-            sheets[start:end] = [after if after != base else before] * (end - start)
+            neighbour = after if after != base else before
+            # Columns are for short lines alone, and need no page of their own.
+            if neighbour.columns == 1:
+                sheets[start:end] = [neighbour] * (end - start)
     return tuple(replace(piece, sheet=sheet) for piece, sheet in zip(pieces, sheets, strict=True))
 
 
@@ -75,8 +78,9 @@ def estimate_pages(pieces: Sequence[FlowPiece], base: PaperSheet, section_start:
     page, position, gap, sheet = 1, 0.0, 0.0, base
     for index, piece in enumerate(pieces):
         height = (piece.sheet or base).text_height
-        turned = index > 0 and (index == section_start or (piece.sheet or base) != sheet)
+        changes_sheet = (piece.sheet or base) != sheet
         sheet = piece.sheet or base
+        turned = index > 0 and (index == section_start or (changes_sheet and sheet.columns == 1))
         # Of two spaces that meet Word takes the larger one.
         space = max(gap, piece.before)
         if (

@@ -21,11 +21,14 @@ from archgen.emit.docx.word_xml import points_to_twips
 _A4 = (595.3, 841.9)
 _MARGIN = 70.85  # 25 mm
 _HEADER_DISTANCE = 34
+_COLUMN_GAP = 20.0
 _MAX_SIDE = 1584.0
 """Word knows no paper longer than 22 inches."""
 _MIN_TEXT_SIDE = 100.0
 _FIRST_PAGE_NAMES = ("titlePg", "pgNumType", "cols", "sectPrChange", "formProt", "lnNumType")
 """Section properties that belong to a first page, or to the template's own text."""
+_AFTER_COLUMNS = ("vAlign", "noEndnote", "textDirection", "bidi", "rtlGutter", "docGrid", "printerSettings")
+"""What stands behind the columns in a section's properties (ECMA-376 17.6.17)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +41,12 @@ class PaperSheet:
     right: float = _MARGIN
     bottom: float = _MARGIN
     left: float = _MARGIN
+    columns: int = 1
+
+    @property
+    def column_width(self) -> float:
+        """Return the width of a column."""
+        return (self.text_width - _COLUMN_GAP * (self.columns - 1)) / self.columns
 
     @property
     def text_width(self) -> float:
@@ -78,7 +87,10 @@ class PaperSet:
         if sheet.width > sheet.height:
             section.orientation = WD_ORIENTATION.LANDSCAPE
         # Another size needs a new page, however the template's own section begins; python-docx takes its `w:type` out for this.
-        section.start_type = WD_SECTION.NEW_PAGE
+        # Columns begin below what stands on the page.
+        section.start_type = WD_SECTION.NEW_PAGE if sheet.columns == 1 else WD_SECTION.CONTINUOUS
+        if sheet.columns > 1:
+            _write_columns(properties, sheet.columns)
         return properties
 
 
@@ -128,6 +140,14 @@ def _write_sheet(properties: etree._Element, sheet: PaperSheet, part: DocumentPa
     section.bottom_margin, section.left_margin = _round_length(sheet.bottom), _round_length(sheet.left)
     section.header_distance = section.footer_distance = _round_length(_HEADER_DISTANCE)
     section.gutter = _round_length(0)
+
+
+def _write_columns(properties: etree._Element, count: int) -> None:
+    """Give section properties columns of one width."""
+    columns = parse_xml(f'<w:cols {nsdecls("w")} w:num="{count}" w:space="{points_to_twips(_COLUMN_GAP)}"/>')
+    followers = {qn(f"w:{name}") for name in _AFTER_COLUMNS}
+    place = next((index for index, item in enumerate(properties) if item.tag in followers), len(properties))
+    properties.insert(place, columns)
 
 
 def _round_length(points: float) -> Length:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,8 @@ from archgen.emit.docx.figures import choose_sheet, write_figure
 from archgen.emit.docx.markdown_chapters import write_chapter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.table_pieces import write_facts, write_table
-from archgen.emit.docx.text_pieces import Heading, write_bullets, write_heading, write_paragraph
+from archgen.emit.docx.table_rows import drop_spacer
+from archgen.emit.docx.text_pieces import Heading, keep_with_next, write_bullets, write_heading, write_paragraph
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text
 
 _SCOPE_LEVEL = 2
@@ -36,6 +38,10 @@ def list_anchors(outline: Outline) -> frozenset[str]:
 
 def write_sections(writer: DocxWriter, outline: Outline) -> Iterator[FlowPiece]:
     """Write all sections. The first begins a page; lettered appendices count anew."""
+    yield from _drop_last_spacers(_write_all(writer, outline))
+
+
+def _write_all(writer: DocxWriter, outline: Outline) -> Iterator[FlowPiece]:
     lettered = False
     for index, section in enumerate(outline.sections):
         if section.appendix and not lettered:
@@ -46,6 +52,13 @@ def write_sections(writer: DocxWriter, outline: Outline) -> Iterator[FlowPiece]:
         starts = [place for place, item in enumerate(items) if item.block is None and item.level <= _SCOPE_LEVEL]
         for start, end in zip(starts, [*starts[1:], len(items)], strict=True):
             yield from _write_scope(writer, items[start:end])
+
+
+def _drop_last_spacers(pieces: Iterator[FlowPiece]) -> Iterator[FlowPiece]:
+    """Drop the space behind a table that ends a chapter: on a full page it would begin one that stays blank."""
+    for piece, following in itertools.pairwise((*pieces, None)):
+        if piece is not None:
+            yield drop_spacer(piece) if following is not None and following.new_page else piece
 
 
 def _iter_items(section: Section, level: int, *, appendix: bool, new_page: bool) -> Iterator[OutlineItem]:
@@ -69,10 +82,33 @@ def _write_scope(writer: DocxWriter, items: Sequence[OutlineItem]) -> Iterator[F
             place = Text("The picture", ref=item.block.anchor, is_number=True)
             inlines = (place, Text(" stands on the wide page that follows: "), Text(item.block.caption))
             yield write_paragraph(writer, Paragraph(inlines))
+        elif _stays_with_next(writer, items[index : index + 3]):
+            (piece,) = _write_item(writer, item)
+            yield keep_with_next(piece)
         else:
             yield from _write_item(writer, item)
     for item in late:
         yield from _write_item(writer, item)
+
+
+def _stays_with_next(writer: DocxWriter, items: Sequence[OutlineItem]) -> bool:
+    """Tell whether the first of some items is a sentence on the figure or table behind it, or a paragraph before that one.
+
+    Such a paragraph stays where the figure or table turns the page: else it might be alone on its own.
+    """
+    if _leads_to_block(items[:2]):
+        return True
+    is_lead = isinstance(items[0].block, Paragraph) and _leads_to_block(items[1:])
+    return is_lead and items[2].block is not None and _needs_sheet(writer, items[2].block)
+
+
+def _leads_to_block(items: Sequence[OutlineItem]) -> bool:
+    """Tell whether the first of two items is a sentence that names the figure or table behind it by its number."""
+    if len(items) < 2 or not isinstance(items[0].block, Paragraph):  # noqa: PLR2004 - both are there
+        return False
+    following = items[1].block
+    anchor = following.anchor if isinstance(following, (Figure, Table)) else None
+    return any(part.is_number and part.ref == anchor for part in items[0].block.inlines)
 
 
 def _needs_sheet(writer: DocxWriter, block: Block) -> bool:

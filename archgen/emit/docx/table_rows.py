@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.emit.docx.column_widths import CELL_MARGINS, USUAL_STYLES, TableStyles
 from archgen.emit.docx.docx_writer import DocxWriter
@@ -18,6 +18,7 @@ from archgen.emit.docx.text_metrics import TextFace
 from archgen.emit.docx.word_xml import escape_text, format_paragraph, points_to_twips
 
 _SPACER_HEIGHT = 8.0
+_TABLE_END = "</w:tbl>"
 _SHORT_HEIGHT = 130.0
 """Points below which a table stays on one page."""
 _FACTS_HEIGHT = 300.0
@@ -80,11 +81,18 @@ def write_table_rows(
         # The header row stays with the first row, a short table with all of them.
         keep = "<w:keepNext/>" if index < last and (short or index in kept_rows) else ""
         rows.append(_format_row(starts, row, text_style + keep, _KEEP_WHOLE if heights[index] < max_height else ""))
-    xml = _format_opening(writer, frame, headed=bool(header)) + "".join(rows) + "</w:tbl>" + _format_spacer(writer)
+    xml = _format_opening(writer, frame, headed=bool(header)) + "".join(rows) + _TABLE_END + _format_spacer(writer)
     # What stays together is one row to the estimate of pages.
     together = heights if short else heights[:2]
     piece_rows = (header_height + math.fsum(together), *heights[len(together) :], _SPACER_HEIGHT)
     return FlowPiece(xml, piece_rows, repeat=header_height, sheet=frame.sheet)
+
+
+def drop_spacer(piece: FlowPiece) -> FlowPiece:
+    """Return a table without the empty paragraph behind it; any other piece as it is. Its height stays: a page is full early."""
+    end = piece.xml.rfind(_TABLE_END) + len(_TABLE_END)
+    is_table = piece.xml.startswith("<w:tbl>")
+    return replace(piece, xml=piece.xml[:end]) if is_table else piece
 
 
 def _format_opening(writer: DocxWriter, frame: TableFrame, *, headed: bool) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.heading_numbers import format_heading_number
@@ -83,6 +83,13 @@ def write_text(
     rows = (*((face.line,) * (count - 1)), face.line + content.picture_height)
     xml = format_paragraph(writer.styles.find_style_id(style), content.runs, properties)
     return FlowPiece(xml, rows, face.before, face.after)
+
+
+def keep_with_next(piece: FlowPiece) -> FlowPiece:
+    """Return a paragraph that stays on the page, and the paper, of what follows it."""
+    style_end = piece.xml.index("/>", piece.xml.index("<w:pStyle")) + 2
+    xml = f"{piece.xml[:style_end]}<w:keepNext/>{piece.xml[style_end:]}"
+    return replace(piece, xml=xml, keep_next=True, whole=True)
 
 
 def write_bullets(writer: DocxWriter, shape: Bullets) -> Iterator[FlowPiece]:

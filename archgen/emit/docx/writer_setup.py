@@ -47,13 +47,17 @@ def create_writer(
     )
 
 
-def warn_of_template(writer: DocxWriter, unknown_names: Sequence[str]) -> None:
+def warn_of_template(writer: DocxWriter, unknown_names: Sequence[tuple[str, str]]) -> None:
     """Warn of what a partner's template lacks, and of what it asks for in vain."""
     if writer.styles.added:
         names = ", ".join(f"`{name}`" for name in writer.styles.added)
         writer.warn(f"the template has no style {names}: archgen's own took the place")
-    for name in unknown_names:
-        writer.warn(f"the template asks for {{{{{name}}}}}, which the report does not have: it stays empty")
+    for name, place in unknown_names:
+        # The contents are a list of paragraphs: they fit on no line with other words, and in no header.
+        advice = " (it goes into a paragraph of its own on the cover)" if name.casefold() == "contents" else ""
+        writer.warn(
+            f"the template asks for {{{{{name}}}}} {place}, which the report does not have: it stays empty{advice}"
+        )
     relations = writer.document.part.rels.values()
     kinds = {item.reltype.rpartition("/")[2] for item in relations if item.is_external} - {"hyperlink"}
     if kinds:

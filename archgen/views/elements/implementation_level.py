@@ -64,7 +64,7 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
         ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
         ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
-        ("Runs on", _location_cell(node)),
+        ("Runs on", _location_cell(lookup, node)),
         ("Callbacks", inline_text.to_inlines(callbacks) if (callbacks := _describe_callbacks(node)) else ()),
         ("Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)),
         ("Tags", inline_text.to_inlines(", ".join(node.tags)) if node.tags else ()),
@@ -85,10 +85,14 @@ def _program_parts(node: Node) -> Inlines:
     return tuple(part for name, value in parts if value for part in (Text(f", {name} "), Text(value, code=True)))
 
 
-def _location_cell(node: Node) -> Inlines:
+def _location_cell(lookup: Lookup, node: Node) -> Inlines:
     """Return the host of a node, and the container whose process it shares."""
-    host = _link_or_empty(node.host, "host") or inline_text.UNKNOWN_INLINES
-    return (*host, Text(", in the process "), *_link_or_empty(node.container, "container")) if node.container else host
+    host = inline_text.host_link(lookup.architecture, node.host)
+    if not node.container:
+        return host
+    container = lookup.architecture.containers.get(node.container)
+    title = container.title if container else node.container
+    return (*host, Text(", in the process "), Text(title, ref=f"container:{node.container}"))
 
 
 def _describe_callbacks(node: Node) -> str:
@@ -101,11 +105,6 @@ def _describe_callbacks(node: Node) -> str:
         f"mutually exclusive in groups ({groups})" if groups else "",
     )
     return ", ".join(part for part in parts if part)
-
-
-def _link_or_empty(element_id: str | None, kind: str) -> Inlines:
-    """Link to an element by its id; empty for None."""
-    return inline_text.to_inlines(Text(element_id, ref=f"{kind}:{element_id}")) if element_id else ()
 
 
 def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -17,15 +18,62 @@ _WORDS = (
     ("implementation:", _NODE_WORDS),
     ("chain:", _CHAIN_WORDS),
 )
+_BLOCK_WORDS = {
+    "figure:overview": "shows the groups and what runs between them",
+    "table:worst_chains": "lists the chains of effect with what is left of their deadlines",
+    "table:partner_progress": "counts how far the components of each partner are described",
+    "figure:hosts": "shows the hosts and the processes on them",
+    "table:hosts": "lists what runs on which host",
+    "table:links": "lists how the hosts are connected",
+    "figure:ros": "shows all nodes",
+    "table:periods": "sorts what the nodes do by how often they do it",
+    "table:chains": "compares the bound of each chain with its deadline",
+    "figure:views/": "shows this part of the architecture by itself",
+    "table:parameters": "lists the parameters of each node with their values",
+    "table:message_fields": "lists them with their types and meanings",
+    "figure:timing/": "shows how often the nodes of a group do something",
+    "figure:timing": "shows how often all nodes do something",
+    "table:timing": "says of each activity how often it comes and how long its response takes",
+    "table:fused": "lists the inputs that are used together, and how old they may be",
+    "table:edges": "lists where a reader takes less than what its source publishes",
+    "table:services-load": "lists how long a caller may wait for its answer",
+    "figure:load/": "shows what one host spends its time on",
+    "figure:load": "compares the load of all hosts",
+    "table:load": "says whether each host is in time",
+    "table:traffic": "adds up what crosses each link",
+    "table:bandwidth": "lists what each topic adds to it",
+    "table:types": "says which ROS message carries each type",
+    "table:connections": "lists who sends what to whom",
+    "table:use_cases": "says what happens in each use case",
+    "table:requirements": "traces each requirement to what serves it",
+    "table:own_requirements": "lists what components ask of themselves",
+    "table:open_points": "lists them with what to do",
+    "table:size": "counts the parts of the architecture",
+    "table:progress": "counts how far each part is described",
+    "table:history_parts": "says which part has grown",
+    "table:history": "shows how it has grown",
+    "figure:history": "draws its growth",
+}
+"""What a figure or table is for, by its anchor, or by the part of it before a slash."""
+_SUMMARY = "summary:"
+_MIN_RANGE = 3
+"""So many pictures of one kind are named by the first and the last of them."""
 
 
 def mention_section(section: Section) -> Section:
     """Return a section, and those below it, with a sentence before the first figure or table of each."""
     blocks = list(section.blocks)
     places = [index for index, block in enumerate(blocks) if _is_numbered(block)]
+    mentioned = [blocks[index] for index in places]
+    sections = section.sections
+    if any(each.anchor.startswith(_SUMMARY) for each in sections):
+        # The summary has two pages: one sentence does for all of it.
+        mentioned += [block for each in sections for block in each.blocks if _is_numbered(block)]
+    else:
+        sections = tuple(mention_section(each) for each in sections)
     if places:
-        blocks.insert(places[0], Paragraph(_write_sentence(section.anchor, [blocks[index] for index in places])))
-    return replace(section, blocks=tuple(blocks), sections=tuple(mention_section(each) for each in section.sections))
+        blocks.insert(places[0], Paragraph(_write_sentence(section.anchor, mentioned)))
+    return replace(section, blocks=tuple(blocks), sections=sections)
 
 
 def _is_numbered(block: Block) -> bool:
@@ -41,8 +89,35 @@ def _write_sentence(anchor: str, blocks: Sequence[Block]) -> Inlines:
             (name, Text(f" {word}")) for names, word in zip((figures, tables), words, strict=True) for name in names
         ]
         return (*_join(parts, ", "), Text("."))
-    names = [(name,) for name in (*figures, *tables)]
-    return (Text("See "), *_join(names, ", "), Text("."))
+    return _write_purposes(blocks)
+
+
+def _write_purposes(blocks: Sequence[Block]) -> Inlines:
+    """Say what each figure and table is for; those of one kind together."""
+    clauses: list[Inlines] = []
+    unexplained: list[Inlines] = []
+    for words, same_blocks in itertools.groupby(blocks, key=_find_purpose):
+        names = [(_name_block(block),) for block in same_blocks]
+        if not words:
+            unexplained += names
+            continue
+        is_range = len(names) >= _MIN_RANGE
+        named = _join([names[0], names[-1]], ", ", " to ") if is_range else _join(names, ", ")
+        clauses.append((*named, Text(f" {words if len(names) == 1 else _to_plural(words)}")))
+    if unexplained:
+        clauses.append((Text("see also " if clauses else "See "), *_join(unexplained, ", ")))
+    return (*_join(clauses, "; ", "; "), Text("."))
+
+
+def _find_purpose(block: Block) -> str:
+    anchor = block.anchor if isinstance(block, (Figure, Table)) else ""
+    return _BLOCK_WORDS.get(anchor) or _BLOCK_WORDS.get(f"{anchor.partition('/')[0]}/", "")
+
+
+def _to_plural(words: str) -> str:
+    """Return a verb with its object after several subjects: `show ...`."""
+    verb, _, rest = words.partition(" ")
+    return f"{verb.removesuffix('s')} {rest}"
 
 
 def _name_block(block: Block) -> Text:
@@ -51,11 +126,11 @@ def _name_block(block: Block) -> Text:
     return Text("the table", ref=block.anchor if isinstance(block, Table) else None, is_number=True)
 
 
-def _join(parts: Sequence[Inlines], separator: str) -> Inlines:
+def _join(parts: Sequence[Inlines], separator: str, last_separator: str = " and ") -> Inlines:
     """Join parts; the last one behind "and"."""
     runs: list[Text] = []
     for index, part in enumerate(parts):
         if index:
-            runs.append(Text(" and " if index == len(parts) - 1 else separator))
+            runs.append(Text(last_separator if index == len(parts) - 1 else separator))
         runs += part
     return tuple(runs)

@@ -26,6 +26,8 @@ _WORDS = {
     "archgen finds": "The check of the architecture finds",
     "Where the rate is from": "Source of the rate",
     "any scheduler that never idles": "any order that never idles",
+    "lose samples or beat": "are read less often than published, or in another rhythm",
+    "not decided by load alone": "open: load alone does not decide",
 }
 """Words of the analysis that a reader of a deliverable takes for faults, or does not know."""
 _COLUMN_WORDS = {"Lost": "Not read", "Come at once": "Burst"}

@@ -15,6 +15,7 @@ from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
 from archgen.views.report.figure_mentions import mention_section
+from archgen.views.report.message_annex import make_message_annex
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import LEGEND_NAME, make_report_drawings
 from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -78,9 +79,10 @@ class _ReportPrinter:
         blocks = tuple(_flatten(self._keep_legible(section.blocks)))
         if section.anchor == "page:requirements" and (table := front_pages.make_use_case_table(self.lookup)):
             blocks = (table, *blocks)
-        return dataclasses.replace(
-            section, blocks=blocks, sections=tuple(self._print_others(each) for each in section.sections)
-        )
+        sections = tuple(self._print_others(each) for each in section.sections)
+        # Annexes are looked up, not read: they follow one another without the rest of a page between them.
+        page_break = section.page_break and not section.appendix
+        return dataclasses.replace(section, blocks=blocks, sections=sections, page_break=page_break)
 
     def _keep_legible(self, blocks: Iterable[Block]) -> Iterator[Block]:
         """Yield blocks with the report's own pictures; those of the whole architecture come on large paper alone."""
@@ -125,6 +127,8 @@ class _ReportPrinter:
                 yield Section("page:nodes", "ROS side of the components", (lead,), sections, True, True)  # noqa: FBT003
         if table := ros_blocks.make_parameter_table(self.lookup):
             yield Section("page:parameters", "Parameters", (table,), appendix=True, page_break=False)
+        if section := make_message_annex(self.lookup):
+            yield section
 
     def _list_ros_groups(self) -> Iterator[Section]:
         for group_id in self.lookup.shown_groups():
@@ -145,7 +149,7 @@ class _ReportPrinter:
         sections = tuple(self._print_others(each) for each in section.sections)
         sections = tuple(each for each in sections if each.blocks)
         if sections:
-            yield Section("page:rates", _TIMING_ANNEX, (), sections, appendix=True, page_break=True)
+            yield Section("page:rates", _TIMING_ANNEX, (), sections, appendix=True, page_break=False)
 
 
 def walk_sections(sections: Iterable[Section]) -> Iterator[Section]:

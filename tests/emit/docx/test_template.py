@@ -204,7 +204,28 @@ def test_cover_header_and_closing_words_stay_and_are_filled_in() -> None:
     assert "{{" not in flat
     assert flat.count("Architecture of a robot that helps") == 1
     assert "ACME confidential 3f2a91c" in part(data, "word/header1.xml")
-    assert "the template asks for {{unheard of}}, which the report does not have: it stays empty" in warnings
+    assert (
+        "the template asks for {{unheard of}} on its cover, which the report does not have: it stays empty" in warnings
+    )
+
+
+def test_contents_stand_where_the_cover_asks_for_them() -> None:
+    def cover(document: Document) -> None:
+        document.add_paragraph("Deliverable")
+        document.add_paragraph("{{Contents}}")
+        document.add_paragraph("End of the cover")
+        document.sections[0].footer.paragraphs[0].text = "see {{contents}}"
+
+    data, warnings = report(saved(cover), Outline("T", sections=(Section("a", "First"), Section("b", "Second"))))
+    flat = "".join(text.partition(">")[2] for text in re.findall(r"<w:t[ >][^<]*", part(data)))
+    assert flat.startswith("DeliverableContents1  First")
+    assert flat.index("Second") < flat.index("End of the cover")
+    assert flat.count("Contents") == 1
+    (warning,) = [text for text in warnings if "contents" in text]
+    assert warning.startswith(
+        "the template asks for {{contents}} in a header or footer, which the report does not have"
+    )
+    assert warning.endswith("it stays empty (it goes into a paragraph of its own on the cover)")
 
 
 def test_a_name_that_word_cut_into_runs_is_filled_in() -> None:
