@@ -2,7 +2,8 @@
 
 A ratio holds where seconds do not: machines differ, and so do their moods. Each figure is the median of several whole
 processes, after one that is not counted; one that fails ends the run. Usage: python benchmarks/run.py [NAME ...], to run
-only some of `example`, `check1000`, `since1000`, `check10000`, `diff1000`, `build1000`. README.md has the figures of one
+only some of `example`, `check1000`, `since1000`, `check10000`, `diff1000`, `build1000`, `site`,
+`site1000`. README.md has the figures of one
 machine.
 """
 
@@ -133,6 +134,40 @@ def since(components: int) -> None:
         )
 
 
+def site(folder: Path) -> None:
+    """Measure the site: no picture drawn before, and after one change, as ratios of processor time to a check."""
+    with tempfile.TemporaryDirectory() as place:
+        copy, out = Path(place) / "project", Path(place) / "site"
+        shutil.copytree(folder, copy)
+        forget()
+        check = min(_processor_seconds(archgen("check", copy)) for _ in range(3))
+        cold = _processor_seconds(archgen("site", copy, "-o", out))
+        file = min((copy / "groups").glob("*.yaml"))
+        text = file.read_text(encoding="utf-8")
+        file.write_text(text.replace("title: ", "title: New ", 1), encoding="utf-8")
+        changed = _processor_seconds(archgen("site", copy, "-o", out))
+        sizes = [path.stat().st_size for path in out.rglob("*") if path.is_file()]
+        print(f"{f'site, {folder.name}':44} {cold:8.3f} s   {cold / check:8.1f} x check   processor time")
+        print(f"{'site, after one change':44} {changed:8.3f} s   {changed / check:8.1f} x check   processor time")
+        print(f"{'site, bytes':44} {sum(sizes) / 1e6:8.1f} MB  largest file {max(sizes) / 1e6:.2f} MB")
+
+
+def _processor_seconds(command: list[str]) -> float:
+    """Measure the processor time of a command and the processes that it starts."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    _once(command, lambda: None)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def generated_site(components: int) -> None:
+    """Measure the site of a generated project."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place) / f"{components} components"
+        generate(components, folder)
+        site(folder)
+
+
 def main() -> None:
     """Run the benchmarks that the command line names, or all of them."""
     parts: dict[str, Callable[[], None]] = {
@@ -142,6 +177,8 @@ def main() -> None:
         "check10000": lambda: scale("check", 10_000),
         "diff1000": lambda: changes(1_000),
         "build1000": lambda: scale("build", 1_000),
+        "site": lambda: site(_EXAMPLE),
+        "site1000": lambda: generated_site(1_000),
     }
     with tempfile.TemporaryDirectory() as cache:
         _ENVIRONMENT["XDG_CACHE_HOME"] = str(Path(cache) / "pictures")

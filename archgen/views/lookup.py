@@ -46,6 +46,8 @@ class Lookup:
     scope: DocumentScope = field(default_factory=DocumentScope)
     readers_of: Mapping[str, tuple[Connection, ...]] = field(default_factory=dict)
     """Connections that read an output, by the output's id."""
+    connection_positions: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Positions of the connections at a component, by its id; one is there twice where both ends are its own."""
     nodes_of: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
     """Nodes that implement a component, by the component's id."""
     endpoints_of: Mapping[str, tuple[Endpoint, ...]] = field(default_factory=dict)
@@ -112,6 +114,7 @@ def make_lookup(
         readers_of=_group_values(
             (o, connection) for connection in architecture.connections for o in connection.outputs
         ),
+        connection_positions=_group_values(_list_ends(architecture)),
         nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
         endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.endpoints),
         findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
@@ -127,6 +130,15 @@ def make_lookup(
         message_size=message_sizes.make_size_query(architecture),
         timing=timing_lookup,
     )
+
+
+def _list_ends(architecture: Architecture) -> Iterable[tuple[str, int]]:
+    """Yield the component at each end of each connection, with the connection's position."""
+    for position, connection in enumerate(architecture.connections):
+        yield architecture.inputs[connection.input].component, position
+        for name in connection.outputs:
+            if name in architecture.outputs:
+                yield architecture.outputs[name].component, position
 
 
 def _find_physical_types(architecture: Architecture) -> frozenset[str]:

@@ -3,54 +3,70 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
 from archgen.emit.graphviz.label_places import sample_line
-from archgen.emit.graphviz.placed_scene import Rectangle, SceneLine, ScenePoint, rectangles_meet
+from archgen.emit.graphviz.placed_scene import Rectangle, SceneLine, ScenePoint
 
 LineSegment = tuple[ScenePoint, ScenePoint]
 
 
 class _SegmentedLine(NamedTuple):
-    """A line's straight segments, each with its bounding rectangle, and the rectangle round them all."""
+    """A line's straight segments, each with left, bottom, right and top, and the rectangle round them all."""
 
-    segments: Sequence[tuple[LineSegment, Rectangle]]
+    segments: Sequence[tuple[LineSegment, float, float, float, float]]
     bounds: Rectangle
 
 
-def count_crossings(lines: Sequence[SceneLine]) -> int:
-    """Count the crossings of all pairs of lines. A pair may cross more than once."""
+def count_crossings(lines: Sequence[SceneLine], limit: float = math.inf) -> int:
+    """Count the crossings of all pairs of lines. A pair may cross more than once.
+
+    Who only asks whether there are fewer than a limit is told any number from there on.
+    """
     paths = [_split_line(line) for line in lines]
-    return sum(
-        _count_line_crossings(one, other)
-        for at, one in enumerate(paths)
-        for other in paths[at + 1 :]
-        if rectangles_meet(one.bounds, other.bounds)
-    )
+    # A sweep from left to right: no line that begins beyond a line's right side can cross it, nor can any after that.
+    paths.sort(key=lambda path: path.bounds[0])
+    lefts = [path.bounds[0] for path in paths]
+    count = 0
+    for at, path in enumerate(paths):
+        _, bottom, right, top = path.bounds
+        for other in paths[at + 1 : bisect_left(lefts, right, at + 1)]:
+            # `rectangles_meet` written out: hundreds of arrows are a hundred thousand pairs, of which few are near.
+            if bottom < other.bounds[3] and other.bounds[1] < top and path.bounds[0] < other.bounds[2]:
+                count += _count_line_crossings(path, other)
+        if count >= limit:
+            break
+    return count
 
 
 def _split_line(line: SceneLine) -> _SegmentedLine:
     segments = _line_segments(line)
     return _SegmentedLine(
-        [(segment, _bounds_of(segment)) for segment in segments], _bounds_of([p for each in segments for p in each])
+        [(segment, *_bounds_of(segment)) for segment in segments], _bounds_of([p for each in segments for p in each])
     )
 
 
 def _count_line_crossings(first: _SegmentedLine, second: _SegmentedLine) -> int:
     """Count the crossings of two lines. Only segments near the other line are compared."""
-    # Rectangles first: pictures of hundreds of arrows have tens of thousands of pairs, of which few are near one
-    # another.
-    near_segments = [each for each in first.segments if rectangles_meet(each[1], second.bounds)]
-    facing_segments = (
-        [each for each in second.segments if rectangles_meet(each[1], first.bounds)] if near_segments else []
-    )
+    # Rectangles first, compared as `rectangles_meet` does: calls of it were a third of all the time.
+    left, bottom, right, top = second.bounds
+    near_segments = [
+        each for each in first.segments if each[1] < right and left < each[3] and each[2] < top and bottom < each[4]
+    ]
+    if not near_segments:
+        return 0
+    left, bottom, right, top = first.bounds
+    facing_segments = [
+        each for each in second.segments if each[1] < right and left < each[3] and each[2] < top and bottom < each[4]
+    ]
     return sum(
         _segments_cross(segment, to)
-        for segment, span in near_segments
-        for to, box in facing_segments
-        if rectangles_meet(span, box)
+        for segment, left, bottom, right, top in near_segments
+        for to, to_left, to_bottom, to_right, to_top in facing_segments
+        if left < to_right and to_left < right and bottom < to_top and to_bottom < top
     )
 
 

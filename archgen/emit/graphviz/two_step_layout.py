@@ -232,7 +232,10 @@ def _best_scene(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) ->
         if costs[at] >= least:
             break
         left, bottom, right, top = scenes[at].bounds()
-        cost = costs[at] + 0.02 * _page_overflow(right - left, top - bottom) * count_crossings(outer_lines[at])
+        crossing_cost = 0.02 * _page_overflow(right - left, top - bottom)
+        # One more than decides, so that no rounding does.
+        limit = (least - costs[at]) / crossing_cost + 1 if crossing_cost else math.inf
+        cost = costs[at] + crossing_cost * count_crossings(outer_lines[at], limit)
         if cost < least:
             best, least = scenes[at], cost
     return best

@@ -42,6 +42,7 @@ class SiteNavigation:
     pages: Mapping[str, Page]
     cached_html: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
     cached_entries: dict[tuple[str, str], str] = field(default_factory=dict)
+    cached_kinds: dict[tuple[str, str], str] = field(default_factory=dict)
     cached_counts: dict[str, str] = field(default_factory=dict)
 
     def write_tree(self, page: Page, root: str) -> str:
@@ -89,6 +90,15 @@ class SiteNavigation:
         return f"kind {page.kind}" if parent is None or self.links.pages[parent] == self.start else parent
 
     def _write_kind(self, kind: str, title: str, ancestry: tuple[str, ...], root: str) -> str:
+        """Write the list of a kind. It is the same for all readers in a folder who are not below one of its pages."""
+        if any(self._list_of(self.pages[anchor]) == f"kind {kind}" for anchor in ancestry):
+            return self._write_new_kind(kind, title, ancestry, root)
+        key = (root, kind)
+        if key not in self.cached_kinds:
+            self.cached_kinds[key] = self._write_new_kind(kind, title, ancestry, root)
+        return self.cached_kinds[key]
+
+    def _write_new_kind(self, kind: str, title: str, ancestry: tuple[str, ...], root: str) -> str:
         list_name = f"kind {kind}"
         items = [self._write_entry(page, ancestry, root) for page in self._visible_pages(list_name, ancestry)]
         if self._is_long(list_name):

@@ -32,6 +32,9 @@ def format_csv(columns: Sequence[str], rows: TextRows) -> str:
 
 
 def _defuse_formula(cell: str) -> str:
+    # Nearly all cells of a matrix are empty or a number.
+    if not cell or (cell.isascii() and cell.isalnum()):
+        return cell
     # Line by line: a cell may hold line ends, and each line of it may look like a command.
     visible_cell = "\n".join(defuse_command(make_visible(line)) for line in cell.split("\n"))
     # The characters that OWASP names for CSV injection.

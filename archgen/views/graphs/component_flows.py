@@ -14,6 +14,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of
 from archgen.views.graph_shapes import Arrow
+from archgen.views.lookup import Lookup
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
 
@@ -43,16 +44,12 @@ def list_flows(architecture: Architecture) -> tuple[ComponentFlow, ...]:
     )
 
 
-def list_flows_at(architecture: Architecture, component_ids: Collection[str]) -> list[ComponentFlow]:
+def list_flows_at(lookup: Lookup, component_ids: Collection[str]) -> list[ComponentFlow]:
     """Return the flows that begin or end at some components, in the order of the connections."""
-    inputs, outputs = architecture.inputs, architecture.outputs
-    # Connections are filtered before flows are made of them: every group's picture asks, so all of it stays linear.
-    touching = (
-        connection
-        for connection in architecture.connections
-        if inputs[connection.input].component in component_ids
-        or any(outputs[each].component in component_ids for each in connection.outputs if each in outputs)
-    )
+    architecture = lookup.architecture
+    # Every group's picture asks: to go through all connections for each is quadratic.
+    positions = {at for component in component_ids for at in lookup.connection_positions.get(component, ())}
+    touching = (architecture.connections[at] for at in sorted(positions))
     candidates = (flow for connection in touching for flow in _flows_of_connection(architecture, connection))
     return [flow for flow in candidates if flow.tail in component_ids or flow.head in component_ids]
 

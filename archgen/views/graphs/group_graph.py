@@ -26,7 +26,7 @@ def draw_group(lookup: Lookup, group_id: str) -> Graph:
     """Draw one group with its neighbours."""
     group = lookup.architecture.groups[group_id]
     own_ids = {component.id for component in group.components.values()}
-    touching_flows = list_flows_at(lookup.architecture, own_ids)
+    touching_flows = list_flows_at(lookup, own_ids)
     is_folded = len(touching_flows) > MAX_FLOWS
     placed_flows = [_place_flow(flow, own_ids, is_folded=is_folded) for flow in touching_flows]
     neighbour_boxes = _draw_neighbours(lookup, placed_flows, own_ids, is_folded=is_folded)

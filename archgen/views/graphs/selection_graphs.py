@@ -27,7 +27,7 @@ _TITLES_PER_BOX = 3
 def draw_functional_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collection[str]) -> Graph:
     """Draw selected components and their neighbours."""
     components = [component for component in lookup.architecture.components.values() if component.id in component_ids]
-    touching_flows = list_flows_at(lookup.architecture, component_ids)
+    touching_flows = list_flows_at(lookup, component_ids)
     neighbour_ids = dict.fromkeys(
         end for flow in touching_flows for end in (flow.tail, flow.head) if end not in component_ids
     )

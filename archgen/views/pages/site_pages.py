@@ -26,6 +26,7 @@ from archgen.views.pages import (
 )
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
+from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
@@ -52,16 +53,18 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []
     )
     # Of pages whose paths collide the first one keeps its path, so this order is part of the site's addresses.
-    all_pages = _make_paths_distinct(functional_pages + implementation_pages + surrounding_pages)
+    whole_pages = functional_pages + implementation_pages + surrounding_pages
+    all_pages = _make_paths_distinct(split_pages(whole_pages))
     marked_pages = page_marks.mark_pages(lookup, all_pages)
     if edition.changes:
         marked_pages = add_changes(marked_pages, edition.changes, edition.drawings)
     return page_places.place_pages(lookup, marked_pages)
 
 
-def _make_paths_distinct(page_list: list[Page]) -> tuple[Page, ...]:
+def _make_paths_distinct(pages: Iterable[Page]) -> tuple[Page, ...]:
     """Add numbers to paths that several pages share: the names of two elements may give one file name."""
     # Folded: some systems take `A.html` and `a.html` for one file.
+    page_list = tuple(pages)
     own_paths = {page.path.casefold() for page in page_list}
     taken_paths: set[str] = set()
     result = []

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from decimal import ROUND_HALF_UP, Decimal
 from fractions import Fraction
+from functools import lru_cache
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import TimingValue
@@ -29,6 +30,7 @@ _UNBOUNDED_WORDS = {
 """Words for a value that does not exist, by the first word of the assumption that explains it."""
 
 
+@lru_cache(8192)
 def display_number(value: Fraction, decimals: int = _DEFAULT_DIGITS) -> str:
     """Format a number with at most `decimals` decimals, rounded half up.
 
@@ -63,6 +65,7 @@ def display_lower_bound(value: TimingValue) -> str:
     return _format_value(TimingValue(value.value, assumptions=value.assumptions), _format_time)
 
 
+@lru_cache(8192)  # a large architecture has few different figures, each on several pages and pictures
 def _format_time(nanoseconds: Fraction) -> str:
     """Format nanoseconds as ms or s."""
     return (
@@ -92,6 +95,7 @@ def display_traffic(value: TimingValue) -> str:
     return _format_value(value, lambda byte_rate: f"{_format_size(byte_rate)}/s")
 
 
+@lru_cache(8192)
 def _format_size(byte_count: Fraction) -> str:
     """Format a number of bytes."""
     factor, unit = next(((factor, unit) for factor, unit in _BYTE_UNITS if byte_count >= factor), (1, "B"))
