@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from archgen.emit.site.html_text import escape_html
+from archgen.emit.site.html_text import escape_html, shorten_figures, write_figures
 from archgen.views.shapes import DashboardCard, Inlines, KeyFigure, Waterfall, WaterfallPiece, WaterfallStep
 
 HATCH_ID = "waterfall-hatch"
@@ -29,7 +29,7 @@ def write_waterfall(
     figures = "\n".join([f"<li>{write_figure(figure)}</li>" for figure in waterfall.figures])
     rows = "\n".join([_write_step(step, waterfall, write_inlines) for step in waterfall.steps])
     cards = "\n".join([write_card(card) for card in waterfall.cards])
-    remark = f'<p class="muted">{escape_html(waterfall.remark)}</p>\n' if waterfall.remark else ""
+    remark = f'<p class="muted">{write_figures(waterfall.remark)}</p>\n' if waterfall.remark else ""
     return (
         f'<div class="cards waterfall">\n<div class="card known">\n<p>{write_inlines(waterfall.lead)}</p>\n'
         f'{_write_total(waterfall)}\n<ul class="figures">\n{figures}\n</ul>\n</div>\n'
@@ -82,7 +82,7 @@ def _fill(kind: str) -> str:
 
 
 def _write_piece(piece: WaterfallPiece, top: int, height: int) -> str:
-    tip = f"<title>{escape_html(piece.tip)}</title>" if piece.tip else ""
+    tip = f"<title>{escape_html(shorten_figures(piece.tip))}</title>" if piece.tip else ""
     length = max(piece.end - piece.start, 0.002)
     html = (
         f'<rect class="{piece.kind}" x="{_percent(piece.start)}" width="{_percent(length)}" y="{top}" height="{height}"{_fill(piece.kind)}>'
@@ -135,7 +135,7 @@ def _write_step(step: WaterfallStep, waterfall: Waterfall, write_inlines: Callab
     return (
         f'<li><div class="who">{write_inlines((step.title,))}{note}</div>'
         f'<div class="when{" late" if is_late else ""}"><svg class="scale" width="100%" height="24" aria-hidden="true">{lines}{pieces}'
-        f"{mark}</svg><p>{escape_html(step.words)}</p></div></li>"
+        f"{mark}</svg><p>{write_figures(step.words)}</p></div></li>"
     )
 
 
