@@ -104,7 +104,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
     const name = each.kind === "node" || each.kind === "component" ? each.id : each.kind === "host" ? `host:${archgenExplorer.grammar.quote(each.id)}` : each.id;
     return element("p", { className: "tools" },
       each.address ? element("a", { className: "primary", href: root + each.address, textContent: "Open page" }) : "",
-      /^https?:/i.test(each.written?.[1] ?? "") ? element("a", { href: each.written[1], textContent: "Edit", title: each.written[0] }) : "",
+      /^https?:/i.test(each.written?.[1] ?? "") ? element("a", { className: "edit", href: each.written[1], textContent: "Edit", title: each.written[0] }) : "",
       each.id ? tool("Focus", () => actions.focus(name, 1, 1)) : "",
       each.id ? tool("All before", () => actions.focus(name, Infinity, 0)) : "",
       each.id ? tool("All after", () => actions.focus(name, 0, Infinity)) : "",
