@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -109,8 +109,8 @@ def _compare_hosts(lookup: Lookup, present: TimingLookup, changed: TimingLookup)
                 "kind": "host",
                 "id": name,
                 "title": host.title if host else name,
-                "now": {"figure": _display_share(load.utilisation), "status": "", "margin": load.verdict},
-                "then": {"figure": _display_share(then.utilisation), "status": "", "margin": then.verdict},
+                "now": {"figure": _display_share(load.share_of_cores or load.utilisation), "status": "", "margin": load.verdict},
+                "then": {"figure": _display_share(then.share_of_cores or then.utilisation), "status": "", "margin": then.verdict},
                 "difference": "",
                 "differs": True,
             }
@@ -140,6 +140,20 @@ def list_figures(state: ProjectState, chain_id: str) -> list[JsonObject]:
     if timing_lookup is None or result is None:
         return []
     names = dict.fromkeys((*(term.activity for term in result.terms), *result.through))
+    return _list_named_figures(state, timing_lookup, names)
+
+
+def list_host_figures(state: ProjectState, host_id: str) -> list[JsonObject]:
+    """Return the figures of what runs on a host, as `list_figures` does; the largest load first."""
+    timing_lookup = state.lookup.timing
+    load = timing_lookup.analysis.hosts.get(host_id) if timing_lookup else None
+    if timing_lookup is None or load is None:
+        return []
+    shares = sorted(load.activity_shares, key=lambda share: -(share[1].value or 0))
+    return _list_named_figures(state, timing_lookup, [name for name, _ in shares])
+
+
+def _list_named_figures(state: ProjectState, timing_lookup: TimingLookup, names: Iterable[str]) -> list[JsonObject]:
     return [
         figure
         for name in names
