@@ -109,8 +109,16 @@ def _compare_hosts(lookup: Lookup, present: TimingLookup, changed: TimingLookup)
                 "kind": "host",
                 "id": name,
                 "title": host.title if host else name,
-                "now": {"figure": _display_share(load.share_of_cores or load.utilisation), "status": "", "margin": load.verdict},
-                "then": {"figure": _display_share(then.share_of_cores or then.utilisation), "status": "", "margin": then.verdict},
+                "now": {
+                    "figure": _display_share(load.share_of_cores or load.utilisation),
+                    "status": "",
+                    "margin": load.verdict,
+                },
+                "then": {
+                    "figure": _display_share(then.share_of_cores or then.utilisation),
+                    "status": "",
+                    "margin": then.verdict,
+                },
                 "difference": "",
                 "differs": True,
             }
