@@ -9,6 +9,7 @@ from typing import Any
 
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data import timing_json
+from archgen.emit.site.html_text import shorten_figures
 from archgen.link.override_values import OverrideError
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.declared_timing import Timing
@@ -93,9 +94,9 @@ def _compare_chains(lookup: Lookup, present: TimingLookup, changed: TimingLookup
 
 def _describe_chain(result: ChainResult) -> JsonObject:
     return {
-        "figure": value_format.display_duration(result.bound),
+        "figure": shorten_figures(value_format.display_duration(result.bound)),
         "status": result.verdict if not chain_status.lacks_only_deadline(result) else "",
-        "margin": chain_status.describe_margin(result),
+        "margin": shorten_figures(chain_status.describe_margin(result)),
     }
 
 
@@ -125,7 +126,7 @@ def _compare_hosts(lookup: Lookup, present: TimingLookup, changed: TimingLookup)
 
 
 def _display_share(value: TimingValue) -> str:
-    return value_format.display_share(value)
+    return shorten_figures(value_format.display_share(value))
 
 
 def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
