@@ -186,9 +186,11 @@ class _RequestHandler(BaseHTTPRequestHandler):
             self._send_data(HTTPStatus.OK, data, content_type)
 
     def _send_figures(self, query: dict[str, list[str]]) -> None:
-        """Send the figures of a chain that may be tried out."""
+        """Send the figures of a chain or of a host that may be tried out."""
         state = self.server.live_site.state
-        figures = what_if.list_figures(state, query.get("chain", [""])[0]) if state else ()
+        list_figures = what_if.list_host_figures if "host" in query else what_if.list_figures
+        name = (query.get("host") or query.get("chain") or [""])[0]
+        figures = list_figures(state, name) if state else ()
         self._send_json(HTTPStatus.OK, {"figures": figures})
 
     def _send_news(self) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data import timing_json
+from archgen.emit.site.html_text import shorten_figures
 from archgen.link.override_values import OverrideError
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.declared_timing import Timing
@@ -93,9 +94,9 @@ def _compare_chains(lookup: Lookup, present: TimingLookup, changed: TimingLookup
 
 def _describe_chain(result: ChainResult) -> JsonObject:
     return {
-        "figure": value_format.display_duration(result.bound),
+        "figure": shorten_figures(value_format.display_duration(result.bound)),
         "status": result.verdict if not chain_status.lacks_only_deadline(result) else "",
-        "margin": chain_status.describe_margin(result),
+        "margin": shorten_figures(chain_status.describe_margin(result)),
     }
 
 
@@ -109,15 +110,23 @@ def _compare_hosts(lookup: Lookup, present: TimingLookup, changed: TimingLookup)
                 "kind": "host",
                 "id": name,
                 "title": host.title if host else name,
-                "now": {"figure": _display_share(load.utilisation), "status": "", "margin": load.verdict},
-                "then": {"figure": _display_share(then.utilisation), "status": "", "margin": then.verdict},
+                "now": {
+                    "figure": _display_share(load.share_of_cores or load.utilisation),
+                    "status": "",
+                    "margin": load.verdict,
+                },
+                "then": {
+                    "figure": _display_share(then.share_of_cores or then.utilisation),
+                    "status": "",
+                    "margin": then.verdict,
+                },
                 "difference": "",
                 "differs": True,
             }
 
 
 def _display_share(value: TimingValue) -> str:
-    return value_format.display_share(value)
+    return shorten_figures(value_format.display_share(value))
 
 
 def _format_difference(old_value: TimingValue, new_value: TimingValue) -> str:
@@ -140,6 +149,20 @@ def list_figures(state: ProjectState, chain_id: str) -> list[JsonObject]:
     if timing_lookup is None or result is None:
         return []
     names = dict.fromkeys((*(term.activity for term in result.terms), *result.through))
+    return _list_named_figures(state, timing_lookup, names)
+
+
+def list_host_figures(state: ProjectState, host_id: str) -> list[JsonObject]:
+    """Return the figures of what runs on a host, as `list_figures` does; the largest load first."""
+    timing_lookup = state.lookup.timing
+    load = timing_lookup.analysis.hosts.get(host_id) if timing_lookup else None
+    if timing_lookup is None or load is None:
+        return []
+    shares = sorted(load.activity_shares, key=lambda share: -(share[1].value or 0))
+    return _list_named_figures(state, timing_lookup, [name for name, _ in shares])
+
+
+def _list_named_figures(state: ProjectState, timing_lookup: TimingLookup, names: Iterable[str]) -> list[JsonObject]:
     return [
         figure
         for name in names

@@ -257,6 +257,7 @@ class WaterfallStep:
 class Waterfall:
     """Where a time goes: all of it on a true scale against its limit, then step by step on an axis that may be cut.
 
+    Without a `total`, steps are all there is: they are then things side by side, such as the chains of a project.
     Positions are shares of an axis. `limits` are those of the limit on both axes, None where it is beyond.
     """
 
@@ -271,6 +272,14 @@ class Waterfall:
     remark: str
     figures: tuple[KeyFigure, ...]
     cards: tuple[DashboardCard, ...]
+    title: str = "Where the time goes"
+    legend: tuple[tuple[str, str], ...] = (
+        ("sampling", "waits to be read"),
+        ("response", "responds"),
+        ("link", "link"),
+        ("unknown", "unknown"),
+    )
+    """What the kinds of pieces mean; those that are drawn are shown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,7 +307,7 @@ class Page:
     matrix: Matrix | None = None
     """A matrix above the page's section."""
     waterfall: Waterfall | None = None
-    """Where the time of a chain goes, above the page's section."""
+    """Where time goes, above the page's section: that of a chain, of a host, of all chains."""
     mark: Literal["open", "missed"] | None = None
     """What the navigation marks: something here is open, or a deadline is missed."""
     is_changed: bool = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 
+from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.explorer.map_shapes import LINKED_TABLES, ExplorerMap, Row
@@ -82,8 +83,8 @@ def _part_path(number: int) -> str:
 
 
 def _write_calls(explorer_map: ExplorerMap, links: SiteLinks) -> Iterator[str]:
-    """Yield a call for each table, several for a long one."""
-    for name, rows in explorer_map.tables.items():
+    """Yield a call for each table, several for a long one; and one with the icons of states, which pages have as well."""
+    for name, rows in {**explorer_map.tables, "icons": status_marks.list_icons()}.items():
         texts = [_write_row(row, name, links) for row in rows]
         while texts:
             size, count = 0, 0

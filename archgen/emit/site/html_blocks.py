@@ -12,7 +12,14 @@ from dataclasses import dataclass, field
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures, status_marks, waterfall_html
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.html_text import escape_breakable, escape_html, web_address, write_signs
+from archgen.emit.site.html_text import (
+    escape_breakable,
+    escape_html,
+    shorten_figures,
+    web_address,
+    write_figures,
+    write_signs,
+)
 from archgen.emit.site.page_links import CurrentPage
 from archgen.views.shapes import (
     Block,
@@ -67,7 +74,7 @@ class PageWriter:
         """Write a figure with its reason, as one link; as plain text where its page is not part of the site."""
         total = f' <span class="total">of {escape_html(figure.total)}</span>' if figure.total else ""
         inner = (
-            f'<span class="title">{escape_html(figure.title)}</span> <span class="value">{escape_html(figure.value)}{total}</span>'
+            f'<span class="title">{escape_html(figure.title)}</span> <span class="value">{write_figures(figure.value)}{total}</span>'
             f" {self.write_inlines(figure.note)}"
         )
         href = self.current_page.href(figure.ref)
@@ -131,8 +138,7 @@ class PageWriter:
     def _write_run(self, run: Text) -> str:
         if run.meter:
             return status_marks.write_meter(run.meter)
-        text = run.text if run.code else write_signs(run.text)
-        html = status_marks.write_chip(run.status, text) if run.status else escape_breakable(text)
+        html = self._write_text(run)
         if run.code:
             html = f'<code class="place">{html}</code>' if run.is_place else f"<code>{html}</code>"
         if run.strong and not run.status:
@@ -148,6 +154,16 @@ class PageWriter:
         if run.muted:
             html = f'<span class="muted">{html}</span>'
         return "<br>" + html if run.line_break else html
+
+    def _write_text(self, run: Text) -> str:
+        # A page that is all there is has no other with the exact figure, and what has changed may be their last digits.
+        has_exact_figures = run.code or self.standalone or bool(run.change)
+        if run.status:
+            text = write_signs(run.text) if has_exact_figures else shorten_figures(run.text)
+            return status_marks.write_chip(run.status, text)
+        if run.code:
+            return escape_breakable(run.text)
+        return escape_breakable(write_signs(run.text)) if has_exact_figures else write_figures(run.text)
 
     def _write_table(self, table: Table, *, hides_caption: bool = False) -> str:
         caption = escape_html(table.caption)

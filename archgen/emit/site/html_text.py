@@ -6,6 +6,8 @@ import re
 from functools import lru_cache
 from html import escape as _escape
 
+from archgen.views.short_figures import split_figures
+
 _UNBROKEN_LENGTH = 17
 """Shorter texts hold no word that is long enough to be broken."""
 
@@ -14,6 +16,7 @@ _LONG_WORD = re.compile(r"[^\s<>&;]{18,}")
 _BREAK_POSITION = re.compile(r"(?<=[a-z0-9])([._/:-])(?=[A-Za-z0-9~])")
 _COMPARISON = re.compile(r"([<>])= (?=[0-9])")
 _MICROSECONDS = re.compile(r"([0-9][ \u00a0])us\b")
+_FIGURE = re.compile("[0-9] [a-zA-Z%]")
 _WEB_ADDRESS = re.compile(r"(?:https?://[^\s/]|mailto:[^\s:]+@)", re.IGNORECASE)
 
 
@@ -46,6 +49,28 @@ def write_signs(text: str) -> str:
     if "=" in text:
         text = _COMPARISON.sub(lambda sign: "≤ " if sign[1] == "<" else "≥ ", text)
     return _MICROSECONDS.sub("\\1µs", text) if "us" in text else text
+
+
+@lru_cache(65536)
+def write_figures(text: str) -> str:
+    """Escape text for an element, its figures with three significant digits; pointing at one shows all of it."""
+    # Most texts have no figure: the pattern of quantities costs more than looking for one.
+    if not _FIGURE.search(text):
+        return escape_breakable(write_signs(text))
+    return "".join([_write_part(part, short) for part, short in split_figures(text)])
+
+
+def _write_part(text: str, short: str) -> str:
+    if not short:
+        return escape_breakable(write_signs(text))
+    return f'<span class="short" title="{escape_html(write_signs(text))}">{escape_html(write_signs(short))}</span>'
+
+
+def shorten_figures(text: str) -> str:
+    """Return text with its figures as `write_figures` shows them, for where no element can be: pictures and tips."""
+    if not _FIGURE.search(text):
+        return write_signs(text)
+    return write_signs("".join([short or part for part, short in split_figures(text)]))
 
 
 def web_address(url: str | None) -> str | None:

@@ -37,6 +37,11 @@ def write_icon(status: Status) -> str:
     return f'<svg class="icon" viewBox="0 0 16 16" width="12" height="12" aria-hidden="true"><path d="{_ICON_PATHS[status]}"/></svg>'
 
 
+def list_icons() -> tuple[tuple[str, str], ...]:
+    """Return the path of each state's icon, for scripts that draw chips."""
+    return tuple(_ICON_PATHS.items())
+
+
 def write_meter(meter: Meter) -> str:
     """Write a bar. Screen readers leave it out: the figures beside it say the same.
 

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from archgen.emit.site.html_text import escape_html
+from archgen.emit.site.html_text import escape_html, shorten_figures, write_figures
 from archgen.views.shapes import DashboardCard, Inlines, KeyFigure, Waterfall, WaterfallPiece, WaterfallStep
 
 HATCH_ID = "waterfall-hatch"
-_LEGEND = (("sampling", "waits to be read"), ("response", "responds"), ("link", "link"), ("unknown", "unknown"))
 _BAR_HEIGHT = 16
 _LATE_SHARE = 0.5
 """Words of what begins behind this share of the axis stand at its right."""
@@ -29,11 +28,16 @@ def write_waterfall(
     figures = "\n".join([f"<li>{write_figure(figure)}</li>" for figure in waterfall.figures])
     rows = "\n".join([_write_step(step, waterfall, write_inlines) for step in waterfall.steps])
     cards = "\n".join([write_card(card) for card in waterfall.cards])
-    remark = f'<p class="muted">{escape_html(waterfall.remark)}</p>\n' if waterfall.remark else ""
-    return (
-        f'<div class="cards waterfall">\n<div class="card known">\n<p>{write_inlines(waterfall.lead)}</p>\n'
+    remark = f'<p class="muted">{write_figures(waterfall.remark)}</p>\n' if waterfall.remark else ""
+    known = (
+        f'<div class="card known">\n<p>{write_inlines(waterfall.lead)}</p>\n'
         f'{_write_total(waterfall)}\n<ul class="figures">\n{figures}\n</ul>\n</div>\n'
-        '<section class="card">\n<div class="head"><h2>Where the time goes</h2>'
+        if waterfall.total
+        else ""
+    )
+    return (
+        f'<div class="cards waterfall">\n{known}'
+        f'<section class="card">\n<div class="head"><h2>{escape_html(waterfall.title)}</h2>'
         f'<span class="legend" aria-hidden="true">{_write_legend(waterfall)}</span></div>\n'
         f'{_write_axis(waterfall)}\n<ol class="steps">\n{rows}\n</ol>\n{remark}</section>\n{cards}\n</div>'
     )
@@ -82,7 +86,7 @@ def _fill(kind: str) -> str:
 
 
 def _write_piece(piece: WaterfallPiece, top: int, height: int) -> str:
-    tip = f"<title>{escape_html(piece.tip)}</title>" if piece.tip else ""
+    tip = f"<title>{escape_html(shorten_figures(piece.tip))}</title>" if piece.tip else ""
     length = max(piece.end - piece.start, 0.002)
     html = (
         f'<rect class="{piece.kind}" x="{_percent(piece.start)}" width="{_percent(length)}" y="{top}" height="{height}"{_fill(piece.kind)}>'
@@ -104,8 +108,8 @@ def _write_legend(waterfall: Waterfall) -> str:
     kinds = {piece.kind for pieces in (waterfall.total, *(step.pieces for step in waterfall.steps)) for piece in pieces}
     return "".join(
         [
-            f'<span><svg width="16" height="10"><rect class="{kind}" width="16" height="10"{_fill(kind)}/></svg> {words}</span>'
-            for kind, words in _LEGEND
+            f'<span><svg width="16" height="10"><rect class="{kind}" width="16" height="10"{_fill(kind)}/></svg> {escape_html(words)}</span>'
+            for kind, words in waterfall.legend
             if kind in kinds
         ]
     )
@@ -114,11 +118,17 @@ def _write_legend(waterfall: Waterfall) -> str:
 def _write_axis(waterfall: Waterfall) -> str:
     ticks = "".join(
         [
-            f'<text x="{_percent(place)}" y="12" text-anchor="{"start" if place == 0 else "middle"}">{escape_html(text)}</text>'
+            f'<text x="{_percent(place)}" y="12" text-anchor="{_anchor_tick(place)}">{escape_html(text)}</text>'
             for place, text in waterfall.ticks
         ]
     )
-    return f'<div class="axis" aria-hidden="true"><span></span><svg class="scale" width="100%" height="16">{ticks}</svg></div>'
+    # The pattern stands once on a page, with the first picture.
+    hatch = "" if waterfall.total else _HATCH
+    return f'<div class="axis" aria-hidden="true"><span></span><svg class="scale" width="100%" height="16">{hatch}{ticks}</svg></div>'
+
+
+def _anchor_tick(place: float) -> str:
+    return "start" if place == 0 else "middle" if place < 1 else "end"
 
 
 def _write_step(step: WaterfallStep, waterfall: Waterfall, write_inlines: Callable[[Inlines], str]) -> str:
@@ -135,7 +145,7 @@ def _write_step(step: WaterfallStep, waterfall: Waterfall, write_inlines: Callab
     return (
         f'<li><div class="who">{write_inlines((step.title,))}{note}</div>'
         f'<div class="when{" late" if is_late else ""}"><svg class="scale" width="100%" height="24" aria-hidden="true">{lines}{pieces}'
-        f"{mark}</svg><p>{escape_html(step.words)}</p></div></li>"
+        f"{mark}</svg><p>{write_figures(step.words)}</p></div></li>"
     )
 
 

@@ -6,10 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from archgen.diagnostics.source_span import Span
 from archgen.model.component import Component, Group
 from archgen.model.deployment import Host
 from archgen.model.node import Node
 from archgen.timing.analysis import EventPace
+from archgen.views.element_references import place_run
 from archgen.views.explorer import element_keys, map_flows
 from archgen.views.explorer.map_places import MapPlaces, find_places
 from archgen.views.explorer.map_shapes import ExplorerMap, Row
@@ -143,6 +145,7 @@ class _MapMaker:
             _shorten_text(group.description),
             self.places.groups.get(group.id, ()),
             self.places.node_groups.get(group.id, ()),
+            self._list_places(group.at),
         )
 
     def host_row(self, host: Host) -> Row:
@@ -155,6 +158,7 @@ class _MapMaker:
             line,
             _shorten_text(host.description),
             self.places.hosts.get(host.id, ()),
+            self._list_places(host.at),
         )
 
     def component_row(self, component: Component) -> Row:
@@ -172,6 +176,7 @@ class _MapMaker:
             self.progress[component.id],
             worst_severity(self.lookup, component.id) or "",
             self.places.components[component.id],
+            self._list_places(component.at),
         )
 
     def node_row(self, node: Node) -> Row:
@@ -191,7 +196,13 @@ class _MapMaker:
             worst_severity(self.lookup, node.id) or "",
             self.places.nodes_by_group[node.id],
             self.places.nodes_by_host.get(node.id, ()),
+            self._list_places(node.at),
         )
+
+    def _list_places(self, span: Span) -> Row:
+        """Return file and line of an element, with its address where a repository is configured; empty for no place."""
+        place = place_run(self.lookup, span)
+        return tuple(filter(None, (place.text, place.url))) if place else ()
 
     def _list_paces(self, component_id: str | None, nodes: Iterable[Node]) -> list[EventPace | None]:
         """Return how often the activities of nodes happen; with a component, only those that are of it."""

@@ -19,15 +19,17 @@ LINKED_TABLES = frozenset({"groups", "hosts", "components", "nodes", "topics", "
 class ExplorerMap:
     """The tables of an explorer, by name. Those of an element start with its anchor and its id.
 
+    The places of nodes are those by group and by host; `written in` is file and line, with their address if they have one.
+
     | table | fields |
     |---|---|
     | `keys` | key, value: what selectors look for |
     | `names` | key, value, title: how people call a value |
     | `types` | name, message |
-    | `groups` | anchor, id, title, owners, summary, place among components, place among nodes |
-    | `hosts` | anchor, id, title, line, summary, place |
-    | `components` | anchor, id, title, group, line, summary, keys, period, progress, severity, place, ports |
-    | `nodes` | anchor, id, title, components, group, host, line, summary, keys, period, severity, place by group, by host |
+    | `groups` | anchor, id, title, owners, summary, place among components, place among nodes, written in |
+    | `hosts` | anchor, id, title, line, summary, place, written in |
+    | `components` | anchor, id, title, group, line, summary, keys, period, progress, severity, place, written in |
+    | `nodes` | anchor, id, title, components, group, host, line, summary, keys, period, severity, places, written in |
     | `topics` | anchor, name, flow |
     | `outputs` | component, name, type, note |
     | `inputs` | component, name, type, note, optional |

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from archgen.model.architecture import Requirement
 from archgen.model.component import Component
@@ -31,6 +32,7 @@ from archgen.views.shapes import (
 )
 from archgen.views.tables import architecture_tables
 from archgen.views.timing import element_timing
+from archgen.views.timing.host_waterfall import make_host_waterfall
 
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
 """Drops the figures that were not drawn."""
@@ -296,11 +298,12 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     ]
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     blocks += [Markdown(host.description)] if host.description else []
-    blocks += keep_drawn(element_timing.make_load_blocks(lookup, host.id))
+    waterfall = make_host_waterfall(lookup, lookup.timing, host.id) if lookup.timing else None
+    # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
+    blocks += keep_drawn(element_timing.make_load_blocks(lookup, host.id)) if waterfall is None else ()
     blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.host == host.id], host_id=host.id)
-    return make_page(
-        Section(f"host:{host.id}", host.title, tuple(blocks)), "hosts", ("Hosts and containers", "page:hosts"), "Host"
-    )
+    section = Section(f"host:{host.id}", host.title, tuple(blocks))
+    return replace(make_page(section, "hosts", ("Hosts and containers", "page:hosts"), "Host"), waterfall=waterfall)
 
 
 def _name_resources(lookup: Lookup, host: Host) -> Iterator[str]:

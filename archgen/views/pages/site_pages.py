@@ -31,6 +31,7 @@ from archgen.views.pages.report_outline import DocumentEdition, make_title_facts
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import architecture_tables, project_growth
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
+from archgen.views.timing.slack_waterfall import make_slack_waterfall
 
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
@@ -295,7 +296,8 @@ class PageMaker:
             # The links come before the picture of the whole, which is tall.
             figures = [block for block in blocks if isinstance(block, Figure)]
             lead_blocks = [block for block in blocks if not isinstance(block, Figure)]
-            yield self._spanning_page("timing", "Timing", *lead_blocks, *([links] if sections else []), *figures)
+            page = self._spanning_page("timing", "Timing", *lead_blocks, *([links] if sections else []), *figures)
+            yield replace(page, waterfall=make_slack_waterfall(self.lookup, self.lookup.timing))
             # A page for each: together they were as long as 25 screens.
             crumbs = (HOME_CRUMB, ("Timing", "page:timing"))
             for section in sections:

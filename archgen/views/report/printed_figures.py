@@ -5,17 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Decimal
+from decimal import Decimal
 
 from archgen.views.report import inline_marks
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Markdown, Paragraph, Section, Table, Text
+from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity
 
 _TIME_FACTORS = {"ns": Decimal(1), "us": Decimal(1000), "ms": Decimal(10**6), "s": Decimal(10**9)}
-_UNITS = "ns|us|ms|s|Hz|kHz|MHz|B|kB|MB|GB|B/s|kB/s|MB/s|GB/s|%"
-_QUANTITY = re.compile(rf"(?<![\w.])([<>]= )?([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?![\w/])")
 _TIME_CELL = re.compile(r"(>= |<= )?([0-9]+(?:\.[0-9]+)?) (ns|us|ms|s)")
 _SIGNS = (("<= ", "≤ "), (">= ", "≥ "))
-_DIGITS = 3
 _MIN_TIMES = 2
 _THIN = "\u202f"
 """Between a figure and its unit, which must not part."""
@@ -68,7 +66,7 @@ def print_inlines(inlines: Inlines) -> Inlines:
 
 def print_text(text: str) -> str:
     """Return text with real signs and three significant digits: `≤ 4.17 s` for `<= 4166.667 ms`."""
-    text = _QUANTITY.sub(lambda found: _print_quantity(found[1] or "", found[2], found[3]), text)
+    text = QUANTITY.sub(lambda found: _print_quantity(found[1] or "", found[2], found[3]), text)
     for sign, printed in _SIGNS:
         text = text.replace(sign, printed)
     return _replace_words(text)
@@ -81,23 +79,8 @@ def _replace_words(text: str) -> str:
 
 
 def _print_quantity(sign: str, number: str, unit: str) -> str:
-    value = Decimal(number)
-    if unit == "ms" and value >= 1000:  # noqa: PLR2004 - more digits than three are none that count
-        value, unit = value / 1000, "s"
-    return f"{sign}{_round_number(value, sign)}{_THIN}{'µs' if unit == 'us' else unit}"
-
-
-def _round_number(value: Decimal, sign: str = "") -> str:
-    """Return a number with three significant digits, but all of those before the point.
-
-    What is at least or at most so much (`sign`) stays true.
-    """
-    if not value:
-        return "0"
-    places = max(_DIGITS - 1 - value.adjusted(), 0)
-    rounding = {">": ROUND_FLOOR, "<": ROUND_CEILING}.get(sign[:1], ROUND_HALF_UP)
-    text = f"{value.quantize(Decimal(1).scaleb(-places), rounding):f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
+    number, unit = shorten_quantity(sign, number, unit)
+    return f"{sign}{number}{_THIN}{'µs' if unit == 'us' else unit}"
 
 
 def _print_table(table: Table) -> Table:
@@ -136,4 +119,4 @@ def _convert_text(part: Text, unit: str) -> Text:
         return replace(part, text=print_text(part.text))
     sign = found[1] or ""
     value = Decimal(found[2]) * _TIME_FACTORS[found[3]] / _TIME_FACTORS[unit]
-    return replace(part, text=f"{print_text(sign)}{_round_number(value, sign)}")
+    return replace(part, text=f"{print_text(sign)}{round_number(value, sign)}")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from decimal import Decimal
 from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
 from archgen.views.shapes import Inlines, Meter, Text
+from archgen.views.short_figures import round_number
 
 _VERDICT_RANKS = {"missed": 0, "not proven": 1, "open": 2, "met": 3}
 _SHORT_UNITS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
-_SIGNIFICANT_DIGITS = 3
 NO_DEADLINE: Inlines = (Text("no deadline", muted=True),)
 
 
@@ -69,8 +70,9 @@ def describe_margin(result: ChainResult) -> str:
     if margin < 0:
         # A bound above the deadline says how late a chain may be; a best case above it how late it is at least.
         sign = {"not proven": "<= ", "missed": ">= "}.get(result.verdict, "")
-        return f"{sign}+{round_duration(-margin)}"
-    return f"{'<= ' if result.verdict == 'open' else ''}{round_duration(margin)} left"
+        return f"{sign}+{round_duration(-margin, sign)}"
+    sign = "<= " if result.verdict == "open" else ""
+    return f"{sign}{round_duration(margin, sign)} left"
 
 
 def _find_margin(result: ChainResult) -> Fraction | None:
@@ -85,10 +87,13 @@ def _find_margin(result: ChainResult) -> Fraction | None:
     return None if (result.verdict in {"missed", "not proven"}) != (margin < 0) else margin
 
 
-def round_duration(nanoseconds: Fraction) -> str:
-    """Format a duration with three significant digits, in the largest unit that leaves at least one."""
+def round_duration(nanoseconds: Fraction, sign: str = "") -> str:
+    """Format a duration with three significant digits, in the largest unit that leaves at least one.
+
+    What is at least or at most so much (`sign`) stays true.
+    """
     factor, unit = next(((factor, unit) for factor, unit in _SHORT_UNITS if nanoseconds >= factor), (1, "ns"))
-    return f"{float(f'{float(nanoseconds / factor):.{_SIGNIFICANT_DIGITS}g}'):g} {unit}"
+    return f"{round_number(Decimal(nanoseconds.numerator) / Decimal(nanoseconds.denominator * factor), sign)} {unit}"
 
 
 def chain_meter(result: ChainResult) -> Inlines:

@@ -139,14 +139,20 @@ def _list_stretches(terms: Sequence[ChainTerm]) -> Iterator[tuple[Fraction, Frac
 def _make_total(result: ChainResult, total: Fraction, whole: Fraction) -> Iterator[WaterfallPiece]:
     """Yield the known parts by kind, and what is left for what nobody knows."""
     position = Fraction(0)
+    for kind, length, words in list_known_kinds(result):
+        end = position + length
+        yield WaterfallPiece(kind, float(position / whole), float(end / whole), words)
+        position = end
+    if not result.bound.complete and position < whole:
+        yield WaterfallPiece("unknown", float(total / whole), 1.0, "unknown")
+
+
+def list_known_kinds(result: ChainResult) -> Iterator[tuple[PieceKind, Fraction, str]]:
+    """Yield how long a chain waits, works and is on links, in ns and in words, as far as that is known."""
     for kind, word in _KINDS:
         length = sum((getattr(term, kind).value or Fraction(0) for term in result.terms), Fraction(0))
         if length:
-            end = position + length
-            yield WaterfallPiece(kind, float(position / whole), float(end / whole), f"{word} {_format(length)}")
-            position = end
-    if not result.bound.complete and position < whole:
-        yield WaterfallPiece("unknown", float(total / whole), 1.0, "unknown")
+            yield kind, length, f"{word} {_format(length)}"
 
 
 def _make_labels(result: ChainResult, total: Fraction, whole: Fraction) -> Iterator[tuple[float, str]]:
@@ -230,9 +236,14 @@ def _describe_place(lookup: Lookup, timing_lookup: TimingLookup, term: ChainTerm
 
 
 def _list_owners(lookup: Lookup, timing_lookup: TimingLookup, activity_id: str) -> tuple[str, ...]:
-    """Return who owns what an activity belongs to: its node, else its component."""
+    """Return who owns what an activity belongs to."""
     activity = timing_lookup.analysis.system.activities.get(activity_id)
-    node = lookup.architecture.nodes.get(activity.node) if activity else None
+    return list_node_owners(lookup, activity.node) if activity else ()
+
+
+def list_node_owners(lookup: Lookup, node_id: str) -> tuple[str, ...]:
+    """Return who owns a node: those that it names, else the owners of what it implements."""
+    node = lookup.architecture.nodes.get(node_id)
     if node is None:
         return ()
     names = tuple(

@@ -212,15 +212,11 @@ def _core_bars(load: HostLoad) -> Iterator[ChartBar]:
     """Yield a bar for each pinned core and for the cores that all else shares, each compared with itself."""
     if len(load.core_loads) < 2:  # noqa: PLR2004 - one place is the host
         return
-    # Pinned cores have a blank in their name (`pc core 7`), the shared ones do not and come last. Length before text,
-    # so that core 10 follows core 9.
-    for name, cores, core_load in sorted(
-        load.core_loads, key=lambda place: (" " not in place[0], len(place[0]), place[0])
-    ):
+    for name, cores, core_load in sort_cores(load):
         share = share_of_cores(core_load, cores)
         is_full = core_load.value is not None and core_load.value >= cores
         known_length = None if share.value is None else to_float(share.value * 100)
-        title = _name_cores(name, cores)
+        title = name_cores(name, cores)
         tooltip = f"{title}: {value_format.display_share(share)} of {count_noun(cores, 'core')}"
         segments: tuple[BarSegment, ...] = (BarSegment(known_length, "missed" if is_full else "best", "", tooltip),)
         if known_length is not None and not core_load.complete:
@@ -228,7 +224,14 @@ def _core_bars(load: HostLoad) -> Iterator[ChartBar]:
         yield ChartBar(title, segments, value_format.display_share(share))
 
 
-def _name_cores(place_name: str, cores: int) -> str:
+def sort_cores(load: HostLoad) -> list[tuple[str, int, TimingValue]]:
+    """Return the pinned cores of a host by number, then those that all else shares."""
+    # Pinned cores have a blank in their name (`pc core 7`), the shared ones do not. Length before text, so that core 10
+    # follows core 9.
+    return sorted(load.core_loads, key=lambda place: (" " not in place[0], len(place[0]), place[0]))
+
+
+def name_cores(place_name: str, cores: int) -> str:
     """Name the cores of a place: `core 7`, or those that all else shares."""
     return place_name.partition(" ")[2] or f"the other {count_noun(cores, 'core')}"
 
@@ -243,7 +246,7 @@ def describe_load(load: HostLoad) -> str:
     if load.verdict == "overload":
         # A host may be overloaded although its total is below 100 %: one pinned core is enough, so it is named.
         full_cores = [
-            _name_cores(name, count)
+            name_cores(name, count)
             for name, count, core_load in load.core_loads
             if core_load.value is not None and core_load.value >= count
         ]

@@ -175,11 +175,12 @@
   // --- figures to try out ---------------------------------------------------------------------------------------
   const tried = new Map();
   const chain = /\/chains\/([^/]+)\.html$/.exec(location.pathname);
+  const host = /\/hosts\/([^/]+)\.html$/.exec(location.pathname);
   const CHIPS = { met: "met", missed: "missed", "not proven": "not-proven", open: "open" };
 
   async function showFields() {
-    if (!chain) return;
-    const answer = await fetch(base + "live/what-if?chain=" + chain[1]);
+    if (!chain && !host) return;
+    const answer = await fetch(base + "live/what-if?" + (chain ? "chain=" + chain[1] : "host=" + host[1]));
     const { figures } = await answer.json();
     document.querySelector("main .what-if")?.remove();
     if (figures.length) document.querySelector("main").append(makeCard(figures));
@@ -212,7 +213,7 @@
   function makeCard(figures) {
     const labels = ["Execution time", "Period", "Rate", "Priority", "Host"].filter((label) => figures.some((figure) => figure.label === label));
     const elements = [...new Set(figures.map((figure) => figure.element))];
-    const head = element("tr", {}, element("th", { scope: "col", textContent: "Step" }), ...labels.map((label) => element("th", { scope: "col", textContent: label })));
+    const head = element("tr", {}, element("th", { scope: "col", textContent: chain ? "Step" : "Node" }), ...labels.map((label) => element("th", { scope: "col", textContent: label })));
     const rows = elements.map((name) => {
       const cells = labels.map((label) => {
         const figure = figures.find((each) => each.element === name && each.label === label);
@@ -260,7 +261,7 @@
     const quoted = set.map((text) => " --set '" + text.replaceAll("'", "'\\''") + "'").join("");
     card.querySelector(".command").replaceChildren(element("code", { textContent: "archgen timing" + quoted }));
     const rows = answered.rows.filter((row) => row.differs || (row.kind === "chain" && chain && decodeURIComponent(chain[1]) === row.id));
-    place.replaceChildren(makeAnswer(rows));
+    place.replaceChildren(rows.length ? makeAnswer(rows) : element("p", { textContent: "No chain and no load differs." }));
   }
 
   function makeAnswer(rows) {

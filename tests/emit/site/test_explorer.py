@@ -175,6 +175,27 @@ def test_boxes_do_not_cover_one_another_when_all_is_open(visit: Open) -> None:
     assert overlapping == 0
 
 
+def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: Open) -> None:
+    page = visit("#level=groups")
+    below = page.evaluate(
+        """() => {
+          const bottom = Math.max(...[...document.querySelectorAll("g[data-box] .shell")].map((box) => box.getBoundingClientRect().bottom));
+          return [...document.querySelectorAll("[data-arrow]")]
+            .filter((arrow) => arrow.querySelector(".way").getBoundingClientRect().bottom > bottom)
+            .map((arrow) => arrow.querySelector("title").textContent.split("\\n")[0]);
+        }"""
+    )
+    assert "Robot Action Planner → Hardware at the Boundary" in below
+    assert "Hardware at the Boundary → Robot Action Planner" not in below
+
+
+def test_the_panel_says_where_a_thing_is_written(visit: Open) -> None:
+    page = visit("#level=components&open=human_state&pick=human_state.fall_detector")
+    expect(page.locator(".panel .written")).to_contain_text("Written in groups/human_state.yaml:")
+    # An icon in each chip of a state.
+    assert page.locator(".panel .chip").count() == page.locator(".panel .chip svg path[d^=M]").count() > 0
+
+
 def test_a_merged_arrow_opens_into_its_flows(visit: Open) -> None:
     page = visit()
     page.locator(".map .arrow.many").first.evaluate("a => a.dispatchEvent(new MouseEvent('click', {bubbles: true}))")

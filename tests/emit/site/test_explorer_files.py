@@ -7,6 +7,7 @@ import re
 
 import pytest
 
+from archgen.emit.site import status_marks
 from archgen.emit.site.explorer_files import build_explorer_files, find_explorer_address, list_explorer_scripts
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.explorer.map_shapes import ExplorerMap
@@ -40,13 +41,14 @@ def test_rows_stand_with_the_addresses_of_their_pages() -> None:
         ("groups", [["groups/a.html", "a", "A", [1, -0.5]], ["", "none", "", []]]),
         ("components", [["groups/a.html#b", "a.b"]]),
         ("keys", [["tag", "group:a"]]),
+        ("icons", [list(icon) for icon in status_marks.list_icons()]),
     ]
 
 
 def test_hostile_text_stays_text() -> None:
     text = "</script><script>alert(1)</script>\u2028\ud800\"');"
     files = build_explorer_files(ExplorerMap({"keys": (("tag", text),)}), LINKS)
-    ((_, rows),) = read_calls(files["assets/explorer/data-1.js"].decode())
+    (_, rows), _ = read_calls(files["assets/explorer/data-1.js"].decode())
     assert rows == [["tag", text.replace("\ud800", "\ufffd")]]
 
 

@@ -69,3 +69,12 @@ def test_ids_hold_no_blank_and_no_quote() -> None:
 )
 def test_signs_and_units_of_figures_are_written_as_people_do(text: str, written: str) -> None:
     assert html_text.write_signs(text) == written
+
+
+def test_a_short_figure_shows_all_of_it_when_pointed_at() -> None:
+    html = html_text.write_figures("a<b >= 7223.333 ms")
+    assert html == 'a&lt;b <span class="short" title="≥ 7223.333 ms">≥ 7.22 s</span>'
+
+
+def test_where_no_element_can_be_figures_are_short_all_the_same() -> None:
+    assert html_text.shorten_figures("waits <= 4166.667 ms, 60 us") == "waits ≤ 4.17 s, 60 µs"

@@ -5,11 +5,12 @@ const archgenExplorer = (function () {
   document.documentElement.classList.add("explores");
   const tables = {};
   const FIELDS = {
-    groups: ["address", "id", "title", "owners", "summary", "place", "nodePlace"],
-    hosts: ["address", "id", "title", "line", "summary", "place"],
-    components: ["address", "id", "title", "group", "line", "summary", "keys", "period", "progress", "severity", "place"],
+    groups: ["address", "id", "title", "owners", "summary", "place", "nodePlace", "written"],
+    hosts: ["address", "id", "title", "line", "summary", "place", "written"],
+    components: ["address", "id", "title", "group", "line", "summary", "keys", "period", "progress", "severity", "place",
+      "written"],
     nodes: ["address", "id", "title", "components", "group", "host", "line", "summary", "keys", "period", "severity",
-      "place", "hostPlace"],
+      "place", "hostPlace", "written"],
     topics: ["address", "name", "flow"],
     types: ["name", "message"],
     outputs: ["component", "name", "type", "note"],
@@ -36,7 +37,7 @@ const archgenExplorer = (function () {
 
   // All elements, with the neighbours that steps of selectors follow, and the flows that arrows show.
   function readModel() {
-    const model = { keys: tables.keys ?? [], names: new Map() };
+    const model = { keys: tables.keys ?? [], names: new Map(), icons: new Map(tables.icons ?? []) };
     for (const name of Object.keys(FIELDS)) model[name] = named(name);
     for (const [key, value, title] of tables.names ?? []) model.names.set(key + ":" + value, title);
     for (const { element, isNode, severity, message } of model.findings) {

@@ -1,7 +1,7 @@
 // The panel at the side: what the chosen box or arrow is, its ports, chains, requirements and open points, and what can be done.
 "use strict";
 archgenExplorer.makePanel = function (model, root, actions) {
-  const { element, count } = archgenExplorer;
+  const { element, shape, count } = archgenExplorer;
   const MAX_FLOWS = 60;
   const panel = element("aside", { className: "panel", ariaLabel: "Details", hidden: true });
   const link = (address, text) => (address ? element("a", { href: root + address, textContent: text }) : element("span", { textContent: text }));
@@ -12,6 +12,13 @@ archgenExplorer.makePanel = function (model, root, actions) {
     return button;
   };
   const section = (title, remark, ...children) => element("section", {}, element("h3", {}, title, remark ? element("span", { className: "muted", textContent: remark }) : ""), ...children);
+  // As the chips of pages: an icon, the word of the state, and what is added behind a " · ".
+  const chip = (status, text) => {
+    const [word, ...added] = text.replace("<= ", "≤ ").replace(">= ", "≥ ").split(" · ");
+    const icon = shape("svg", { class: "icon", viewBox: "0 0 16 16", width: 12, height: 12, "aria-hidden": "true" },
+      shape("path", { d: model.icons.get(status) ?? "" }));
+    return element("span", { className: "chip " + status.replace(" ", "-") }, icon, word, added.length ? element("span", { className: "addition", textContent: added.join(" · ") }) : "");
+  };
   const tag = (text) => element("span", { className: "tag", textContent: text });
   const tool = (text, act, name = "") => {
     const button = element("button", { type: "button", className: name, textContent: text });
@@ -47,11 +54,11 @@ archgenExplorer.makePanel = function (model, root, actions) {
       each.kind === "component" ? showPorts(each) : showTopics(each),
       each.line ? section("Timing", "", element("p", { textContent: each.line })) : "",
       chains.length ? section("Chains through it", "", element("ul", {}, chains.map((chain) => element("li", { className: "chain" }, link(chain.address, chain.title),
-        chain.words ? element("span", { className: "chip " + chain.status.replace(" ", "-"), textContent: chain.words }) : "")))) : "",
+        chain.status ? chip(chain.status, chain.words) : chain.words ? element("span", { className: "muted", textContent: chain.words }) : "")))) : "",
       requirements.length ? section("Requirements", String(requirements.length), element("ul", {}, requirements.map(({ id, title, address }) =>
         element("li", {}, link(address, id), " ", title)))) : "",
       each.findings ? section("Open points", String(each.findings.length), element("ul", {}, each.findings.map(({ severity, message }) =>
-        element("li", {}, element("span", { className: "chip " + severity, textContent: severity }), " ", message)))) : "",
+        element("li", {}, chip(severity, severity), " ", message)))) : "",
       showOther(each), tools(each));
   }
 
@@ -97,9 +104,11 @@ archgenExplorer.makePanel = function (model, root, actions) {
     const name = each.kind === "node" || each.kind === "component" ? each.id : each.kind === "host" ? `host:${archgenExplorer.grammar.quote(each.id)}` : each.id;
     return element("p", { className: "tools" },
       each.address ? element("a", { className: "primary", href: root + each.address, textContent: "Open page" }) : "",
+      /^https?:/i.test(each.written?.[1] ?? "") ? element("a", { className: "edit", href: each.written[1], textContent: "Edit", title: each.written[0] }) : "",
       each.id ? tool("Focus", () => actions.focus(name, 1, 1)) : "",
       each.id ? tool("All before", () => actions.focus(name, Infinity, 0)) : "",
-      each.id ? tool("All after", () => actions.focus(name, 0, Infinity)) : "");
+      each.id ? tool("All after", () => actions.focus(name, 0, Infinity)) : "",
+      each.written?.length ? element("span", { className: "written muted" }, "Written in ", element("code", { textContent: each.written[0] })) : "");
   }
 
   // --- arrows and folds -----------------------------------------------------------------------------------------

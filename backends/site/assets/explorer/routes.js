@@ -5,6 +5,7 @@ archgenExplorer.routeArrows = (function () {
   const SPREAD = 9; // px between two ends on one side
   const MARGIN = 13; // px between a line and a box that it passes
   const LOOP = 46; // px that a line between boxes of one column swings out
+  const OUTSIDE = { first: 30, lane: 9, channel: 5, corner: 14 }; // px below all boxes, between two lines there, and beside columns
   const TURN = [26, 80]; // px that a curve takes before it is level again: more, the higher it climbs
 
   const middle = (box) => box.y + box.height / 2;
@@ -16,6 +17,8 @@ archgenExplorer.routeArrows = (function () {
     arrow.turn = right(tail) <= head.x ? "forward" : right(head) <= tail.x ? "back" : "loop";
     arrow.tailSide = arrow.turn === "back" ? "left" : "right";
     arrow.headSide = arrow.turn === "forward" ? "left" : "right";
+    // Back past whole columns: round the outside, where it crosses no box.
+    arrow.isOutside = arrow.turn === "back" && !tail.parent && !head.parent && tail.column - head.column > 1;
   }
 
   function spreadEnds(arrows) {
@@ -30,7 +33,8 @@ archgenExplorer.routeArrows = (function () {
       add(arrow.head, arrow.headSide, arrow, "stop", arrow.tail);
     }
     for (const ends of sides.values()) {
-      ends.sort((a, b) => middle(a.other) - middle(b.other) || (a.arrow.id < b.arrow.id ? -1 : 1));
+      // What comes from below all boxes ends lowest.
+      ends.sort((a, b) => a.arrow.isOutside - b.arrow.isOutside || middle(a.other) - middle(b.other) || (a.arrow.id < b.arrow.id ? -1 : 1));
       const { box } = ends[0];
       const step = Math.min(SPREAD, (box.height - 14) / Math.max(1, ends.length - 1));
       ends.forEach(({ arrow, end, side }, at) => {
@@ -113,6 +117,28 @@ archgenExplorer.routeArrows = (function () {
     return path;
   }
 
+  // Feedback: down beside the column that it leaves, to the left below all boxes, up beside the column that it reaches. Short
+  // ways run inside of long ones. The map grows by what they take.
+  function routeOutside(arrows, bounds) {
+    const outside = arrows.filter((arrow) => arrow.isOutside);
+    const span = ({ tail, head }) => tail.column - head.column;
+    outside.sort((a, b) => span(a) - span(b) || b.start[1] - a.start[1] || (a.id < b.id ? -1 : 1));
+    const bottom = bounds.bottom;
+    const step = Math.min(OUTSIDE.channel, 60 / Math.max(1, outside.length));
+    outside.forEach((arrow, at) => {
+      const { start, stop, tail, head } = arrow;
+      const y = bottom + OUTSIDE.first + at * OUTSIDE.lane;
+      const [from, to] = [tail.columnX - 22 - at * step, head.columnX + head.columnWidth + 22 + at * step];
+      const r = OUTSIDE.corner;
+      arrow.direction = -1;
+      arrow.points = [[from, y], [to, y]];
+      arrow.path = `M${num(start[0])} ${num(start[1])}L${num(from + r)} ${num(start[1])}Q${num(from)} ${num(start[1])} ${num(from)} ${num(start[1] + r)}` +
+        `L${num(from)} ${num(y - r)}Q${num(from)} ${num(y)} ${num(from - r)} ${num(y)}L${num(to + r)} ${num(y)}Q${num(to)} ${num(y)} ${num(to)} ${num(y - r)}` +
+        `L${num(to)} ${num(stop[1] + r)}Q${num(to)} ${num(stop[1])} ${num(to - r)} ${num(stop[1])}L${num(stop[0])} ${num(stop[1])}`;
+      bounds.bottom = Math.max(bounds.bottom, y + OUTSIDE.lane);
+    });
+  }
+
   // Where the name of what flows stands: in the widest free piece of the line, off both ends.
   function placeLabel(arrow) {
     if (arrow.turn === "loop") return arrow.points[1];
@@ -130,8 +156,9 @@ archgenExplorer.routeArrows = (function () {
     const used = new Map();
     arrows.forEach(chooseSides);
     spreadEnds(arrows);
+    routeOutside(arrows, bounds);
     for (const arrow of arrows) {
-      arrow.path = drawPath(arrow, scene, bounds, used);
+      if (!arrow.isOutside) arrow.path = drawPath(arrow, scene, bounds, used);
       arrow.labelAt = placeLabel(arrow);
     }
   };

@@ -1,0 +1,55 @@
+"""Quantities in texts with three significant digits: 7.22 s for 7223.333 ms. What bounds from one side stays true."""
+
+from __future__ import annotations
+
+import re
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Decimal
+
+_UNITS = "ns|us|ms|s|Hz|kHz|MHz|B|kB|MB|GB|B/s|kB/s|MB/s|GB/s|%"
+QUANTITY = re.compile(rf"(?<![\w.])([<>]= )?([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?![\w/])")
+"""A number and its unit, with the sign of a bound: the groups are sign, number and unit."""
+_DIGITS = 3
+
+
+def shorten_quantity(sign: str, number: str, unit: str) -> tuple[str, str]:
+    """Return a number and its unit with three significant digits; milliseconds from 1000 on become seconds."""
+    value = Decimal(number)
+    if unit == "ms" and value >= 1000:  # noqa: PLR2004 - more digits than three are none that count
+        value, unit = value / 1000, "s"
+    return round_number(value, sign), unit
+
+
+def round_number(value: Decimal, sign: str = "") -> str:
+    """Return a number with three significant digits, but all of those before the point.
+
+    What is at least or at most so much (`sign`) stays true.
+    """
+    if not value:
+        return "0"
+    places = max(_DIGITS - 1 - value.adjusted(), 0)
+    rounding = {">": ROUND_FLOOR, "<": ROUND_CEILING}.get(sign[:1], ROUND_HALF_UP)
+    text = f"{value.quantize(Decimal(1).scaleb(-places), rounding):f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def split_figures(text: str) -> list[tuple[str, str]]:
+    """Split a text into its parts, each with its shorter form: empty but for a quantity that has one.
+
+    None has one where two quantities of the text would then read the same: their digits are what it is about.
+    """
+    quantities = [(found.span(), *_shorten(found)) for found in QUANTITY.finditer(text)]
+    forms = {whole: short for _, whole, short in quantities}
+    if len(set(forms.values())) < len(forms):
+        return [(text, "")]
+    parts, position = [], 0
+    for (start, end), whole, short in quantities:
+        if whole != short:
+            parts += [(text[position:start], ""), (whole, short)]
+            position = end
+    return [*parts, (text[position:], "")]
+
+
+def _shorten(found: re.Match[str]) -> tuple[str, str]:
+    sign = found[1] or ""
+    number, unit = shorten_quantity(sign, found[2], found[3])
+    return found[0], f"{sign}{number} {unit}"

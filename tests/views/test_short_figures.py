@@ -1,0 +1,23 @@
+"""Quantities with three significant digits."""
+
+from __future__ import annotations
+
+import pytest
+
+from archgen.views.short_figures import split_figures
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("7223.333 ms", "7.22 s"),
+        (">= 32.098 s of 60 s", ">= 32 s of 60 s"),
+        ("<= 10.004 Hz", "<= 10.1 Hz"),
+        ("1234 Hz and 2500 B", "1234 Hz and 2500 B"),
+        ("up to 7000.4 ms, after 7000.1 ms", "up to 7000.4 ms, after 7000.1 ms"),
+        ("223.333 ms of 7223.333 ms", "223 ms of 7.22 s"),
+        ("version 2.1 of 10.0.0.1 ms", "version 2.1 of 10.0.0.1 ms"),
+    ],
+)
+def test_bounds_stay_true_and_what_differs_stays_apart(text: str, shown: str) -> None:
+    assert "".join(short or part for part, short in split_figures(text)) == shown
