@@ -45,7 +45,7 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Write the architecture of PROJECT as a Word document that can be handed in.
 
-    `--format pdf` takes LibreOffice, `--format xlsx` writes all tables as a workbook (`pip install archgen[xlsx]`).
+    `--format pdf` takes LibreOffice, `--format xlsx` writes all tables as a workbook (with the library XlsxWriter).
     """
     from archgen.products import project_outputs
     from archgen.products.output_options import OutputOptions

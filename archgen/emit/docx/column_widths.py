@@ -87,7 +87,7 @@ def share_width(writer: DocxWriter, content: TableContent, total: float, styles:
 def _fill_widths(lines: Sequence[float], least: Sequence[float], weights: Sequence[float], total: float) -> list[float]:
     """Give columns their longest lines, or their longest words, as long as the others' shares by weight allow no more."""
     widths: dict[int, float] = {}
-    open_columns = set(range(len(lines)))
+    open_columns = list(range(len(lines)))
     while open_columns:
         room = total - math.fsum(widths.values())
         weight = math.fsum(weights[index] for index in open_columns)
@@ -97,7 +97,7 @@ def _fill_widths(lines: Sequence[float], least: Sequence[float], weights: Sequen
             index: lines[index] for index in open_columns if lines[index] <= shares[index]
         }
         widths |= settled or shares
-        open_columns -= set(settled or shares)
+        open_columns = [index for index in open_columns if index not in (settled or shares)]
     return [widths[index] for index in range(len(lines))]
 
 

@@ -6,6 +6,7 @@ few, files are less than half as large.
 
 from __future__ import annotations
 
+import math
 import struct
 import zlib
 from array import array
@@ -120,8 +121,7 @@ def _write_png(width: int, rows: list[bytes], table: _ColourTable) -> bytes:
     few_colours = _choose_few_colours(rows, table)
     if few_colours:
         nearest = bytes(
-            min(range(len(few_colours)), key=lambda at: _measure_distance(colour, few_colours[at]))
-            for colour in palette
+            min(range(len(few_colours)), key=lambda at: math.dist(colour, few_colours[at])) for colour in palette
         )
         translation = nearest + bytes(_MAX_COLOURS - len(nearest))
         rows = [_pack_halves(row.translate(translation)) for row in rows]
@@ -151,10 +151,6 @@ def _choose_few_colours(rows: list[bytes], table: _ColourTable) -> list[bytes]:
     if len(own) > _MAX_OWN_COLOURS:
         return []
     return [table.palette[index] for index in (*own, *shades)][:_FEW_COLOURS]
-
-
-def _measure_distance(one: bytes, other: bytes) -> int:
-    return sum((first - second) ** 2 for first, second in zip(one, other, strict=True))
 
 
 def _pack_halves(pixels: bytes) -> bytes:

@@ -48,7 +48,7 @@ def write_workbook(outline: Outline) -> bytes:
     try:
         import xlsxwriter
     except ImportError:
-        message = "writing .xlsx needs the library XlsxWriter: `pip install archgen[xlsx]`"
+        message = "writing .xlsx needs the library XlsxWriter: `pip install XlsxWriter`"
         raise XlsxWriterError(message) from None
     stream = io.BytesIO()
     # Text that begins with = + - or @ is text: from a stranger's project it must never run as a formula.

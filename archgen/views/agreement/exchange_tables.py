@@ -156,7 +156,7 @@ def _count_writers(lookup: Lookup, interfaces: Sequence[InterfaceTerms]) -> Inli
 def count_promised(interfaces: Iterable[InterfaceTerms], starts: tuple[str, ...]) -> tuple[int, int]:
     """Return of how many interfaces a term is promised, and how many have such a term."""
     rows = [row for terms in interfaces if (row := _find_row(terms, starts))]
-    return sum(bool(row.promised) for row in rows), len(rows)
+    return sum(1 for row in rows if row.promised), len(rows)
 
 
 def pair_title(lookup: Lookup, pair: Sequence[str]) -> str:

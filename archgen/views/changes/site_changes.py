@@ -275,7 +275,7 @@ def _list_lines(value: object, depth: int = 0) -> Iterator[str]:
 def mark_drawings(drawings: Mapping[str, Drawing], site_changes: SiteChanges) -> dict[str, Drawing]:
     """Return drawings in which what is new or changed stands out as in the pictures of a comparison, and those pictures."""
     kinds: Mapping[str, ElementChange] = {
-        **dict.fromkeys(site_changes.changed_groups, "changed"),
+        **dict.fromkeys(sorted(site_changes.changed_groups), "changed"),
         **site_changes.kinds,
     }
     marked = {

@@ -34,7 +34,5 @@ def _list_spans(architecture: Architecture) -> Mapping[str, Span]:
         ("partner", architecture.partners),
     )
     spans = {f"{kind}:{name}": element.at for kind, elements in kinds for name, element in elements.items()}
-    # Types of the mapper that ships with archgen are in none of the project's files.
-    types = (each for each in architecture.types.values() if each.origin == "project")
-    spans |= {f"type:{each.name}": each.at for each in types}
+    # Types have none: what ships with archgen is in none of the project's files, but in those of its packed form.
     return {anchor: span for anchor, span in spans.items() if span is not NO_SPAN}

@@ -107,11 +107,11 @@ def drop_repeated_columns(table: Table, kept_columns: int = 1) -> Table:
     """
     remarks, kept_indices = [], []
     for index, column in enumerate(table.columns):
-        texts = {_join_texts(row[index]) for row in table.rows}
-        if index < kept_columns or ((len(texts) > 1 or len(table.rows) < _MIN_CONSTANT_ROWS) and texts != {""}):
+        texts = list(dict.fromkeys(_join_texts(row[index]) for row in table.rows))
+        if index < kept_columns or ((len(texts) > 1 or len(table.rows) < _MIN_CONSTANT_ROWS) and texts != [""]):
             kept_indices.append(index)
-        elif texts != {""}:
-            remarks.append(f"{column.title} of all: {texts.pop()}")
+        elif texts != [""]:
+            remarks.append(f"{column.title} of all: {texts[0]}")
     return dataclasses.replace(
         table,
         caption="; ".join((table.caption, *remarks)),

@@ -142,7 +142,7 @@ def _has_inner_flow(boxes: Mapping[str, Box], arrows: Sequence[Arrow]) -> bool:
         for arrow in arrows
         if box.id in (arrow.tail, arrow.head)
     }
-    subjects = [end for end in ends if end in boxes and boxes[end].emphasis == "subject"]
+    subjects = [end for end in sorted(ends) if end in boxes and boxes[end].emphasis == "subject"]
     return len(subjects) > 1
 
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 from archgen.timing.analysis import ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import TimingValue, sum_fractions
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -103,7 +103,7 @@ def _describe_cut(axis: _CutAxis) -> str:
 
 
 def _sum_known(terms: Sequence[ChainTerm]) -> Fraction:
-    return sum(map(chain_charts.sum_known_parts, terms), Fraction(0))
+    return sum_fractions(map(chain_charts.sum_known_parts, terms))
 
 
 def _format(time: Fraction) -> str:
