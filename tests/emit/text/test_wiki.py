@@ -83,7 +83,7 @@ def test_a_page_for_each_group_and_a_start_page() -> None:
         "| [Sensing](../components/g.a.md) | `Sensing` | [paper](https://example.org/%20%281%29) |\n\n"
         "\n## Components\n\n- [Sensing](../components/g.a.md)\n"
     )
-    assert files["components/g.a.md"] == "# Sensing\n\n[Sensing](../groups/g.md)\n\nPlain *words*.\n\nSensing\n"
+    assert files["components/g.a.md"].rstrip() == "# Sensing\n\n[Sensing](../groups/g.md)\n\nPlain *words*.\n\nSensing"
 
 
 def test_hostile_text_stays_text() -> None:
