@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -74,6 +75,8 @@ def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
 
     from archgen.serve.file_watch import watch_files
 
+    # A shell that starts something in the background has it ignore interrupts: who sends one all the same means it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     serving = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.2}, daemon=True)
     try:
         live_site.start()
