@@ -85,7 +85,7 @@ def facts(folder: Path, source: str, title: str = "Eye · stop") -> dict[str, li
             "timing: {wcet: 20 ms, trigger: [scan], outputs: {stop: {conditional: true}}}",
             "Rate",
             "nothing",
-            "at most 10 Hz · at least 100 ms, event-driven, follows from the rate of lidar_driver",
+            "at most 10 Hz, event-driven, follows from the rate of lidar_driver",
         ),
         (
             "timing: {wcet: 20 ms, trigger: [scan], outputs: {stop: {conditional: true, max_gap: 3 s}}}",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
@@ -20,5 +22,5 @@ from archgen.views.graph_shapes import Arrow, Graph
 def test_only_the_widths_of_the_picture_are_explained(counts: tuple[int, ...], samples: list[str]) -> None:
     arrows = tuple(Arrow(str(count), "a", "b", count=count) for count in counts)
     scene = add_graph_legend(Scene(), Graph("g", "G", "overview", (), arrows, kind="overview", legend=("width",)))
-    names = {part.name[:-1] for part in scene.parts if part.name.startswith("width")}
+    names = {found[1] for part in scene.parts if (found := re.fullmatch(r"k[0-9]+(width[0-9])[0-9]", part.name))}
     assert sorted(names) == samples
