@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from archgen.compose import ExpandedProject
+from archgen.compose.project_expansion import ComponentShell
 from archgen.link import mapping_values
 from archgen.model.component import Output
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -16,10 +18,20 @@ class ElementOutline:
 
     groups: dict[str, MappingEntry] = field(default_factory=dict)
     components: dict[str, MappingEntry] = field(default_factory=dict)
+    """Leaves by complete id."""
+    expansion: ExpandedProject | None = None
+    """What components are made from and stand in; None where none is composed or an instance."""
     outputs: dict[str, dict[str, Output]] = field(default_factory=dict)
-    """By component id and name."""
+    """By component id and name, those of composed components included."""
+    given_outputs: dict[str, dict[str, MappingNode]] = field(default_factory=dict)
+    """The outputs of composed components as written, by component id and name."""
     inputs: dict[str, dict[str, MappingEntry]] = field(default_factory=dict)
-    """By component id and name."""
+    """By component id and name, those of composed components included."""
+
+    @property
+    def shells(self) -> Mapping[str, ComponentShell]:
+        """The composed components by complete id, outer ones first."""
+        return self.expansion.shells if self.expansion else {}
 
     @property
     def port_names(self) -> Mapping[str, Mapping[str, Collection[str]]]:
@@ -27,7 +39,7 @@ class ElementOutline:
         return {"input": self.inputs, "output": self.outputs}
 
     def list_outputs(self) -> Iterator[Output]:
-        """Iterate over every output."""
+        """Iterate over every output, those of composed components included."""
         for outputs in self.outputs.values():
             yield from outputs.values()
 
@@ -41,21 +53,29 @@ class ElementOutline:
             yield from (output.type for output in outputs.values() if output.type)
 
 
-def build_outline(root: MappingNode) -> ElementOutline:
-    """Return the outline of a merged project, by complete ids."""
-    element_outline = ElementOutline()
-    for group_id, entry, body in mapping_values.iterate_elements(root, "groups"):
+def build_outline(expansion: ExpandedProject) -> ElementOutline:
+    """Return the outline of a merged project in which all types are written out, by complete ids."""
+    element_outline = ElementOutline(expansion=None if expansion.is_plain else expansion)
+    for group_id, entry, body in mapping_values.iterate_elements(expansion.root, "groups"):
         element_outline.groups[group_id] = entry
-        for name, component, component_body in mapping_values.iterate_elements(body, "components"):
-            component_id = f"{group_id}.{name}"
+        for path, component, component_body in mapping_values.iterate_elements(body, "components"):
+            component_id = f"{group_id}.{path}"
             element_outline.components[component_id] = component
-            element_outline.inputs[component_id] = {
-                e.key: e for e in mapping_values.get_mapping(component_body, "inputs")
-            }
-            element_outline.outputs[component_id] = {
-                e.key: _declare_output(component_id, e) for e in mapping_values.get_mapping(component_body, "outputs")
-            }
+            _outline_ports(element_outline, component_id, component_body)
+    for shell in expansion.shells.values():
+        body = mapping_values.get_body(shell.entry)
+        _outline_ports(element_outline, shell.id, body)
+        element_outline.given_outputs[shell.id] = {
+            name: output_body for name, _, output_body in mapping_values.iterate_elements(body, "outputs")
+        }
     return element_outline
+
+
+def _outline_ports(element_outline: ElementOutline, component_id: str, body: MappingNode) -> None:
+    element_outline.inputs[component_id] = {e.key: e for e in mapping_values.get_mapping(body, "inputs")}
+    element_outline.outputs[component_id] = {
+        e.key: _declare_output(component_id, e) for e in mapping_values.get_mapping(body, "outputs")
+    }
 
 
 def _declare_output(component: str, entry: MappingEntry) -> Output:

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
+from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import PortEdge
 from archgen.model.component import Connection, Input, Output
@@ -29,20 +31,32 @@ class InputWiring:
     outline: ElementOutline
     resolver: ReferenceResolver
     types: Mapping[str, ConceptualType]
+    sources: PortSources | None = None
+    """What ports take their data from where components hold components; None where none does."""
     connections: list[Connection] = field(default_factory=list)
     edges: list[PortEdge] = field(default_factory=list)
     _is_full: bool = False
     _outputs_by_target: dict[str, tuple[Output, ...]] = field(default_factory=dict)
 
-    def declare_input(self, component_id: str, entry: MappingEntry) -> Input:
-        """Return an input, connected to what its `from` names."""
+    def declare_input(self, component_id: str, entry: MappingEntry, *, is_leaf: bool = True) -> Input:
+        """Return an input, connected to what its `from` names.
+
+        That of a composed component (`is_leaf` False) only says where its data comes from: the flow goes to the leaves
+        that read it.
+        """
         body = mapping_values.get_body(entry)
         input_id = f"{component_id}.{entry.key}"
-        attempts = tuple(
-            self._connect_source(component_id, input_id, reference)
-            for reference in mapping_values.get_scalars(body, "from")
+        connections = (
+            tuple(self._connect_sources(component_id, input_id, self.sources))
+            if self.sources
+            else tuple(
+                connection
+                for reference in mapping_values.get_scalars(body, "from")
+                if (connection := self._connect_source(component_id, input_id, reference))
+            )
         )
-        connections = tuple(connection for connection in attempts if connection)
+        if not is_leaf:
+            return self._make_input(component_id, entry, connections)
         self.connections += connections
         # Two references may bring the same output: one edge, in the order of first mention and with its position. The
         # reversal makes the first mention win in the dict.
@@ -51,9 +65,13 @@ class InputWiring:
         }
         output_ids = dict.fromkeys(output for connection in connections for output in connection.outputs)
         self.edges += [PortEdge(output, input_id, spans_by_output[output]) for output in output_ids]
+        return self._make_input(component_id, entry, connections)
+
+    def _make_input(self, component_id: str, entry: MappingEntry, connections: tuple[Connection, ...]) -> Input:
+        body = mapping_values.get_body(entry)
         type_text = mapping_values.get_text(body, "type")
         return Input(
-            id=input_id,
+            id=f"{component_id}.{entry.key}",
             name=entry.key,
             component=component_id,
             connections=connections,
@@ -71,6 +89,25 @@ class InputWiring:
             freshness_at=mapping_values.get_span(body, "freshness"),
         )
 
+    def _connect_sources(self, component_id: str, input_id: str, sources: PortSources) -> Iterator[Connection]:
+        """Yield the connections of an input as if everything had been written out: one for each output of a leaf."""
+        for source in sources.list_sources(("input", input_id)):
+            target = source.target
+            output_ids = () if self._is_full else sources.outputs_behind(target, component_id)
+            if len(self.edges) + len(output_ids) > MAX_PAIRS:
+                self._report_too_many(source.at, component_id)
+                output_ids = ()
+            is_plain = target.kind == "group" or target.id in self.outline.components or output_ids == (target.id,)
+            if is_plain or not output_ids:
+                kind, target_id = ("output", target.id) if target.kind == "input" else target
+                if is_plain or target.kind != "input":
+                    yield Connection(input_id, source.written, kind, target_id, output_ids, source.at, None, source.is_made)  # type: ignore[arg-type]
+                continue
+            for output_id in output_ids:
+                yield Connection(
+                    input_id, source.written, "output", output_id, (output_id,), source.at, target.id, source.is_made
+                )
+
     def _connect_source(self, component_id: str, input_id: str, reference: ScalarNode) -> Connection | None:
         target = self.resolver.resolve_reference(reference, _SOURCE_KINDS, component_id, component_id)
         if target is None:
@@ -78,11 +115,11 @@ class InputWiring:
         # A connection without outputs is kept: it is what was written, even if it brings nothing.
         output_ids = () if self._is_full else tuple(self._list_output_ids(target, component_id))
         if len(self.edges) + len(output_ids) > MAX_PAIRS:
-            self._report_too_many(reference, component_id)
+            self._report_too_many(reference.span, component_id)
             output_ids = ()
         return Connection(input_id, reference.text, target.kind, target.id, output_ids, reference.span)  # type: ignore[arg-type]
 
-    def _report_too_many(self, reference: ScalarNode, component_id: str) -> None:
+    def _report_too_many(self, place: Span, component_id: str) -> None:
         """Report the limit on pairs once; all later references bring nothing, so that the cut is at one clear place."""
         if not self._is_full:
             self._is_full = True
@@ -91,7 +128,7 @@ class InputWiring:
             )
             help_line = "name single outputs or components where whole groups are named"
             self.resolver.diagnostics.append(
-                Diagnostic("too-large", message, reference.span, help=help_line, element=component_id)
+                Diagnostic("too-large", message, place, help=help_line, element=component_id)
             )
 
     def _list_output_ids(self, target: ElementRef, reader_id: str) -> Iterator[str]:

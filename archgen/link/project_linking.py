@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from archgen.compose import expand_project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.declare import deployment_declaration, section_declaration
+from archgen.link.declare.component_nodes import declare_component_nodes
+from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import declare_types
@@ -40,16 +43,22 @@ def link_project(  # noqa: PLR0913 - all by name
     # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
     # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
     # containers and components. Every step appends to the same list of diagnostics.
-    diagnostics: list[Diagnostic] = []
-    element_outline = build_outline(root)
+    expansion = expand_project(root)
+    root = expansion.root
+    diagnostics: list[Diagnostic] = list(expansion.diagnostics)
+    damaged_elements = damaged_elements | expansion.damaged_elements
+    element_outline = build_outline(expansion)
     types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
-    groups, components, connections, edges = declare_groups(element_outline, resolver, types)
+    declared_groups = declare_groups(element_outline, resolver, types)
+    components, shells = declared_groups.components, declared_groups.shells
     containers = deployment_declaration.declare_containers(root, resolver)
-    implements = resolve_implements(root, resolver)
+    written_targets = resolve_implements(root, resolver)
+    implemented = declare_component_nodes(root, element_outline, expansion, written_targets, declared_groups, diagnostics)
+    implements = implemented.implements
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
-        root, NodeContext(element_outline, resolver, components, containers, timing_merger), implements
+        implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented
     )
     requirements = section_declaration.declare_requirements(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
@@ -66,12 +75,15 @@ def link_project(  # noqa: PLR0913 - all by name
         partners=section_declaration.declare_partners(root),
         use_cases=section_declaration.declare_use_cases(root),
         requirements=requirements,
-        groups=groups,
+        groups=declared_groups.groups,
         components=components,
+        shells=shells,
+        shell_ports=declared_groups.shell_ports,
+        component_types=declare_component_types(expansion),
         inputs={port.id: port for component in components.values() for port in component.inputs.values()},
-        outputs={output.id: output for output in element_outline.list_outputs()},
-        connections=connections,
-        edges=edges,
+        outputs={output.id: output for component in components.values() for output in component.outputs.values()},
+        connections=declared_groups.connections,
+        edges=declared_groups.edges,
         types=types,
         nodes=nodes,
         hosts=deployment_declaration.declare_hosts(root),
@@ -100,7 +112,10 @@ def _make_resolver(
 ) -> ReferenceResolver:
     spans: dict[str, dict[str, Span]] = {
         "group": {name: entry.key_span for name, entry in element_outline.groups.items()},
-        "component": {name: entry.key_span for name, entry in element_outline.components.items()},
+        "component": {
+            **{name: entry.key_span for name, entry in element_outline.components.items()},
+            **{name: shell.entry.key_span for name, shell in element_outline.shells.items()},
+        },
         "output": {output.id: output.at for output in element_outline.list_outputs()},
         "input": {
             f"{c}.{name}": e.key_span for c, inputs in element_outline.inputs.items() for name, e in inputs.items()

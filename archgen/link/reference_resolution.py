@@ -15,7 +15,8 @@ from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-# How many parts the complete path of each kind has: a reference with more parts cannot mean that kind.
+# How many parts the complete path of each kind has where no component holds others: a reference with more parts cannot
+# mean that kind.
 _PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
 PLAIN_SECTIONS = {
     "partner": "partners",
@@ -50,11 +51,14 @@ class ReferenceResolver:
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     names: PathResolver = field(init=False)
     _is_finished: bool = False
+    _extra_depth: int = field(init=False, default=0)
     _guesses_left: int = _GUESS_BUDGET
     _candidate_paths: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.names = PathResolver(self.spans)
+        # Components inside of components have longer ids.
+        self._extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
 
     def resolve_reference(
         self,
@@ -63,22 +67,23 @@ class ReferenceResolver:
         element_id: str,
         component_id: str | None = None,
         implements: Mapping[str, Collection[str]] = _NO_NODES,
+        names: PathResolver | None = None,
     ) -> ElementRef | None:
         """Return the element that a reference means; None, and a diagnostic, if that is not clear.
 
         `kinds` are the kinds that are allowed here; the diagnostic is about `element_id`. `component_id` is the
         component that writes the reference: elements of its group win; a single word never means itself or its output.
-        Where nodes are allowed, `implements` holds the components of each: a node never hides one of its own.
+        Where nodes are allowed, `implements` holds the components of each: a node never hides one of its own. `names`
+        are what can be named here, where that is not everything.
         """
         self._refuse_if_finished()
         dotted_path = reference.text
-        match = self.names.resolve_path(dotted_path, kinds, component_id=component_id)
+        match = (names or self.names).resolve_path(dotted_path, kinds, component_id=component_id)
         target = match.unique_element
         # Whatever an unresolved reference may have meant is a suspect: that such an element seems unread is an
         # aftermath of this finding, not a second mistake.
         if match.count > 1:
-            self.suspect_ids.update(name.id for name in match.elements)
-            self.diagnostics.append(self._diagnose_ambiguous(reference, match, element_id))
+            self.report_ambiguous(reference, match, element_id)
         elif target is None and not self.is_lost(dotted_path):
             self.diagnostics.append(self._diagnose_unknown(reference, kinds, element_id, component_id))
         elif target and match.hidden_elements:
@@ -88,6 +93,11 @@ class ReferenceResolver:
             if hidden_elements:
                 self._warn_hidden(reference, target, hidden_elements, element_id)
         return target
+
+    def report_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> None:
+        """Report a reference that can mean several elements."""
+        self.suspect_ids.update(name.id for name in match.elements)
+        self.diagnostics.append(self._diagnose_ambiguous(reference, match, element_id))
 
     def finish_resolving(self) -> frozenset[str]:
         """Return the suspects of all references; from here on the resolver refuses to resolve any more."""
@@ -151,7 +161,6 @@ class ReferenceResolver:
         return find_closest(word, candidates)
 
     def _diagnose_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> Diagnostic:
-        self.suspect_ids.update(name.id for name in match.elements)
         quoted_ids = [f"`{name.id}`" for name in match.elements]
         rest = [f"{match.count - len(quoted_ids)} more"] if match.count > len(quoted_ids) else []
         return Diagnostic(
@@ -250,7 +259,7 @@ class ReferenceResolver:
         if not self._guesses_left:
             return None
         length = dotted_path.count(".") + 1
-        fitting_kinds = [kind for kind in kinds if _PATH_LENGTHS[kind] >= length]
+        fitting_kinds = [kind for kind in kinds if _PATH_LENGTHS[kind] + self._extra_depth >= length]
         last = dotted_path.rpartition(".")[2]
         # A set of ends: two complete paths with the same end are one candidate, since the guess has the length of the
         # reference that somebody wrote.

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
 KeyPath = tuple[str, ...]
-_SUPPORTING_KEYS = frozenset({"timing", "requirements", "tags", "urls", "layout", "owner"})
+_SUPPORTING_KEYS = frozenset({"timing", "requirements", "tags", "urls", "layout", "owner", "parameters", "node"})
 """Keys that supporting files add to components which other files declare: they alone declare nothing."""
+_INSTANCE_KEYS = frozenset({"is", "same_as"})
 
 
 def merge_documents(
@@ -49,7 +50,8 @@ def _merge_mappings(mappings: Sequence[MappingNode], path: KeyPath, diagnostics:
         for key, entry in table.entries.items():
             entries_by_key.setdefault(key, []).append(entry)
     entries = {key: _merge_entries(several, (*path, key), diagnostics) for key, several in entries_by_key.items()}
-    return MappingNode(entries, mappings[0].span if mappings else NO_SPAN)
+    declares = not mappings or any(mapping.declares for mapping in mappings)
+    return MappingNode(entries, mappings[0].span if mappings else NO_SPAN, declares)
 
 
 def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics: list[Diagnostic]) -> MappingEntry:
@@ -125,11 +127,17 @@ def _drop_undeclared(
 def _list_element_paths(groups: MappingNode) -> Iterator[KeyPath]:
     for group in groups:
         yield (group.key,)
-        yield from ((group.key, component.key) for component in _components_of(group.value))
+        yield from _list_paths_below((group.key,), group.value)
+
+
+def _list_paths_below(path: KeyPath, holder: YamlNode) -> Iterator[KeyPath]:
+    for component in _components_of(holder):
+        yield (*path, component.key)
+        yield from _list_paths_below((*path, component.key), component.value)
 
 
 def list_supported_elements(groups: MappingNode) -> Iterator[KeyPath]:
-    """Yield the paths of elements that do not declare themselves: of groups with neither title nor components, and of components with supporting keys only."""
+    """Yield the paths of elements that do not declare themselves: groups without title and components, components with supporting keys only."""
     for group in groups:
         if (
             isinstance(group.value, MappingNode)
@@ -137,9 +145,24 @@ def list_supported_elements(groups: MappingNode) -> Iterator[KeyPath]:
             and not any(_components_of(group.value))
         ):
             yield (group.key,)
-        for component in _components_of(group.value):
-            if isinstance(component.value, MappingNode) and _SUPPORTING_KEYS.issuperset(component.value.entries):
-                yield (group.key, component.key)
+        yield from _list_supported_below((group.key,), group.value)
+
+
+def _list_supported_below(path: KeyPath, holder: YamlNode) -> Iterator[KeyPath]:
+    for component in _components_of(holder):
+        if not _declares_itself(component.value):
+            yield (*path, component.key)
+        # What an instance has inside is declared by its type: writing out types judges that.
+        elif _INSTANCE_KEYS.isdisjoint(component.value.entries if isinstance(component.value, MappingNode) else ()):
+            yield from _list_supported_below((*path, component.key), component.value)
+
+
+def _declares_itself(body: YamlNode) -> bool:
+    """Whether a component's body declares it: it has more than supporting keys, or a component inside that declares itself."""
+    if not isinstance(body, MappingNode):
+        return True
+    own_keys = body.entries.keys() - _SUPPORTING_KEYS - {"components"}
+    return (bool(own_keys) and body.declares) or any(_declares_itself(inner.value) for inner in _components_of(body))
 
 
 def _components_of(group: YamlNode) -> Iterable[MappingEntry]:
@@ -149,21 +172,21 @@ def _components_of(group: YamlNode) -> Iterable[MappingEntry]:
 
 def _is_empty_somewhere(path: KeyPath, documents: Sequence[YamlDocument]) -> bool:
     """Whether some document declares an element by its bare id."""
-    full_path = ("groups", path[0]) if len(path) == 1 else ("groups", path[0], "components", path[1])
+    full_path = ("groups", path[0], *(key for name in path[1:] for key in ("components", name)))
     return any(_is_empty_at(document.root, full_path) for document in documents)
 
 
 def _is_empty_at(node: YamlNode | None, path: KeyPath) -> bool:
     for key in path:
         node = node.get(key) if isinstance(node, MappingNode) else None
-    return isinstance(node, MappingNode) and not node.entries
+    return isinstance(node, MappingNode) and not node.entries and node.declares
 
 
 def _diagnose_undeclared(groups: MappingNode, path: KeyPath, declared_paths: Sequence[KeyPath]) -> Diagnostic:
     kind = "group" if len(path) == 1 else "component"
     entry = groups.entries[path[0]]
-    if len(path) > 1:
-        entry = next(component for component in _components_of(entry.value) if component.key == path[1])
+    for name in path[1:]:
+        entry = next(component for component in _components_of(entry.value) if component.key == name)
     name = ".".join(path)
     guess = did_you_mean(
         name, (".".join(declared_path) for declared_path in declared_paths if len(declared_path) == len(path))
@@ -181,21 +204,31 @@ def _remove_paths(groups: MappingNode, removed_paths: frozenset[KeyPath]) -> Map
     for group in groups:
         if (group.key,) in removed_paths:
             continue
-        components = [c for c in _components_of(group.value) if (group.key, c.key) not in removed_paths]
-        if isinstance(group.value, MappingNode) and len(components) < sum(1 for _ in _components_of(group.value)):
-            # A group of which nothing is left goes too; nodes are copied, since the documents must not change.
-            if not components and "title" not in group.value.entries:
-                continue
-            components_entry = group.value.entries["components"]
-            kept_components = MappingNode({c.key: c for c in components}, components_entry.value.span)
-            entries = {
-                **group.value.entries,
-                "components": MappingEntry(components_entry.key, components_entry.key_span, kept_components),
-            }
-            kept_groups[group.key] = MappingEntry(group.key, group.key_span, MappingNode(entries, group.value.span))
-        else:
-            kept_groups[group.key] = group
+        kept_group = _remove_components((group.key,), group, removed_paths)
+        # A group of which nothing is left goes too.
+        if kept_group is group or "title" in _entries_of(kept_group) or any(_components_of(kept_group.value)):
+            kept_groups[group.key] = kept_group
     return MappingNode(kept_groups, groups.span)
+
+
+def _entries_of(entry: MappingEntry) -> dict[str, MappingEntry]:
+    return entry.value.entries if isinstance(entry.value, MappingNode) else {}
+
+
+def _remove_components(path: KeyPath, holder: MappingEntry, removed_paths: frozenset[KeyPath]) -> MappingEntry:
+    """Return what holds components without those at some paths: itself if there are none, since documents must not change."""
+    components = list(_components_of(holder.value))
+    kept = [
+        _remove_components((*path, component.key), component, removed_paths)
+        for component in components
+        if (*path, component.key) not in removed_paths
+    ]
+    if len(kept) == len(components) and all(a is b for a, b in zip(kept, components, strict=True)):
+        return holder
+    entry = _entries_of(holder)["components"]
+    kept_components = MappingNode({component.key: component for component in kept}, entry.value.span)
+    entries = {**_entries_of(holder), "components": MappingEntry(entry.key, entry.key_span, kept_components)}
+    return MappingEntry(holder.key, holder.key_span, MappingNode(entries, holder.value.span))
 
 
 RULES: tuple[Rule, ...] = (

@@ -8,7 +8,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.model.component import Component, Connection, DiagramLayout, Group, Input, Output
+from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
@@ -150,6 +150,14 @@ class Architecture:
     requirements: Mapping[str, Requirement] = field(default_factory=dict)
     groups: Mapping[str, Group] = field(default_factory=dict)
     components: Mapping[str, Component] = field(default_factory=dict)
+    """Leaves: what does something, and sends and reads. A composed component with ports that nothing inside carries
+    is among them with these ports, so that a design may go from the outside to the inside."""
+    shells: Mapping[str, Component] = field(default_factory=dict)
+    """Composed components, outer ones first. Their connections are those of the leaves behind their ports."""
+    shell_ports: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """What stands behind each port of a composed component, by `input ID` and `output ID`: the outputs that an output
+    gives on, the ports that read an input."""
+    component_types: Mapping[str, ComponentType] = field(default_factory=dict)
     inputs: Mapping[str, Input] = field(default_factory=dict)
     outputs: Mapping[str, Output] = field(default_factory=dict)
     connections: tuple[Connection, ...] = ()
@@ -182,6 +190,14 @@ class Architecture:
             return None
         mapped = self.types.get(port.type)
         return mapped.message if mapped else None
+
+    def leaves_of(self, component_id: str) -> tuple[str, ...]:
+        """Return the leaves of a composed component, or the component itself, by complete ids."""
+        shell = self.shells.get(component_id)
+        if shell is None:
+            return (component_id,)
+        inner_leaves = tuple(leaf for child in shell.children for leaf in self.leaves_of(child))
+        return (component_id, *inner_leaves) if component_id in self.components else inner_leaves
 
     def nodes_using(self, resource_id: str) -> Iterator[Node]:
         """Yield the nodes of which an activity uses a resource."""

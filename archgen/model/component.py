@@ -36,6 +36,10 @@ class Connection:
     target: str
     outputs: tuple[str, ...]
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    shell_port: str | None = None
+    """The port of a composed component, or that component, that is written here: `target` is what stands behind it."""
+    is_made: bool = False
+    """Whether nobody wrote it: `autoconnect` joined the two."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +101,7 @@ class RequirementUse:
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """A functional component. `id` is `group.component`.
+    """A functional component. `id` is `group.component`, with the ids of the composed components around it in between.
 
     `inputs_known` is False if `inputs` is not written (unknown), True for `inputs: {}` (known to be none); likewise for
     outputs and requirements. A component without owners has those of its group; `owner` is the first one.
@@ -107,6 +111,14 @@ class Component:
     name: str
     group: str
     title: str
+    parent: str | None = None
+    """The composed component directly around it, by complete id."""
+    children: tuple[str, ...] = ()
+    """Of a composed component: what stands directly inside, by complete ids."""
+    component_type: str | None = None
+    """The component type that it is made from, with what generic names stand for: `filter<Pose>`."""
+    is_reference: bool = False
+    """Whether it is exactly its type, always (`same_as`)."""
     functionality: str | None = None
     description: str | None = None
     owner: str | None = None
@@ -151,3 +163,25 @@ class Group:
     def owners(self) -> tuple[str, ...]:
         """The ids of all owners, the main one first; empty if there is none."""
         return (self.owner, *self.co_owners) if self.owner else ()
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentType:
+    """A component without wiring, of which there may be many instances."""
+
+    id: str
+    title: str
+    functionality: str | None = None
+    description: str | None = None
+    owner: str | None = None
+    base: str | None = None
+    """The type that it is made from, as written."""
+    generic: tuple[str, ...] = ()
+    """The names that stand for conceptual types."""
+    is_abstract: bool = False
+    inputs: Mapping[str, str | None] = field(default_factory=dict)
+    """The types of its inputs by id, those of the type that it is made from included."""
+    outputs: Mapping[str, str | None] = field(default_factory=dict)
+    components: tuple[str, ...] = ()
+    """The ids of the components inside."""
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -68,6 +68,8 @@ class Node:
     id: str
     title: str
     implements: tuple[str, ...] = ()
+    wholes: tuple[str, ...] = ()
+    """Composed components that it is one process of: their leaves are among `implements`."""
     description: str | None = None
     owner: str | None = None
     co_owners: tuple[str, ...] = ()

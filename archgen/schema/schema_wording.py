@@ -31,7 +31,7 @@ _BOOLEAN_WORDS = {
 }
 SECTIONS_BY_ID = frozenset(
     {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
-    | {"resources", "views", "policies"}
+    | {"resources", "views", "policies", "component_types"}
 )
 """The top-level sections that hold elements by id."""
 _UNQUOTED_VALUE = re.compile(r"-?[0-9]+|true|false", re.IGNORECASE)
@@ -260,9 +260,15 @@ def element_of_path(path: tuple[str | int, ...]) -> str | None:
     """Return the id of the element that a path leads into, or None outside of all elements."""
     if len(path) < 2:  # noqa: PLR2004 - a section and an id
         return None
-    if path[0] == "groups" and len(path) > 3 and path[2] == "components":  # noqa: PLR2004
-        return f"{path[1]}.{path[3]}"
-    return str(path[1]) if path[0] in SECTIONS_BY_ID else None
+    if path[0] not in SECTIONS_BY_ID:
+        return None
+    ids = [str(path[1])]
+    # A component inside another has an id of as many parts as it lies deep.
+    rest = path[2:] if path[0] in {"groups", "component_types"} else ()
+    while len(rest) > 1 and rest[0] == "components":
+        ids.append(str(rest[1]))
+        rest = rest[2:]
+    return ".".join(ids)
 
 
 def add_article(title: str) -> str:

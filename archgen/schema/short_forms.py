@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
+from archgen.schema import component_sugar
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
@@ -41,13 +42,25 @@ _TITLED_FORM = ElementForm(("title",))
 _TOPIC_FORM = ElementForm(("topic",), frozenset({"topic"}), part_forms={"qos": ElementForm(("profile",))})
 _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
+_CONTAINER_FORM = ElementForm(("host",))
+_COMPONENT_NODE_FORM = ElementForm(
+    list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})
+)
+
+_COMPONENT_PARTS = {
+    "inputs": ElementForm(("from",), frozenset({"from"})),
+    "outputs": ElementForm(("type",), frozenset({"from"})),
+    "performance": _PLAIN_FORM,
+    "containers": _CONTAINER_FORM,
+}
 _COMPONENT_FORM = ElementForm(
+    ("title",), frozenset({"from"}), keyed_forms=_COMPONENT_PARTS, part_forms={"node": _COMPONENT_NODE_FORM}
+)
+_COMPONENT_PARTS["components"] = _COMPONENT_FORM  # components hold components, to any depth
+_COMPONENT_TYPE_FORM = ElementForm(
     ("title",),
-    keyed_forms={
-        "inputs": ElementForm(("from",), frozenset({"from"})),
-        "outputs": ElementForm(("type",)),
-        "performance": _PLAIN_FORM,
-    },
+    keyed_forms={**_COMPONENT_PARTS, "inputs": ElementForm(("type",))},
+    part_forms={"node": _COMPONENT_NODE_FORM},
 )
 _NODE_FORM = ElementForm(
     ("implements",),
@@ -63,11 +76,12 @@ _ROOT_FORM = ElementForm(
         "partners": _TITLED_FORM,
         "use_cases": _TITLED_FORM,
         "requirements": _TITLED_FORM,
+        "component_types": _COMPONENT_TYPE_FORM,
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
         "nodes": _NODE_FORM,
         "types": ElementForm(("message",)),
         "hosts": _TITLED_FORM,
-        "containers": ElementForm(("host",)),
+        "containers": _CONTAINER_FORM,
         "resources": ElementForm(("host",)),
         "links": _LINK_FORM,
         "chains": ElementForm(("through",), frozenset({"through"})),
@@ -83,14 +97,18 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     # Types and indicators first: both look at short forms that _normalise_mapping expands.
     types = document.root.get("types")
     type_diagnostics = tuple(_fold_type_names(types)) if isinstance(types, MappingNode) else ()
-    groups = document.root.get("groups")
-    indicator_diagnostics = tuple(_collect_overall(groups)) if isinstance(groups, MappingNode) else ()
+    sugar_diagnostics = component_sugar.expand_sugar(document)
+    indicator_diagnostics = tuple(
+        diagnostic
+        for component in component_sugar.list_components(document.root)
+        for diagnostic in _collect_overall(component)
+    )
     _normalise_mapping(document.root, _ROOT_FORM)
     review = document.root.get("review")
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
-    return type_diagnostics + indicator_diagnostics
+    return type_diagnostics + sugar_diagnostics + indicator_diagnostics
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:
@@ -175,14 +193,11 @@ def _fold_type_names(types: MappingNode) -> Iterator[Diagnostic]:
 _DIRECT_KEYS = ("accuracy", "execution_time")
 
 
-def _collect_overall(groups: MappingNode) -> Iterator[Diagnostic]:
+def _collect_overall(component: MappingNode) -> Iterator[Diagnostic]:
     """Move figures written directly in `performance` into its indicator `overall`."""
-    for group in groups:
-        components = group.value.get("components") if isinstance(group.value, MappingNode) else None
-        for component in components if isinstance(components, MappingNode) else ():
-            performance = component.value.get("performance") if isinstance(component.value, MappingNode) else None
-            if isinstance(performance, MappingNode):
-                yield from _move_to_overall(performance)
+    performance = component.get("performance")
+    if isinstance(performance, MappingNode):
+        yield from _move_to_overall(performance)
 
 
 def _move_to_overall(performance: MappingNode) -> Iterator[Diagnostic]:

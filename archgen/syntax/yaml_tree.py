@@ -50,6 +50,8 @@ class MappingNode:
 
     entries: dict[str, MappingEntry]
     span: Span
+    declares: bool = True
+    """Whether it may declare the element that it is about: what a path with dots leads to is declared elsewhere."""
 
     def get(self, key: str) -> YamlNode | None:
         """Return the value at a key, or None."""

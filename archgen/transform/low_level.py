@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import count
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
+from archgen.model.derived_names import derive_node_ids
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, FlowKind, Node, Topic
 from archgen.transform import ros_names
@@ -100,21 +100,12 @@ def _make_topic(
 def make_planned_nodes(architecture: Architecture) -> Iterator[Node]:
     """Yield the nodes to add, in the order of components."""
     implemented_ids = {component for node in architecture.nodes.values() for component in node.implements}
-    used_names = set(architecture.nodes)
-    for component in architecture.components.values():
-        if component.id not in implemented_ids:
-            name = _find_free_name(component, used_names)
-            used_names.add(name)
-            yield _make_planned_node(component, name)
-
-
-def _find_free_name(component: Component, used_names: Container[str]) -> str:
-    """Return an unused name: the component's own, else `group_component`, else that with a number behind it."""
-    long_name = component.id.replace(".", "_")
-    for name in (component.name, long_name):
-        if name not in used_names:
-            return name
-    return next(name for number in count(2) if (name := f"{long_name}_{number}") not in used_names)
+    components = [each for each in architecture.components.values() if each.id not in implemented_ids]
+    node_ids = derive_node_ids(
+        [each.id for each in components], {**architecture.components, **architecture.shells}, architecture.nodes
+    )
+    for component in components:
+        yield _make_planned_node(component, node_ids[component.id])
 
 
 def _make_planned_node(component: Component, name: str) -> Node:

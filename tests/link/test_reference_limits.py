@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN
+from archgen.compose import expand_project
 from archgen.link import input_wiring
 from archgen.link.element_outline import build_outline
 from archgen.link.reference_resolution import ReferenceResolver
@@ -21,7 +22,7 @@ def test_pairs_are_counted_up_to_the_limit_and_no_further() -> None:
     assert document is not None
     normalise_document(document)
     for already, brought in ((499_998, [2, 0, 0]), (499_999, [0, 0, 0]), (499_996, [2, 2, 0])):
-        outline = build_outline(document.root)
+        outline = build_outline(expand_project(document.root))
         spans = {
             "group": {"g": NO_SPAN},
             "component": dict.fromkeys(outline.components, NO_SPAN),

@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple, get_args
 
+from archgen.compose.project_expansion import ComponentShell
 from archgen.link import mapping_values
+from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
+from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
+from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import PortEdge
-from archgen.model.component import Component, ComponentRole, Connection, Group, PerformanceIndicator, RequirementUse
+from archgen.model.component import (
+    Component,
+    ComponentRole,
+    Connection,
+    Group,
+    Input,
+    Output,
+    PerformanceIndicator,
+    RequirementUse,
+)
 from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
@@ -25,19 +38,45 @@ class DeclaredGroups(NamedTuple):
 
     groups: dict[str, Group]
     components: dict[str, Component]
+    shells: dict[str, Component]
+    shell_ports: dict[str, tuple[str, ...]]
     connections: tuple[Connection, ...]
     edges: tuple[PortEdge, ...]
+
+    def list_leaves(self, component_id: str) -> tuple[str, ...]:
+        """Return the leaves inside of a composed component, or the component itself, by complete ids."""
+        shell = self.shells.get(component_id)
+        own = (component_id,) if component_id in self.components else ()
+        return (*own, *(leaf for child in shell.children for leaf in self.list_leaves(child))) if shell else own
+
+    def list_leaf_ports(self, kind: str, port_id: str) -> tuple[str, ...]:
+        """Return the ports of leaves that carry a port: itself, or those behind that of a composed component."""
+        behind = self.shell_ports.get(f"{kind} {port_id}", ())
+        return tuple(leaf for each in behind for leaf in self.list_leaf_ports(kind, each)) or (port_id,)
 
 
 def declare_groups(
     outline: ElementOutline, resolver: ReferenceResolver, types: Mapping[str, ConceptualType]
 ) -> DeclaredGroups:
     """Declare every group with its components, and wire their inputs."""
-    wiring = InputWiring(outline, resolver, types)
+    sources = None
+    if outline.expansion:
+        sources = PortSources(outline, resolver, types)
+        join_ports(outline, sources, resolver)
+    wiring = InputWiring(outline, resolver, types, sources)
     group_declarer = _GroupDeclarer(outline, resolver, wiring)
-    groups = {name: group_declarer.declare_group(name, entry) for name, entry in outline.groups.items()}
+    open_shells = OpenShells(outline, sources) if sources else None
+    groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
     components = {component.id: component for group in groups.values() for component in group.components.values()}
-    return DeclaredGroups(groups, components, tuple(wiring.connections), tuple(wiring.edges))
+    shells = {shell.id: group_declarer.declare_shell(shell) for shell in outline.shells.values()}
+    return DeclaredGroups(
+        groups,
+        components,
+        shells,
+        open_shells.list_carried_ports() if open_shells else {},
+        tuple(wiring.connections),
+        tuple(wiring.edges),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,15 +86,24 @@ class _GroupDeclarer:
     outline: ElementOutline
     resolver: ReferenceResolver
     wiring: InputWiring
+    owners: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """The owners of groups and composed components, by complete id."""
 
-    def declare_group(self, group_id: str, entry: MappingEntry) -> Group:
+    def declare_group(self, group_id: str, entry: MappingEntry, open_shells: OpenShells | None) -> Group:
         body = mapping_values.get_body(entry)
         # Owners are inherited: a component without owners has those of its group, a node those of its components.
         owners = self.resolver.resolve_owners(body, group_id, ())
+        self.owners[group_id] = owners
+        for shell in self.outline.shells.values():
+            if shell.group == group_id:
+                self.owners[shell.id] = self._find_owners(shell.id, group_id, shell.entry)
         components = {
-            part.key: self._declare_component(group_id, part, owners)
-            for part in mapping_values.get_mapping(body, "components")
+            part.key: self._declare_leaf(group_id, part) for part in mapping_values.get_mapping(body, "components")
         }
+        if open_shells:
+            for shell in open_shells.list_in_group(group_id):
+                path = shell.id.removeprefix(f"{group_id}.")
+                components[path] = self._declare_rest(shell, open_shells)
         return Group(
             id=group_id,
             title=mapping_values.get_title(body, group_id),
@@ -69,15 +117,71 @@ class _GroupDeclarer:
             at=entry.key_span,
         )
 
-    def _declare_component(self, group_id: str, entry: MappingEntry, inherited_owners: tuple[str, ...]) -> Component:
-        body, component_id = mapping_values.get_body(entry), f"{group_id}.{entry.key}"
-        owners = self.resolver.resolve_owners(body, component_id, inherited_owners)
+    def declare_shell(self, shell: ComponentShell) -> Component:
+        """Declare a composed component, with all of its ports."""
+        inputs = {
+            name: self.wiring.declare_input(shell.id, port, is_leaf=False)
+            for name, port in self.outline.inputs[shell.id].items()
+        }
+        outputs = {
+            name: replace(output, type=self.wiring.sources.type_of_output(output.id)) if self.wiring.sources else output
+            for name, output in self.outline.outputs[shell.id].items()
+        }
+        return replace(
+            self._declare_component(shell.group, shell.entry, inputs, outputs),
+            children=tuple(child for child in shell.children if child in self.resolver.spans["component"]),
+        )
+
+    def _declare_leaf(self, group_id: str, entry: MappingEntry) -> Component:
+        component_id = f"{group_id}.{entry.key}"
         inputs = self.outline.inputs[component_id]
+        return self._declare_component(
+            group_id,
+            entry,
+            {name: self.wiring.declare_input(component_id, port) for name, port in inputs.items()},
+            self.outline.outputs[component_id],
+        )
+
+    def _declare_rest(self, shell: ComponentShell, open_shells: OpenShells) -> Component:
+        """Declare what is not designed yet of a composed component: the ports that nothing inside carries."""
+        inputs = {
+            name: self.wiring.declare_input(shell.id, port)
+            for name, port in self.outline.inputs[shell.id].items()
+            if open_shells.is_open(("input", f"{shell.id}.{name}"))
+        }
+        outputs = {
+            name: output
+            for name, output in self.outline.outputs[shell.id].items()
+            if open_shells.is_open(("output", output.id))
+        }
+        component = self._declare_component(shell.group, shell.entry, inputs, outputs)
+        return replace(component, requirements=(), requirements_known=True, performance=(), timing=None)
+
+    def _find_owners(self, component_id: str, group_id: str, entry: MappingEntry) -> tuple[str, ...]:
+        """Return a component's owners: those written, else those of the component around it, else of its group."""
+        if component_id not in self.owners:
+            parent = self.outline.expansion.parents.get(component_id) if self.outline.expansion else None
+            inherited_owners = self.owners[parent or group_id]
+            body = mapping_values.get_body(entry)
+            self.owners[component_id] = self.resolver.resolve_owners(body, component_id, inherited_owners)
+        return self.owners[component_id]
+
+    def _declare_component(
+        self, group_id: str, entry: MappingEntry, inputs: Mapping[str, Input], outputs: Mapping[str, Output]
+    ) -> Component:
+        body, component_id = mapping_values.get_body(entry), f"{group_id}.{entry.key}"
+        name = entry.key.rpartition(".")[2]
+        owners = self._find_owners(component_id, group_id, entry)
+        expansion = self.outline.expansion
+        origin = expansion.instances.get(component_id) if expansion else None
         return Component(
             id=component_id,
-            name=entry.key,
+            name=name,
             group=group_id,
-            title=mapping_values.get_title(body, entry.key),
+            title=mapping_values.get_title(body, name),
+            parent=expansion.parents.get(component_id) if expansion else None,
+            component_type=str(origin.expression) if origin else None,
+            is_reference=origin.is_reference if origin else False,
             functionality=mapping_values.get_text(body, "functionality"),
             description=mapping_values.get_text(body, "description"),
             owner=next(iter(owners), None),
@@ -86,10 +190,10 @@ class _GroupDeclarer:
             requirements=tuple(_read_requirements(body)),
             requirements_known=body.get("requirements") is not None,
             performance=tuple(_read_performance(body)),
-            inputs={name: self.wiring.declare_input(component_id, port) for name, port in inputs.items()},
+            inputs=inputs,
             # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=body.get("inputs") is not None,
-            outputs=self.outline.outputs[component_id],
+            outputs=outputs,
             outputs_known=body.get("outputs") is not None,
             timing=declare_timing(
                 entry,

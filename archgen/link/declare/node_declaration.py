@@ -10,6 +10,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import dataclass
 from archgen.link import mapping_values
 from archgen.link.declare.callback_groups import EXECUTOR_KEYS, declare_callback_groups
+from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger
@@ -56,17 +57,16 @@ def resolve_implements(root: MappingNode, resolver: ReferenceResolver) -> dict[s
     return implements
 
 
-def declare_nodes(
-    root: MappingNode, context: NodeContext, implements: Mapping[str, tuple[str, ...]]
-) -> dict[str, Node]:
+def declare_nodes(root: MappingNode, context: NodeContext, implemented: ImplementingNodes) -> dict[str, Node]:
     """Declare every node that is written, by id. Nodes that archgen derives are added later, by `transform`."""
     return {
-        name: _declare_node(name, entry, context, implements[name])
+        name: _declare_node(name, entry, context, implemented)
         for name, entry, _ in mapping_values.iterate_elements(root, "nodes")
     }
 
 
-def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, implements: tuple[str, ...]) -> Node:
+def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, implemented: ImplementingNodes) -> Node:
+    implements, wholes = implemented.implements[node_id], implemented.wholes.get(node_id, ())
     body, resolver = mapping_values.get_body(entry), context.resolver
     kinds = tuple(dict.fromkeys(kind for kind in mapping_values.get_texts(body, "kind") if kind in _NODE_KINDS))
     container = resolver.resolve_plain_id(mapping_values.get_scalar(body, "container"), "container", node_id)
@@ -76,11 +76,14 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
     # Several components may have several owners: the node then belongs to all of them, in the order of `implements`.
     inherited_owners = (owner for component in implements for owner in context.components[component].owners)
     owners = resolver.resolve_owners(body, node_id, inherited_owners)
-    ports = _make_port_resolver(node_id, body, context, implements)
+    # A composed component in one process is named by its own ports, whatever those inside are called.
+    port_holders = (*wholes, *(each for each in implements if not any(each.startswith(f"{whole}.") for whole in wholes)))
+    ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
     return Node(
         id=node_id,
         title=mapping_values.get_title(body, node_id),
         implements=implements,
+        wholes=wholes,
         description=mapping_values.get_text(body, "description"),
         owner=next(iter(owners), None),
         co_owners=owners[1:],
@@ -96,8 +99,8 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         scheduling=mapping_values.get_order(body, "scheduling"),
         callback_groups=declare_callback_groups(body, resolver, node_id, implements),
         reentrant=mapping_values.get_flag(body, "reentrant"),
-        status=_read_status(body),
-        uses=tuple(_declare_uses(body, ports)),
+        status=_read_status(body) or ("planned" if node_id in implemented.planned_ids else None),
+        uses=tuple(_declare_uses(body, ports, implemented)),
         timing=context.timing_merger.merge_timing(
             node_id, declare_timing(entry, ports, resolver.diagnostics), implements
         ),
@@ -105,6 +108,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         parameter_files=mapping_values.get_texts(body, "parameter_files"),
         tags=mapping_values.get_texts(body, "tags"),
         urls=mapping_values.get_text_mapping(body, "urls"),
+        written=node_id not in implemented.planned_ids,
         implements_written=body.get("implements") is not None,
         at=entry.key_span,
         name_at=mapping_values.get_span(body, "name"),
@@ -149,11 +153,12 @@ def _make_port_resolver(
     return PortResolver(context.resolver, node_id, implements, context.outline.port_names, is_free=is_free)
 
 
-def _declare_uses(body: MappingNode, ports: PortResolver) -> Iterator[PortUse]:
+def _declare_uses(body: MappingNode, ports: PortResolver, implemented: ImplementingNodes) -> Iterator[PortUse]:
     for use in USE_KINDS:
         for key, entry, use_body in mapping_values.iterate_elements(body, use):
             port = ports.resolve_port(key, entry.key_span, _PORT_KINDS[use]) if ports.component_ids else None
-            yield _declare_use(use, port, entry, use_body)
+            for leaf_port in implemented.leaf_ports(_PORT_KINDS[use], port) if port else (None,):
+                yield _declare_use(use, leaf_port, entry, use_body)
     internal_body = mapping_values.get_mapping(body, "internal")
     for use in USE_KINDS:
         for _, entry, use_body in mapping_values.iterate_elements(internal_body, use):

@@ -1,0 +1,6 @@
+"""Types and instances: write out what components are made from, and take composed components apart."""
+
+from archgen.compose.expansion_rules import RULES
+from archgen.compose.project_expansion import ExpandedProject, expand_project
+
+__all__ = ["RULES", "ExpandedProject", "expand_project"]

@@ -1,0 +1,166 @@
+"""Lay what an instance writes over what its type has, on normal forms: leaf by leaf, lists whole.
+
+Neither tree is changed: what only one of them has is shared, so that a thousand instances of one type cost little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+_EXCLUSIVE_KEYS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
+    (frozenset({"period"}), frozenset({"rate"})),
+    (frozenset({"from"}), frozenset({"external"})),
+    (frozenset({"executable"}), frozenset({"plugin"})),
+    (frozenset({"value"}), frozenset({"from"})),
+    (frozenset({"command"}), frozenset({"package", "executable", "plugin"})),
+)
+"""Keys that say the same in two ways: writing one of a side takes those of the other side away."""
+_PART_KINDS = {"inputs": "input", "outputs": "output", "components": "component"}
+_KEYS_OF_IDS = frozenset(
+    {"parameters", "operations", "performance", "urls", "containers", "frames", "properties", "hints", "calls", "uses"}
+    | {"publishes", "subscribes", "serves", "inputs", "outputs"}
+)
+"""Keys whose mappings have ids or names as keys: one called `rate` does not replace another called `period`."""
+_JOINED_LISTS = frozenset({"requirements", "tags"})
+"""Lists that an instance adds to: it has its type's requirements and tags, and its own."""
+
+
+class InstanceOverlay:
+    """Lays instances over types; what instances name and types do not have goes to `diagnostics`."""
+
+    def __init__(self, diagnostics: list[Diagnostic]) -> None:
+        """Take the list that findings go to."""
+        self.diagnostics = diagnostics
+        self.replaced_types: list[tuple[ScalarNode, ScalarNode, str]] = []
+        """Types of inner components with those that an instance or a type made from theirs puts in their place."""
+
+    def lay_over_type(self, base: MappingNode, derived: MappingNode) -> MappingNode:
+        """Return a type with another made from it laid over: it may add ports, components and parameters."""
+        return self._lay_component(base, derived, None)
+
+    def lay_over_instance(self, base: MappingNode, instance: MappingNode, instance_id: str) -> MappingNode:
+        """Return a type's body with an instance laid over, which adds neither ports nor components."""
+        return self._lay_component(base, instance, instance_id)
+
+    def _lay_component(self, base: MappingNode, over: MappingNode, instance_id: str | None) -> MappingNode:
+        entries = dict(base.entries)
+        for entry in over:
+            below = entries.get(entry.key)
+            part_kind = _PART_KINDS.get(entry.key)
+            if part_kind and isinstance(entry.value, MappingNode):
+                base_parts = below.value if below and isinstance(below.value, MappingNode) else None
+                parts = self._lay_parts(base_parts, entry.value, part_kind, instance_id)
+                if below is not None or parts.entries or instance_id is None:
+                    entries[entry.key] = MappingEntry(entry.key, (below or entry).key_span, parts)
+            elif entry.key in _JOINED_LISTS and below and isinstance(below.value, SequenceNode):
+                own = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
+                items = [*below.value.items, *own]
+                entries[entry.key] = MappingEntry(entry.key, entry.key_span, SequenceNode(items, entry.value.span))
+            else:
+                _lay_entry(entries, entry)
+        return MappingNode(entries, over.span if instance_id else base.span)
+
+    def _lay_parts(
+        self, base: MappingNode | None, over: MappingNode, part_kind: str, instance_id: str | None
+    ) -> MappingNode:
+        """Return ports or components by id; what only an instance writes is reported, and left out."""
+        entries = dict(base.entries) if base else {}
+        for entry in over:
+            below = entries.get(entry.key)
+            if below is None:
+                if instance_id is None:
+                    entries[entry.key] = entry
+                else:
+                    self.diagnostics.append(_diagnose_unknown_part(entry, part_kind, instance_id, base))
+                continue
+            body = below.value if isinstance(below.value, MappingNode) else MappingNode({}, below.key_span)
+            own = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
+            if part_kind == "component":
+                inner_id = f"{instance_id}.{entry.key}" if instance_id else entry.key
+                self._note_replaced_type(body, own, inner_id)
+                # What an inner instance has is not known before its own type is laid under it: it is judged then.
+                is_instance = not {"is", "same_as"}.isdisjoint({*body.entries, *own.entries})
+                value = self._lay_component(body, own, inner_id if instance_id and not is_instance else None)
+            else:
+                value = _lay_mapping(body, own)
+            entries[entry.key] = MappingEntry(entry.key, below.key_span, value)
+        return MappingNode(entries, base.span if base else over.span)
+
+    def _note_replaced_type(self, body: MappingNode, own: MappingNode, inner_id: str) -> None:
+        replaced, replacing = body.get("is"), own.get("is")
+        if isinstance(replaced, ScalarNode) and isinstance(replacing, ScalarNode) and replaced.text != replacing.text:
+            self.replaced_types.append((replaced, replacing, inner_id))
+
+
+def _diagnose_unknown_part(
+    entry: MappingEntry, part_kind: str, instance_id: str, base: MappingNode | None
+) -> Diagnostic:
+    known_ids = tuple(base.entries) if base else ()
+    rule = "unknown-component" if part_kind == "component" else "unknown-port"
+    labels = (Label(base.span, f"its {part_kind}s"),) if base and base.entries else ()
+    return Diagnostic(
+        rule,
+        f"the type of `{instance_id}` has no {part_kind} `{entry.key}`",
+        entry.key_span,
+        labels=labels,
+        help=did_you_mean(entry.key, known_ids) or f"an instance adds no {part_kind}s: add it to the type",
+        element=instance_id,
+    )
+
+
+def _lay_mapping(base: MappingNode, over: MappingNode, holder_key: str = "") -> MappingNode:
+    """Return a mapping with another laid over it, key by key, to any depth. `holder_key` is the key that holds it."""
+    entries = dict(base.entries)
+    for entry in over:
+        _lay_entry(entries, entry, has_ids=holder_key in _KEYS_OF_IDS)
+    return MappingNode(entries, base.span)
+
+
+def _lay_entry(entries: dict[str, MappingEntry], entry: MappingEntry, *, has_ids: bool = False) -> None:
+    """Put an entry over those of a base, and take away what it replaces. `has_ids`: its key is somebody's id."""
+    for key in () if has_ids else _list_replaced_keys(entry.key):
+        entries.pop(key, None)
+    below = entries.get(entry.key)
+    if below is None or not isinstance(below.value, MappingNode) or not isinstance(entry.value, MappingNode):
+        entries[entry.key] = entry
+    elif entry.key == "node":
+        entries["node"] = MappingEntry("node", entry.key_span, lay_node(below.value, entry.value))
+    elif entry.key == "qos" and "profile" in entry.value.entries:
+        entries[entry.key] = entry  # a profile is a value for every key of the quality of service
+    else:
+        value = _lay_mapping(below.value, entry.value, entry.key)
+        if entry.key == "timing":
+            _drop_period(value, entry.value)
+        entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
+
+
+def lay_node(base: MappingNode, over: MappingNode) -> MappingNode:
+    """Lay a node over another. Its parameters are data: each whole one replaces the other."""
+    node = _lay_mapping(base, over)
+    base_parameters, parameters = base.get("parameters"), over.entries.get("parameters")
+    if parameters and isinstance(base_parameters, MappingNode) and isinstance(parameters.value, MappingNode):
+        entries = {**base_parameters.entries, **parameters.value.entries}
+        node.entries["parameters"] = MappingEntry(
+            "parameters", parameters.key_span, MappingNode(entries, parameters.value.span)
+        )
+    return node
+
+
+def _list_replaced_keys(key: str) -> Iterator[str]:
+    for first, second in _EXCLUSIVE_KEYS:
+        if key in first:
+            yield from second
+        elif key in second:
+            yield from first
+
+
+def _drop_period(timing: MappingNode, written_timing: MappingNode) -> None:
+    behaviour = written_timing.get("behaviour")
+    if isinstance(behaviour, ScalarNode) and behaviour.text != "periodic":
+        for key in ("period", "rate", "jitter"):
+            if key not in written_timing.entries:
+                timing.entries.pop(key, None)

@@ -1,0 +1,301 @@
+"""Write out what a project makes from component types, and take composed components apart into leaves and shells.
+
+What comes out is a project as if everything had been written by hand: the groups hold leaves, by their path inside the
+group (`arm.motor`). Nodes of the tree keep their places, so that what is wrong with an instance points at the type's
+line. A project without types and composed components comes out as it went in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from archgen.compose.instance_containers import make_instance_containers
+from archgen.compose.instance_overlay import InstanceOverlay
+from archgen.compose.reference_limits import find_changes_of_reference
+from archgen.compose.type_expressions import TypeExpression
+from archgen.compose.type_table import TypeTable, diagnose_circle, find_missing_ports, list_generic_names
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.source_span import Span
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+MAX_ELEMENTS = 100_000
+"""So many components a project may have when everything is written out: ten times the largest that people describe."""
+_COMPOSING_KEYS = frozenset({"is", "same_as", "components", "node", "containers", "from", "autoconnect"})
+"""Keys of a component that make it more than a leaf with ports."""
+
+
+@dataclass(slots=True)
+class InstanceOrigin:
+    """Which component type a component is made from."""
+
+    expression: TypeExpression
+    is_reference: bool
+    """Whether it is exactly the type (`same_as`)."""
+    at: Span
+
+
+@dataclass(slots=True)
+class ComponentShell:
+    """A component that holds components: its entry without them, and the ids of those directly inside."""
+
+    id: str
+    group: str
+    parent: str | None
+    """The id of the component around it, None where it stands directly in its group."""
+    entry: MappingEntry
+    children: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class ExpandedProject:
+    """A project with everything written out: `root` has leaves only below its groups."""
+
+    root: MappingNode
+    is_plain: bool = False
+    """Whether nothing is composed and nothing an instance: it is as it was written."""
+    type_bodies: dict[str, MappingNode] = field(default_factory=dict)
+    """Component types by id, with what they are made from."""
+    shells: dict[str, ComponentShell] = field(default_factory=dict)
+    """Composed components by complete id, outer ones first."""
+    instances: dict[str, InstanceOrigin] = field(default_factory=dict)
+    """What leaves and shells are made from, by complete id."""
+    parents: dict[str, str] = field(default_factory=dict)
+    """The shell around each leaf and shell that has one, by complete ids."""
+    damaged_elements: frozenset[str] = frozenset()
+    """Components of which the type is not known: what they have is not known either."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+def expand_project(root: MappingNode) -> ExpandedProject:
+    """Return a merged project with types written out and composed components taken apart. The tree is not changed."""
+    groups = root.get("groups")
+    groups = groups if isinstance(groups, MappingNode) else MappingNode({}, root.span)
+    if "component_types" not in root.entries and not _uses_composition(groups):
+        return ExpandedProject(root, is_plain=True)
+    return _ProjectExpander(root).expand_groups(groups)
+
+
+def _uses_composition(groups: MappingNode) -> bool:
+    return any(
+        isinstance(component.value, MappingNode) and not _COMPOSING_KEYS.isdisjoint(component.value.entries)
+        for group in groups
+        for component in _list_components(group.value)
+    ) or any("autoconnect" in group.value.entries for group in groups if isinstance(group.value, MappingNode))
+
+
+def _list_entries(node: object) -> Iterator[MappingEntry]:
+    return iter(node) if isinstance(node, MappingNode) else iter(())
+
+
+def _list_components(body: object) -> Iterator[MappingEntry]:
+    components = body.get("components") if isinstance(body, MappingNode) else None
+    return iter(components) if isinstance(components, MappingNode) else iter(())
+
+
+@dataclass(slots=True)
+class _Expansion:
+    """A component's body with everything written out, what it is made from, and how many components it stands for."""
+
+    written: MappingNode
+    """What it was made of: kept alive, since expansions are found by its identity."""
+    body: MappingNode
+    origin: InstanceOrigin | None
+    parts: dict[str, tuple[MappingEntry, _Expansion]]
+    size: int
+
+
+class _ProjectExpander:
+    """Expands the components of a project; equal parts of one type are expanded once and shared."""
+
+    def __init__(self, root: MappingNode) -> None:
+        self._root = root
+        self._diagnostics: list[Diagnostic] = []
+        types = root.get("component_types")
+        entries = types.entries if isinstance(types, MappingNode) else {}
+        self._types = TypeTable(entries, self._diagnostics)
+        self._overlay = InstanceOverlay(self._diagnostics)
+        # By the identity of the written node, which the merged tree or a type's body keeps alive.
+        self._expansions: dict[int, _Expansion] = {}
+        self._open_types: list[str] = []
+        self._damaged_elements: set[str] = set()
+        self._circular_types: set[str] = set()
+        self._result = ExpandedProject(root)
+
+    def expand_groups(self, groups: MappingNode) -> ExpandedProject:
+        sized_groups = [
+            (group, [(part, self._expand(part.value, f"{group.key}.{part.key}")) for part in _list_components(group.value)])
+            for group in groups
+        ]
+        total = sum(expansion.size for _, parts in sized_groups for _, expansion in parts)
+        if total > MAX_ELEMENTS:
+            sized_groups = [(group, list(self._limit_parts(group, parts))) for group, parts in sized_groups]
+        group_entries = {group.key: self._flatten_group(group, parts) for group, parts in sized_groups}
+        if group_entries:
+            section = MappingEntry("groups", self._root.entries["groups"].key_span, MappingNode(group_entries, groups.span))
+            self._result.root = MappingNode({**self._root.entries, "groups": section}, self._root.span)
+        self._add_containers()
+        self._judge_types()
+        self._result.damaged_elements = frozenset(self._damaged_elements)
+        self._result.diagnostics = tuple(dict.fromkeys(self._diagnostics))
+        return self._result
+
+    def _add_containers(self) -> None:
+        leaves = {
+            f"{group.key}.{leaf.key}": leaf
+            for group in _list_entries(self._result.root.get("groups"))
+            for leaf in _list_components(group.value)
+        }
+        shells = {shell.id: shell.entry for shell in self._result.shells.values()}
+        containers = make_instance_containers(self._root, {**leaves, **shells}, self._result.parents)
+        if containers:
+            written = self._root.entries.get("containers")
+            entries = written.value.entries if written and isinstance(written.value, MappingNode) else {}
+            span = next(iter(containers.values())).key_span
+            section = MappingEntry("containers", span, MappingNode({**entries, **containers}, span))
+            self._result.root = MappingNode(
+                {**self._result.root.entries, "containers": section}, self._result.root.span
+            )
+
+    def _judge_types(self) -> None:
+        """Find what is wrong in types of which there is no instance, and types that replace larger ones."""
+        for name, entry in self._types.entries.items():
+            body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
+            self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
+            self._open_types.append(name)
+            for part in _list_components(body):
+                self._expand(part.value, f"{name}.{part.key}")
+            self._open_types.pop()
+        for replaced, replacing, component_id in self._overlay.replaced_types:
+            self._diagnostics += find_missing_ports(self._types, replaced, replacing, component_id)
+
+    def _expand(self, node: object, component_id: str) -> _Expansion:
+        body = node if isinstance(node, MappingNode) else MappingNode({}, self._root.span)
+        expansion = self._expansions.get(id(body))
+        if expansion is None:
+            expansion = self._make_expansion(body, component_id)
+            self._expansions[id(body)] = expansion
+        return expansion
+
+    def _make_expansion(self, body: MappingNode, component_id: str) -> _Expansion:
+        origin, full_body = self._lay_over_type(body, component_id)
+        if origin:
+            if origin.expression.name in self._open_types:
+                self._report_circle(origin.expression.name)
+                return _Expansion(body, _drop_components(body), origin, {}, 1)
+            self._open_types.append(origin.expression.name)
+        parts = {
+            part.key: (part, self._expand(part.value, f"{component_id}.{part.key}"))
+            for part in _list_components(full_body)
+        }
+        if origin:
+            self._open_types.pop()
+        return _Expansion(
+            body,
+            _drop_components(full_body) if parts else full_body,
+            origin,
+            parts,
+            1 + sum(expansion.size for _, expansion in parts.values()),
+        )
+
+    def _lay_over_type(self, body: MappingNode, component_id: str) -> tuple[InstanceOrigin | None, MappingNode]:
+        key = "same_as" if "same_as" in body.entries else "is"
+        reference = body.get(key)
+        if not isinstance(reference, ScalarNode) or reference.value is None:
+            return None, body
+        if "same_as" in body.entries and "is" in body.entries:
+            self._diagnostics.append(_diagnose_two_types(body, component_id))
+        expression = self._types.find_type(reference, component_id)
+        type_body = self._types.get_body(expression) if expression else None
+        if expression is None or type_body is None:
+            self._damaged_elements.add(component_id)
+            return None, body
+        if key == "same_as":
+            changes = find_changes_of_reference(body, component_id, expression.name)
+            self._diagnostics += changes
+            body = MappingNode({e.key: e for e in body if e.key not in _list_changed_keys(changes, body)}, body.span)
+        full_body = self._overlay.lay_over_instance(type_body, body, component_id)
+        return InstanceOrigin(expression, key == "same_as", reference.span), full_body
+
+    def _report_circle(self, name: str) -> None:
+        if name not in self._circular_types:
+            self._circular_types.add(name)
+            start = self._open_types.index(name)
+            self._diagnostics.append(diagnose_circle(self._types.entries[name], self._open_types[start:], "holds"))
+
+    def _limit_parts(
+        self, group: MappingEntry, parts: list[tuple[MappingEntry, _Expansion]]
+    ) -> Iterator[tuple[MappingEntry, _Expansion]]:
+        """Report what is too large, and leave out what is inside of it."""
+        for part, expansion in parts:
+            if expansion.size <= MAX_ELEMENTS // max(len(parts), 1):
+                yield part, expansion
+                continue
+            element_id = f"{group.key}.{part.key}"
+            message = f"`{element_id}` stands for {_format_count(expansion.size)} components; at most {MAX_ELEMENTS:,} are written out"
+            self._diagnostics.append(
+                Diagnostic(
+                    "too-many-elements", message, part.key_span, help="use fewer instances inside of one another", element=element_id
+                )
+            )
+            yield part, _Expansion(expansion.written, expansion.body, expansion.origin, {}, 1)
+
+    def _flatten_group(self, group: MappingEntry, parts: list[tuple[MappingEntry, _Expansion]]) -> MappingEntry:
+        if not isinstance(group.value, MappingNode) or "components" not in group.value.entries:
+            return group
+        leaves: dict[str, MappingEntry] = {}
+        for part, expansion in parts:
+            self._flatten_part(group.key, part, expansion, part.key, None, leaves)
+        components = group.value.entries["components"]
+        components_entry = MappingEntry("components", components.key_span, MappingNode(leaves, components.value.span))
+        return MappingEntry(
+            group.key, group.key_span, MappingNode({**group.value.entries, "components": components_entry}, group.value.span)
+        )
+
+    def _flatten_part(  # noqa: PLR0913 - what the recursion carries
+        self,
+        group_id: str,
+        part: MappingEntry,
+        expansion: _Expansion,
+        path: str,
+        parent: str | None,
+        leaves: dict[str, MappingEntry],
+    ) -> None:
+        component_id = f"{group_id}.{path}"
+        if expansion.origin:
+            self._result.instances[component_id] = expansion.origin
+        if parent:
+            self._result.parents[component_id] = parent
+        entry = MappingEntry(path, part.key_span, expansion.body)
+        if not expansion.parts:
+            leaves[path] = entry
+            return
+        children = tuple(f"{component_id}.{name}" for name in expansion.parts)
+        self._result.shells[component_id] = ComponentShell(component_id, group_id, parent, entry, children)
+        for name, (inner_part, inner_expansion) in expansion.parts.items():
+            self._flatten_part(group_id, inner_part, inner_expansion, f"{path}.{name}", component_id, leaves)
+
+
+def _drop_components(body: MappingNode) -> MappingNode:
+    return MappingNode({e.key: e for e in body if e.key != "components"}, body.span)
+
+
+def _list_changed_keys(changes: list[Diagnostic], body: MappingNode) -> set[str]:
+    """Return the keys of a reference that are reported whole: they are left out."""
+    spans = {change.span for change in changes}
+    return {entry.key for entry in body if entry.key_span in spans}
+
+
+def _diagnose_two_types(body: MappingNode, component_id: str) -> Diagnostic:
+    return Diagnostic(
+        "conflicting-values",
+        f"`{component_id}` is an instance of one type and the same as another",
+        body.entries["is"].key_span,
+        labels=(Label(body.entries["same_as"].key_span, "exactly this"),),
+        help="keep `is` where it changes something, else `same_as`",
+        element=component_id,
+    )
+
+
+def _format_count(count: int) -> str:
+    return f"{count:,}" if count < 10**12 else f"10^{len(str(count)) - 1}"  # noqa: PLR2004 - readable

@@ -1,0 +1,208 @@
+"""The component types of a project by name, with what each is made from laid under it and its generic names bound."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from archgen.compose.instance_overlay import InstanceOverlay
+from archgen.compose.type_expressions import MAX_TYPE_LENGTH, TypeExpression, bind_type_name, parse_type_expression
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+
+_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
+"""Keys of a type that its instances do not have: they are about the type itself."""
+_NAMING_KEYS = frozenset({"type", "is", "same_as"})
+"""Keys whose values name types."""
+
+
+@dataclass(slots=True)
+class TypeTable:
+    """Finds component types by name. What is wrong with a type, or with the name of one, goes to `diagnostics` once."""
+
+    entries: Mapping[str, MappingEntry]
+    diagnostics: list[Diagnostic]
+    _bodies: dict[TypeExpression, MappingNode | None] = field(default_factory=dict)
+    _open_names: list[str] = field(default_factory=list)
+
+    def find_type(self, reference: ScalarNode, element_id: str, *, is_base: bool = False) -> TypeExpression | None:
+        """Return what the name of a type means; None, and a diagnostic, if there is none of it."""
+        expression = parse_type_expression(reference.text)
+        entry = self.entries.get(expression.name) if expression else None
+        if expression is None or entry is None:
+            self.diagnostics.append(self._diagnose_unknown_type(reference, expression, element_id))
+            return None
+        generic_names = list_generic_names(entry)
+        if len(generic_names) != len(expression.arguments):
+            self.diagnostics.append(_diagnose_arguments(reference, entry, generic_names, element_id))
+            return None
+        if not is_base and is_abstract(entry):
+            self.diagnostics.append(_diagnose_abstract(reference, entry, self._list_derived(entry.key), element_id))
+            return None
+        if len(reference.text) > MAX_TYPE_LENGTH:
+            message = f"the name of this type has {len(reference.text):,} letters; a type that holds itself grows for ever"
+            self.diagnostics.append(Diagnostic("too-large", message, reference.span, element=element_id))
+            return None
+        return expression
+
+    def get_body(self, expression: TypeExpression) -> MappingNode | None:
+        """Return the body of a type, with what it is made from; None where that goes in a circle."""
+        if expression not in self._bodies:
+            self._bodies[expression] = self._make_body(expression)
+        return self._bodies[expression]
+
+    def _make_body(self, expression: TypeExpression) -> MappingNode | None:
+        entry = self.entries[expression.name]
+        if expression.name in self._open_names:
+            start = self._open_names.index(expression.name)
+            self.diagnostics.append(diagnose_circle(entry, self._open_names[start:], "is made from"))
+            return None
+        body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
+        bindings = dict(zip(list_generic_names(entry), expression.arguments, strict=True))
+        own_body = _bind_types(_drop_type_keys(body), bindings) if bindings else _drop_type_keys(body)
+        base_reference = own_body.get("is")
+        own_body.entries.pop("is", None)
+        if not isinstance(base_reference, ScalarNode):
+            return own_body
+        self._open_names.append(expression.name)
+        base = self.find_type(base_reference, expression.name, is_base=True)
+        base_body = self.get_body(base) if base else None
+        self._open_names.pop()
+        return InstanceOverlay(self.diagnostics).lay_over_type(base_body, own_body) if base_body else own_body
+
+    def _list_derived(self, name: str) -> Iterator[str]:
+        for entry in self.entries.values():
+            reference = entry.value.get("is") if isinstance(entry.value, MappingNode) else None
+            base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+            if base and base.name == name and not is_abstract(entry):
+                yield entry.key
+
+    def _diagnose_unknown_type(
+        self, reference: ScalarNode, expression: TypeExpression | None, element_id: str
+    ) -> Diagnostic:
+        if expression is None:
+            message = f"the brackets of `{reference.text}` do not match, or something is missing between them"
+            help_line: str | None = "a generic type is bound as `filter<Pose>`, two as `pair<Pose, Twist>`"
+            return Diagnostic("wrong-value", message, reference.span, help=help_line, element=element_id)
+        names = tuple(self.entries)
+        ending = next((name for name in names if name.rpartition(".")[2] == expression.name), None)
+        guess = f"did you mean `{ending}`?" if ending else did_you_mean(expression.name, names)
+        return Diagnostic(
+            "unknown-reference",
+            f"no component type named `{expression.name}`",
+            reference.span,
+            help=guess or "write it below `component_types`, or describe the component itself",
+            element=element_id,
+        )
+
+
+def list_generic_names(entry: MappingEntry) -> tuple[str, ...]:
+    """Return the names of a type that stand for conceptual types; none where it is not generic."""
+    names = entry.value.get("generic") if isinstance(entry.value, MappingNode) else None
+    items = names.items if isinstance(names, SequenceNode) else []
+    return tuple(dict.fromkeys(item.text for item in items if isinstance(item, ScalarNode)))
+
+
+def is_abstract(entry: MappingEntry) -> bool:
+    """Whether there is no instance of a type."""
+    flag = entry.value.get("abstract") if isinstance(entry.value, MappingNode) else None
+    return isinstance(flag, ScalarNode) and flag.value is True
+
+
+def find_missing_ports(
+    types: TypeTable, replaced: ScalarNode, replacing: ScalarNode, component_id: str
+) -> Iterator[Diagnostic]:
+    """Report a type in the place of another that lacks one of its ports."""
+    old, new = parse_type_expression(replaced.text), types.find_type(replacing, component_id)
+    old_body = types.get_body(old) if old and old.name in types.entries else None
+    new_body = types.get_body(new) if new else None
+    if old is None or old_body is None or new_body is None:
+        return
+    missing_ports = [
+        port.key
+        for side in ("inputs", "outputs")
+        for port in _list_entries(old_body.get(side))
+        if port.key not in {entry.key for entry in _list_entries(new_body.get(side))}
+    ]
+    if missing_ports:
+        yield Diagnostic(
+            "narrower-type",
+            f"`{replacing.text}` stands for `{replaced.text}` in `{component_id}`, but has no {join_words([f'`{port}`' for port in missing_ports])}",
+            replacing.span,
+            labels=(Label(types.entries[old.name].key_span, "the type that it replaces"),),
+            help=f"name a type that is made from `{old.name}`, or has its ports",
+            element=component_id,
+        )
+
+
+def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
+    return list(node) if isinstance(node, MappingNode) else []
+
+
+def diagnose_circle(entry: MappingEntry, names: list[str], verb: str) -> Diagnostic:
+    """Report types that are made from, or hold, themselves."""
+    way = " > ".join(f"`{name}`" for name in (*names, names[0]))
+    return Diagnostic(
+        "circular-types",
+        f"the component type `{entry.key}` {verb} itself: {way}" if len(names) > 1 else f"the component type `{entry.key}` {verb} itself",
+        entry.key_span,
+        help="take one of them out of the circle",
+        element=entry.key,
+    )
+
+
+def _diagnose_arguments(
+    reference: ScalarNode, entry: MappingEntry, generic_names: tuple[str, ...], element_id: str
+) -> Diagnostic:
+    form = f"{entry.key}<{', '.join(generic_names)}>"
+    if generic_names:
+        asked = "one type" if len(generic_names) == 1 else f"{len(generic_names)} types"
+        message = f"`{reference.text}` does not say for which {asked} `{form}` stands"
+        help_line = f"write `{form}` with types of the project"
+    else:
+        message = f"the component type `{entry.key}` is not generic"
+        help_line = f"write `{entry.key}`, or give the type `generic: [T]`"
+    labels = (Label(entry.key_span, "the type"),)
+    return Diagnostic("unbound-generic", message, reference.span, labels=labels, help=help_line, element=element_id)
+
+
+def _diagnose_abstract(
+    reference: ScalarNode, entry: MappingEntry, derived: Iterator[str], element_id: str
+) -> Diagnostic:
+    names = list(derived)[:3]
+    help_line = (
+        f"name a type that is made from it: {', '.join(f'`{name}`' for name in names)}"
+        if names
+        else "write a type that is made from it: `is` and what it adds"
+    )
+    return Diagnostic(
+        "abstract-type",
+        f"there is no instance of the abstract component type `{entry.key}`",
+        reference.span,
+        labels=(Label(entry.key_span, "abstract"),),
+        help=help_line,
+        element=element_id,
+    )
+
+
+def _drop_type_keys(body: MappingNode) -> MappingNode:
+    return MappingNode({e.key: e for e in body if e.key not in _TYPE_KEYS}, body.span)
+
+
+def _bind_types(node: MappingNode, bindings: Mapping[str, str]) -> MappingNode:
+    """Return a copy of a type's body in which generic names are replaced by what they stand for."""
+    return MappingNode(
+        {e.key: MappingEntry(e.key, e.key_span, _bind_value(e.key, e.value, bindings)) for e in node},
+        node.span,
+    )
+
+
+def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str]) -> YamlNode:
+    if isinstance(node, MappingNode):
+        return node if key in {"parameters", "node"} else _bind_types(node, bindings)
+    if key in _NAMING_KEYS and isinstance(node, ScalarNode) and node.value is not None:
+        text = bind_type_name(node.text, bindings)
+        return node if text == node.text else ScalarNode(text, text, node.span)
+    return node

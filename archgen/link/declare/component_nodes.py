@@ -1,0 +1,208 @@
+"""Make nodes of what components say of theirs: `node` at a component, at its type, and at what is composed around it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from archgen.compose.instance_overlay import lay_node
+from archgen.compose.project_expansion import ExpandedProject
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.link import mapping_values
+from archgen.link.declare.group_declaration import DeclaredGroups
+from archgen.link.element_outline import ElementOutline
+from archgen.model.derived_names import derive_node_ids
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+_INHERITED_KEYS = frozenset(
+    {"host", "container", "namespace", "remaps", "parameters", "environment", "directory", "user", "respawn", "start"}
+)
+"""What a composed component says for all nodes inside."""
+_MAPPING_KEYS = frozenset({"package", "executable", "plugin", "command"})
+"""Keys of a node that say what runs: with one of them its component is mapped."""
+
+
+class ImplementingNodes(NamedTuple):
+    """The nodes of a project in normal form, and what each implements."""
+
+    root: MappingNode
+    """The merged project, with the nodes that components bring along among its `nodes`."""
+    implements: dict[str, tuple[str, ...]]
+    """Leaves by node id, those inside of a composed component included."""
+    wholes: dict[str, tuple[str, ...]]
+    """Composed components that a node implements as one process, by node id."""
+    leaf_ports: Callable[[str, str], tuple[str, ...]]
+    """Returns the ports of leaves behind a port: its kind (`input`, `output`) and complete id."""
+    planned_ids: frozenset[str] = frozenset()
+    """Nodes of components that say where they run, but not what."""
+
+
+def declare_component_nodes(
+    root: MappingNode,
+    outline: ElementOutline,
+    expansion: ExpandedProject,
+    written_targets: dict[str, tuple[str, ...]],
+    declared_groups: DeclaredGroups,
+    diagnostics: list[Diagnostic],
+) -> ImplementingNodes:
+    """Return all nodes: those that are written, and those that components bring along."""
+    if expansion.is_plain:
+        return ImplementingNodes(root, written_targets, {}, lambda _kind, port: (port,))
+    written_nodes = mapping_values.get_mapping(root, "nodes")
+    made = ComponentNodes(outline, expansion, written_nodes, written_targets, diagnostics)
+    targets = {**written_targets, **made.implements}
+    section = MappingEntry("nodes", written_nodes.span, MappingNode(made.entries, written_nodes.span))
+    return ImplementingNodes(
+        MappingNode({**root.entries, "nodes": section}, root.span),
+        {
+            node_id: tuple(dict.fromkeys(leaf for each in ids for leaf in declared_groups.list_leaves(each)))
+            for node_id, ids in targets.items()
+        },
+        {node_id: tuple(each for each in ids if each in outline.shells) for node_id, ids in targets.items()},
+        declared_groups.list_leaf_ports,
+        frozenset(made.planned_ids),
+    )
+
+
+class ComponentNodes:
+    """The nodes that components bring along: `entries` in normal form by node id, `implements` by node id."""
+
+    def __init__(
+        self,
+        outline: ElementOutline,
+        expansion: ExpandedProject,
+        written_nodes: MappingNode,
+        implements: Mapping[str, tuple[str, ...]],
+        diagnostics: list[Diagnostic],
+    ) -> None:
+        """Make them: for components that no written node implements, and under those of written nodes."""
+        self.entries: dict[str, MappingEntry] = {}
+        self.implements: dict[str, tuple[str, ...]] = {}
+        self.planned_ids: set[str] = set()
+        """Nodes of which nothing says yet what runs."""
+        self._outline = outline
+        self._expansion = expansion
+        self._diagnostics = diagnostics
+        self._bodies: dict[str, MappingNode] = {}
+        self._lay_under_written(written_nodes, implements)
+        self._make_nodes(written_nodes, implements)
+
+    def _lay_under_written(self, written_nodes: MappingNode, implements: Mapping[str, tuple[str, ...]]) -> None:
+        for entry in written_nodes:
+            body = mapping_values.get_body(entry)
+            component_ids = implements.get(entry.key, ())
+            own_bodies = [(each, self._find_body(each)) for each in component_ids]
+            if len(own_bodies) == 1 and own_bodies[0][1].entries:
+                body = lay_node(own_bodies[0][1], body)
+            for component_id in component_ids:
+                self._report_unused(component_id, entry, is_one=len(component_ids) == 1)
+            self.entries[entry.key] = MappingEntry(entry.key, entry.key_span, _drop_whole(body))
+
+    def _report_unused(self, component_id: str, node: MappingEntry, *, is_one: bool) -> None:
+        """Report `node` inside of what a node implements as a whole, and at one of several components of a node."""
+        prefix = f"{component_id}."
+        unused_ids = [
+            each
+            for each in (*self._outline.components, *self._outline.shells)
+            if (each.startswith(prefix) or (each == component_id and not is_one)) and self._own_node(each).entries
+        ]
+        for unused_id in unused_ids if self._outline.expansion else ():
+            self._diagnostics.append(
+                Diagnostic(
+                    "unused-node",
+                    f"the node `{node.key}` runs `{unused_id}`: what `{unused_id}` says of a node of its own is not used",
+                    self._entry_of(unused_id).key_span,
+                    labels=(Label(node.key_span, "the node"),),
+                    help="take one of the two out",
+                    element=unused_id,
+                )
+            )
+
+    def _make_nodes(self, written_nodes: MappingNode, implements: Mapping[str, tuple[str, ...]]) -> None:
+        implemented = {leaf for ids in implements.values() for each in ids for leaf in self._list_below(each)}
+        wholes = [
+            shell_id
+            for shell_id in self._outline.shells
+            if mapping_values.get_flag(self._own_node(shell_id), "whole") and shell_id not in implemented
+        ]
+        wholes = [each for each in wholes if not any(each.startswith(f"{outer}.") for outer in wholes)]
+        inside = {leaf for whole in wholes for leaf in self._list_below(whole)}
+        single_ids = [
+            each
+            for each in self._outline.components
+            if each not in implemented and each not in inside and self._find_body(each).entries
+        ]
+        all_ids = (*self._outline.components, *self._outline.shells)
+        node_ids = derive_node_ids([*single_ids, *wholes], all_ids, written_nodes.entries)
+        used_names: set[tuple[str, str]] = set()
+        for component_id, node_id in node_ids.items():
+            self._add_node(component_id, node_id, used_names)
+            if component_id in wholes:
+                for inner_id in self._list_below(component_id):
+                    if inner_id != component_id and self._own_node(inner_id).entries:
+                        self._report_unused(component_id, self.entries[node_id], is_one=True)
+                        break
+
+    def _add_node(self, component_id: str, node_id: str, used_names: set[tuple[str, str]]) -> None:
+        body, entry = _drop_whole(self._find_body(component_id)), self._entry_of(component_id)
+        reference = ScalarNode(component_id, component_id, entry.key_span)
+        entries = {"implements": MappingEntry("implements", entry.key_span, SequenceNode([reference], entry.key_span))}
+        if "name" not in body.entries:
+            name = _find_free_name(component_id, node_id, mapping_values.get_text(body, "namespace") or "", used_names)
+            entries["name"] = MappingEntry("name", entry.key_span, ScalarNode(name, name, entry.key_span))
+        self.entries[node_id] = MappingEntry(node_id, entry.key_span, MappingNode({**entries, **body.entries}, body.span))
+        self.implements[node_id] = (component_id,)
+        if _MAPPING_KEYS.isdisjoint(body.entries):
+            self.planned_ids.add(node_id)
+
+    def _list_below(self, component_id: str) -> list[str]:
+        """Return a component and all that is inside of it, leaves and composed ones."""
+        prefix = f"{component_id}."
+        everything = (*self._outline.components, *self._outline.shells) if component_id in self._outline.shells else ()
+        return [component_id, *(each for each in everything if each.startswith(prefix))]
+
+    def _entry_of(self, component_id: str) -> MappingEntry:
+        shell = self._outline.shells.get(component_id)
+        return shell.entry if shell else self._outline.components[component_id]
+
+    def _own_node(self, component_id: str) -> MappingNode:
+        return mapping_values.get_mapping(mapping_values.get_body(self._entry_of(component_id)), "node")
+
+    def _find_body(self, component_id: str) -> MappingNode:
+        """Return what a component's node has: its own keys over those of what is around it."""
+        if component_id not in self._bodies:
+            own = self._own_node(component_id)
+            parent = self._expansion.parents.get(component_id)
+            around = self._find_body(parent) if parent else mapping_values.EMPTY_MAPPING
+            inherited = {key: entry for key, entry in around.entries.items() if key in _INHERITED_KEYS}
+            body = lay_node(MappingNode(inherited, around.span), own) if inherited else own
+            if inherited and own.entries:
+                _join_namespaces(body, inherited, own)
+            self._bodies[component_id] = body
+        return self._bodies[component_id]
+
+
+def _drop_whole(body: MappingNode) -> MappingNode:
+    return MappingNode({e.key: e for e in body if e.key != "whole"}, body.span) if "whole" in body.entries else body
+
+
+def _join_namespaces(body: MappingNode, around: Mapping[str, MappingEntry], own: MappingNode) -> None:
+    """Put the namespace of what is around in front of a node's own, unless that is absolute."""
+    outer, inner = around.get("namespace"), own.entries.get("namespace")
+    if outer is None or inner is None or not isinstance(outer.value, ScalarNode) or not isinstance(inner.value, ScalarNode):
+        return
+    if not inner.value.text.startswith("/"):
+        text = f"{outer.value.text.rstrip('/')}/{inner.value.text}"
+        body.entries["namespace"] = MappingEntry(
+            "namespace", inner.key_span, ScalarNode(text, text, inner.value.span)
+        )
+
+
+def _find_free_name(component_id: str, node_id: str, namespace: str, used_names: set[tuple[str, str]]) -> str:
+    """Return the shortest end of a component's path that is a name of its own in its namespace."""
+    parts = component_id.split(".")
+    place = "/" + namespace.strip("/")
+    ends = ["_".join(parts[start:]) for start in range(len(parts) - 1, -1, -1)]
+    name = node_id if place == "/" else next((end for end in ends if (place, end) not in used_names), node_id)
+    used_names.add((place, name))
+    return name

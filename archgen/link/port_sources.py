@@ -1,0 +1,179 @@
+"""Find what each port takes its data from where components hold components: what is written, and what follows by itself.
+
+Inputs take from outputs, from inputs of the component around them, from whole components and groups; outputs of composed
+components give on what stands inside. `outputs_behind` follows all of these down to the outputs of leaves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.source_span import Span
+from archgen.link import mapping_values
+from archgen.link.element_outline import ElementOutline
+from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.source_references import SourceReferences
+from archgen.model.message_types import ConceptualType, flow_of
+from archgen.model.path_resolver import ElementRef
+from archgen.syntax.yaml_tree import MappingEntry
+
+PortKey = tuple[str, str]
+"""A port: `input` or `output`, and its complete id. An input and an output of a component may have one id."""
+
+
+class PortSource(NamedTuple):
+    """One thing that a port takes its data from."""
+
+    target: ElementRef
+    """An output, an input of the component around, or a whole component or group."""
+    written: str
+    at: Span
+    is_made: bool = False
+    """Whether `autoconnect` joined the two."""
+
+
+class PortSources:
+    """What each input, and each output of a composed component, takes its data from."""
+
+    def __init__(
+        self, outline: ElementOutline, resolver: ReferenceResolver, types: Mapping[str, ConceptualType]
+    ) -> None:
+        """Take what the project declares, the resolver of references, and the types, which say what is a message."""
+        self.outline = outline
+        self._resolver = resolver
+        self._types = types
+        self._references = SourceReferences(outline, resolver)
+        self._sources: dict[PortKey, tuple[PortSource, ...]] = {}
+        self._outputs_behind: dict[PortKey, tuple[str, ...]] = {}
+        self._open_ports: set[PortKey] = set()
+
+    def list_sources(self, port: PortKey) -> tuple[PortSource, ...]:
+        """Return what a port takes its data from, each reference resolved once."""
+        if port not in self._sources:
+            self._sources[port] = tuple(self._resolve_written(port))
+        return self._sources[port]
+
+    def add_source(self, port: PortKey, source: PortSource) -> None:
+        """Add what follows by itself to what a port takes its data from."""
+        self._sources[port] = (*self.list_sources(port), source)
+
+    def find_entry(self, port: PortKey) -> MappingEntry | None:
+        """Return where an input is written; None for one that nobody declares."""
+        component_id, _, name = port[1].rpartition(".")
+        return self.outline.inputs.get(component_id, {}).get(name)
+
+    def _resolve_written(self, port: PortKey) -> Iterator[PortSource]:
+        kind, port_id = port
+        component_id, _, name = port_id.rpartition(".")
+        ports = (
+            {key: mapping_values.get_body(entry) for key, entry in self.outline.inputs[component_id].items()}
+            if kind == "input"
+            else self.outline.given_outputs.get(component_id, {})
+        )
+        if name not in ports:
+            return
+        for reference in mapping_values.get_scalars(ports[name], "from"):
+            target = (
+                self._references.resolve_source(reference, component_id)
+                if kind == "input"
+                else self._references.resolve_given(reference, component_id)
+            )
+            if target is not None:
+                yield PortSource(target, reference.text, reference.span)
+
+    def resolve_feeders(self, component_id: str) -> Iterator[PortSource]:
+        """Yield the components that an instance names as sources of all its inputs (`from` of the instance)."""
+        entry = self.outline.components.get(component_id)
+        body = mapping_values.get_body(entry or self.outline.shells[component_id].entry)
+        for reference in mapping_values.get_scalars(body, "from"):
+            target = self._references.resolve_source(reference, component_id)
+            if target is not None and target.kind in {"component", "group"}:
+                yield PortSource(target, reference.text, reference.span)
+            elif target is not None:
+                self._resolver.diagnostics.append(
+                    Diagnostic(
+                        "unknown-reference",
+                        f"`from` of an instance names components: `{reference.text}` is an output",
+                        reference.span,
+                        help="write the output at the input that reads it",
+                        element=component_id,
+                    )
+                )
+
+    def outputs_behind(self, target: ElementRef, reader_id: str) -> tuple[str, ...]:
+        """Return the outputs of leaves that something stands for: an output of a leaf for itself.
+
+        Whole components and groups stand for all that carry messages, except the reader's own.
+        """
+        if target.kind == "output":
+            return self._follow_output(target.id)
+        if target.kind == "input":
+            return self._follow_port(("input", target.id))
+        outputs = self._list_message_outputs(target)
+        behind = (leaf for output in outputs for leaf in self._follow_output(output))
+        return tuple(dict.fromkeys(leaf for leaf in behind if leaf.rpartition(".")[0] != reader_id))
+
+    def type_of_output(self, output_id: str) -> str | None:
+        """Return the type of an output: as written, or that of what it gives on."""
+        component_id, _, name = output_id.rpartition(".")
+        written_type = self.outline.outputs[component_id][name].type
+        if written_type or component_id not in self.outline.shells:
+            return written_type
+        behind = [leaf for leaf in self._follow_output(output_id) if leaf != output_id]
+        return self.type_of_output(behind[0]) if behind else None
+
+    def type_of_input(self, input_id: str) -> str | None:
+        """Return the type of an input: as written, or that of the outputs that it reads."""
+        entry = self.find_entry(("input", input_id))
+        text = mapping_values.get_text(mapping_values.get_body(entry), "type") if entry else None
+        if text:
+            return mapping_values.normalise_type_name(text)
+        behind = self._follow_port(("input", input_id))
+        return self.type_of_output(behind[0]) if behind else None
+
+    def _follow_output(self, output_id: str) -> tuple[str, ...]:
+        """Return the outputs of leaves behind an output; one that gives nothing on stands for itself."""
+        component_id = output_id.rpartition(".")[0]
+        if component_id not in self.outline.shells:
+            return (output_id,)
+        return self._follow_port(("output", output_id)) or (output_id,)
+
+    def _follow_port(self, port: PortKey) -> tuple[str, ...]:
+        if port not in self._outputs_behind:
+            if port in self._open_ports:  # what comes back to itself brings nothing new
+                return ()
+            self._open_ports.add(port)
+            component_id = port[1].rpartition(".")[0]
+            behind = (
+                output
+                for source in self.list_sources(port)
+                for output in self.outputs_behind(source.target, component_id)
+            )
+            self._outputs_behind[port] = tuple(dict.fromkeys(behind))
+            self._open_ports.remove(port)
+        return self._outputs_behind[port]
+
+    def forget_outputs(self) -> None:
+        """Forget what was followed: sources were added since."""
+        self._outputs_behind.clear()
+
+    def _list_message_outputs(self, target: ElementRef) -> Iterator[str]:
+        for component_id in self._list_members(target):
+            for output in self.outline.outputs[component_id].values():
+                output_type = self._types.get(self.type_of_output(output.id) or "")
+                if not output.physical and flow_of(output_type.message if output_type else None) == "topic":
+                    yield output.id
+
+    def _list_members(self, target: ElementRef) -> list[str]:
+        if target.kind == "component":
+            return [target.id]
+        parents = self.outline.expansion.parents if self.outline.expansion else {}
+        prefix = f"{target.id}."
+        members = [*self.outline.components, *self.outline.shells]
+        return [each for each in members if each.startswith(prefix) and each not in parents]
+
+    def label_output(self, output_id: str) -> Label:
+        """Return where an output is written, as a label of a finding."""
+        return Label(self._resolver.spans["output"][output_id], f"`{output_id}`")

@@ -1,0 +1,212 @@
+"""Write out the short forms of composed components: lists of types, dotted ids, and `to` at an output.
+
+They stand for what is written in one file, so they are gone before slices are merged.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.syntax.yaml_tree import YamlDocument, YamlNode
+
+_LAST_WORD = re.compile(r"[^/]*\Z")
+_WORD_BREAK = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|[^A-Za-z0-9]+")
+_PORT_SIDES = ("inputs", "outputs")
+
+
+def list_components(root: MappingNode) -> Iterator[MappingNode]:
+    """Yield the bodies of all components and component types of a document, outer ones first."""
+    bodies = [entry.value for holder in _list_holders(root) for entry in _list_entries(holder)]
+    while bodies:
+        body = bodies.pop(0)
+        if isinstance(body, MappingNode):
+            yield body
+            bodies += [entry.value for entry in _list_entries(body.get("components"))]
+
+
+def expand_sugar(document: YamlDocument) -> tuple[Diagnostic, ...]:
+    """Replace the short forms of composed components in a validated document, in place."""
+    diagnostics: list[Diagnostic] = []
+    for holder in _list_bodies_with_components(document.root):
+        _expand_components(holder, diagnostics)
+    for holder in _list_bodies_with_components(document.root):
+        _move_targets(holder, diagnostics)
+    return tuple(diagnostics)
+
+
+def name_port_after(type_name: str) -> str:
+    """Return the id of a port that is listed by its type: `laser_pose` for `Laser pose`, `scan/LaserPose`, `LaserPose`."""
+    last = _LAST_WORD.search(type_name.split("<", 1)[0].strip())
+    return "_".join(word.lower() for word in _WORD_BREAK.split(last[0] if last else "") if word)
+
+
+def _list_holders(root: MappingNode) -> Iterator[YamlNode | None]:
+    yield root.get("component_types")
+    for group in _list_entries(root.get("groups")):
+        yield group.value.get("components") if isinstance(group.value, MappingNode) else None
+
+
+def _list_bodies_with_components(root: MappingNode) -> Iterator[MappingNode]:
+    """Yield what may hold components: groups, component types, components. What is replaced on the way is followed."""
+    bodies = [entry.value for section in ("component_types", "groups") for entry in _list_entries(root.get(section))]
+    while bodies:
+        body = bodies.pop(0)
+        if isinstance(body, MappingNode):
+            yield body
+            bodies += [entry.value for entry in _list_entries(body.get("components"))]
+
+
+def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
+    return list(node) if isinstance(node, MappingNode) else []
+
+
+def _expand_components(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
+    for side in _PORT_SIDES:
+        ports = holder.entries.get(side)
+        if ports is not None and isinstance(ports.value, SequenceNode):
+            ports.value = _make_ports(ports.value, diagnostics)
+    components = holder.entries.get("components")
+    if components is None:
+        return
+    if isinstance(components.value, SequenceNode):
+        components.value = _make_instances(components.value, diagnostics)
+    elif isinstance(components.value, MappingNode) and any("." in key for key in components.value.entries):
+        components.value = _nest_dotted_ids(components.value, diagnostics)
+
+
+def _make_ports(listed: SequenceNode, diagnostics: list[Diagnostic]) -> MappingNode:
+    """Return ports of the listed types: `[Laser pose]` is `{laser_pose: {type: Laser pose}}`."""
+    ports = MappingNode({}, listed.span)
+    for item in listed.items:
+        if isinstance(item, ScalarNode):
+            body = MappingNode({"type": MappingEntry("type", item.span, item)}, item.span)
+            _add_entry(ports, MappingEntry(name_port_after(item.text), item.span, body), diagnostics)
+    return ports
+
+
+def _make_instances(listed: SequenceNode, diagnostics: list[Diagnostic]) -> MappingNode:
+    """Return instances of the listed component types: `[lidar]` is `{lidar: {is: lidar}}`."""
+    components = MappingNode({}, listed.span)
+    for item in listed.items:
+        if isinstance(item, ScalarNode):
+            body = MappingNode({"is": MappingEntry("is", item.span, item)}, item.span)
+            name = item.text.split("<", 1)[0].rpartition(".")[2]
+            _add_entry(components, MappingEntry(name, item.span, body), diagnostics)
+    return components
+
+
+def _add_entry(mapping: MappingNode, entry: MappingEntry, diagnostics: list[Diagnostic]) -> None:
+    first_entry = mapping.entries.setdefault(entry.key, entry)
+    if first_entry is not entry:
+        diagnostics.append(
+            diagnose_repetition(
+                "duplicate-key",
+                f"two entries of the list are called `{entry.key}`",
+                entry.key_span,
+                first_entry.key_span,
+                help_line="write a mapping, with an id for each",
+            )
+        )
+
+
+def _nest_dotted_ids(components: MappingNode, diagnostics: list[Diagnostic]) -> MappingNode:
+    """Return components with `arm.motor: ...` written as `arm: {components: {motor: ...}}`, which declares neither."""
+    nested = MappingNode({e.key: e for e in components if "." not in e.key}, components.span)
+    for entry in components:
+        if "." in entry.key:
+            *outer_ids, last = entry.key.split(".")
+            target: MappingNode | None = nested
+            for outer_id in outer_ids:
+                target = _find_inner(target, outer_id, entry) if target is not None else None
+            if target is not None:
+                body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
+                body.declares = False
+                _add_entry(target, MappingEntry(last, entry.key_span, body), diagnostics)
+    return nested
+
+
+def _find_inner(components: MappingNode, outer_id: str, entry: MappingEntry) -> MappingNode | None:
+    """Return the components inside one of these, made if need be."""
+    outer = components.entries.get(outer_id)
+    if outer is None or not isinstance(outer.value, MappingNode):
+        body = MappingNode({}, entry.key_span, declares=False)
+        if outer is not None and isinstance(outer.value, ScalarNode):
+            body.declares = True
+            if outer.value.value is not None:
+                body.entries["title"] = MappingEntry("title", outer.value.span, outer.value)
+        outer = MappingEntry(outer_id, outer.key_span if outer else entry.key_span, body)
+        components.entries[outer_id] = outer
+    body_node = outer.value
+    if not isinstance(body_node, MappingNode):
+        return None
+    inner = body_node.entries.setdefault("components", MappingEntry("components", entry.key_span, MappingNode({}, entry.key_span)))
+    if isinstance(inner.value, ScalarNode):
+        inner.value = MappingNode({}, entry.key_span)
+    elif isinstance(inner.value, SequenceNode):
+        inner.value = _make_instances(inner.value, [])
+    return inner.value if isinstance(inner.value, MappingNode) else None
+
+
+def _move_targets(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
+    """Write the `to` of each output as `from` of the inputs that it names, which stand beside it."""
+    components = holder.get("components")
+    for component in _list_entries(components):
+        outputs = component.value.get("outputs") if isinstance(component.value, MappingNode) else None
+        for output in _list_entries(outputs):
+            target_entry = output.value.entries.pop("to", None) if isinstance(output.value, MappingNode) else None
+            if target_entry is not None and isinstance(components, MappingNode):
+                node = target_entry.value
+                for target in node.items if isinstance(node, SequenceNode) else (node,):
+                    if isinstance(target, ScalarNode) and target.value is not None:
+                        path = f"{component.key}.{output.key}"
+                        source = ScalarNode(path, path, target.span)
+                        _connect_target(components, target, source, diagnostics)
+
+
+def _connect_target(
+    components: MappingNode, target: ScalarNode, source: ScalarNode, diagnostics: list[Diagnostic]
+) -> None:
+    component_id, dot, input_id = target.text.partition(".")
+    component = components.entries.get(component_id)
+    if component is None or not dot or "." in input_id:
+        help_line = did_you_mean(component_id, components.entries) if component is None else None
+        diagnostics.append(
+            Diagnostic(
+                "unknown-reference",
+                f"`to` names an input of a component beside this one, not `{target.text}`",
+                target.span,
+                help=help_line or "write `component.input`, or write `from` at the input",
+            )
+        )
+        return
+    body = _as_mapping(component, "title")
+    inputs_entry = body.entries.setdefault("inputs", MappingEntry("inputs", target.span, MappingNode({}, target.span, declares=False)))
+    inputs = _as_mapping(inputs_entry, None)
+    input_entry = inputs.entries.setdefault(input_id, MappingEntry(input_id, target.span, MappingNode({}, target.span, declares=False)))
+    input_body = _as_mapping(input_entry, "from")
+    from_entry = input_body.entries.setdefault("from", MappingEntry("from", target.span, SequenceNode([], target.span)))
+    if isinstance(from_entry.value, ScalarNode):
+        items: list[YamlNode] = [from_entry.value] if from_entry.value.value is not None else []
+        from_entry.value = SequenceNode(items, from_entry.value.span)
+    if isinstance(from_entry.value, SequenceNode):
+        from_entry.value.items.append(source)
+
+
+def _as_mapping(entry: MappingEntry, short_key: str | None) -> MappingNode:
+    """Return an entry's value as a mapping, with what its short form says at a key."""
+    node = entry.value
+    if isinstance(node, MappingNode):
+        return node
+    is_empty = isinstance(node, ScalarNode) and node.value is None
+    entries = {} if is_empty or short_key is None else {short_key: MappingEntry(short_key, node.span, node)}
+    body = MappingNode(entries, node.span)
+    entry.value = body
+    return body
