@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import field
 from pathlib import Path
 
-from archgen import analyses, findings, link, project, schema, transform
+from archgen import analyses, compose, findings, link, project, schema, transform
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
@@ -42,6 +42,7 @@ ALL_RULES: tuple[Rule, ...] = (
     *interface_files.RULES,
     *schema.RULES,
     *project.RULES,
+    *compose.RULES,
     *link.RULES,
     *analyses.RULES,
     *findings.RULES,

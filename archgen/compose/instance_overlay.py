@@ -5,7 +5,7 @@ Neither tree is changed: what only one of them has is shared, so that a thousand
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
@@ -29,14 +29,17 @@ _JOINED_LISTS = frozenset({"requirements", "tags"})
 """Lists that an instance adds to: it has its type's requirements and tags, and its own."""
 
 
+MayReplace = Callable[[ScalarNode, ScalarNode, str], bool]
+"""Says whether the second type may stand in the place of the first, in a component inside; it reports why not."""
+
+
 class InstanceOverlay:
     """Lays instances over types; what instances name and types do not have goes to `diagnostics`."""
 
-    def __init__(self, diagnostics: list[Diagnostic]) -> None:
-        """Take the list that findings go to."""
+    def __init__(self, diagnostics: list[Diagnostic], may_replace: MayReplace) -> None:
+        """Take the list that findings go to, and what says whether one type may stand in the place of another."""
         self.diagnostics = diagnostics
-        self.replaced_types: list[tuple[ScalarNode, ScalarNode, str]] = []
-        """Types of inner components with those that an instance or a type made from theirs puts in their place."""
+        self._may_replace = may_replace
 
     def lay_over_type(self, base: MappingNode, derived: MappingNode) -> MappingNode:
         """Return a type with another made from it laid over: it may add ports, components and parameters."""
@@ -81,7 +84,7 @@ class InstanceOverlay:
             own = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
             if part_kind == "component":
                 inner_id = f"{instance_id}.{entry.key}" if instance_id else entry.key
-                self._note_replaced_type(body, own, inner_id)
+                own = self._keep_wider_type(body, own, inner_id)
                 # What an inner instance has is not known before its own type is laid under it: it is judged then.
                 is_instance = not {"is", "same_as"}.isdisjoint({*body.entries, *own.entries})
                 value = self._lay_component(body, own, inner_id if instance_id and not is_instance else None)
@@ -90,10 +93,17 @@ class InstanceOverlay:
             entries[entry.key] = MappingEntry(entry.key, below.key_span, value)
         return MappingNode(entries, base.span if base else over.span)
 
-    def _note_replaced_type(self, body: MappingNode, own: MappingNode, inner_id: str) -> None:
+    def _keep_wider_type(self, body: MappingNode, own: MappingNode, inner_id: str) -> MappingNode:
+        """Return what is laid over an inner component, without a type that may not stand in the place of its own."""
         replaced, replacing = body.get("is"), own.get("is")
-        if isinstance(replaced, ScalarNode) and isinstance(replacing, ScalarNode) and replaced.text != replacing.text:
-            self.replaced_types.append((replaced, replacing, inner_id))
+        if (
+            isinstance(replaced, ScalarNode)
+            and isinstance(replacing, ScalarNode)
+            and replaced.text != replacing.text
+            and not self._may_replace(replaced, replacing, inner_id)
+        ):
+            return MappingNode({e.key: e for e in own if e.key != "is"}, own.span)
+        return own
 
 
 def _diagnose_unknown_part(

@@ -14,7 +14,7 @@ from archgen.compose.instance_containers import make_instance_containers
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.reference_limits import find_changes_of_reference
 from archgen.compose.type_expressions import TypeExpression
-from archgen.compose.type_table import TypeTable, diagnose_circle, find_missing_ports, list_generic_names
+from archgen.compose.type_table import TypeTable, diagnose_circle, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
@@ -114,7 +114,7 @@ class _ProjectExpander:
         types = root.get("component_types")
         entries = types.entries if isinstance(types, MappingNode) else {}
         self._types = TypeTable(entries, self._diagnostics)
-        self._overlay = InstanceOverlay(self._diagnostics)
+        self._overlay = InstanceOverlay(self._diagnostics, self._types.may_replace)
         # By the identity of the written node, which the merged tree or a type's body keeps alive.
         self._expansions: dict[int, _Expansion] = {}
         self._open_types: list[str] = []
@@ -158,7 +158,7 @@ class _ProjectExpander:
             )
 
     def _judge_types(self) -> None:
-        """Find what is wrong in types of which there is no instance, and types that replace larger ones."""
+        """Find what is wrong in types of which there is no instance."""
         for name, entry in self._types.entries.items():
             body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
             self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
@@ -166,8 +166,6 @@ class _ProjectExpander:
             for part in _list_components(body):
                 self._expand(part.value, f"{name}.{part.key}")
             self._open_types.pop()
-        for replaced, replacing, component_id in self._overlay.replaced_types:
-            self._diagnostics += find_missing_ports(self._types, replaced, replacing, component_id)
 
     def _expand(self, node: object, component_id: str) -> _Expansion:
         body = node if isinstance(node, MappingNode) else MappingNode({}, self._root.span)
@@ -270,10 +268,25 @@ class _ProjectExpander:
         if not expansion.parts:
             leaves[path] = entry
             return
+        self._report_duplicates(component_id, expansion)
         children = tuple(f"{component_id}.{name}" for name in expansion.parts)
         self._result.shells[component_id] = ComponentShell(component_id, group_id, parent, entry, children)
         for name, (inner_part, inner_expansion) in expansion.parts.items():
             self._flatten_part(group_id, inner_part, inner_expansion, f"{path}.{name}", component_id, leaves)
+
+    def _report_duplicates(self, component_id: str, expansion: _Expansion) -> None:
+        for output in _list_entries(expansion.body.get("outputs")):
+            if output.key in expansion.parts:
+                self._diagnostics.append(
+                    Diagnostic(
+                        "duplicate-port",
+                        f"`{output.key}` is an output of `{component_id}` and a component inside of it",
+                        output.key_span,
+                        labels=(Label(expansion.parts[output.key][0].key_span, "the component"),),
+                        help="call one of the two otherwise",
+                        element=component_id,
+                    )
+                )
 
 
 def _drop_components(body: MappingNode) -> MappingNode:

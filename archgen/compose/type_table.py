@@ -53,6 +53,33 @@ class TypeTable:
             self._bodies[expression] = self._make_body(expression)
         return self._bodies[expression]
 
+    def may_replace(self, replaced: ScalarNode, replacing: ScalarNode, component_id: str) -> bool:
+        """Whether a type may stand in the place of another: it has all of its ports. Reports why not."""
+        old, new = parse_type_expression(replaced.text), self.find_type(replacing, component_id)
+        old_body = self.get_body(old) if old and old.name in self.entries else None
+        new_body = self.get_body(new) if new else None
+        if old is None or old_body is None or new_body is None:
+            return old_body is None
+        missing_ports = [
+            port.key
+            for side in ("inputs", "outputs")
+            for port in _list_entries(old_body.get(side))
+            if port.key not in {entry.key for entry in _list_entries(new_body.get(side))}
+        ]
+        if missing_ports:
+            names = join_words([f"`{port}`" for port in missing_ports])
+            self.diagnostics.append(
+                Diagnostic(
+                    "narrower-type",
+                    f"`{replacing.text}` stands for `{replaced.text}` in `{component_id}`, but has no {names}",
+                    replacing.span,
+                    labels=(Label(self.entries[old.name].key_span, "the type that it replaces"),),
+                    help=f"name a type that is made from `{old.name}`, or has its ports",
+                    element=component_id,
+                )
+            )
+        return not missing_ports
+
     def _make_body(self, expression: TypeExpression) -> MappingNode | None:
         entry = self.entries[expression.name]
         if expression.name in self._open_names:
@@ -70,7 +97,7 @@ class TypeTable:
         base = self.find_type(base_reference, expression.name, is_base=True)
         base_body = self.get_body(base) if base else None
         self._open_names.pop()
-        return InstanceOverlay(self.diagnostics).lay_over_type(base_body, own_body) if base_body else own_body
+        return InstanceOverlay(self.diagnostics, self.may_replace).lay_over_type(base_body, own_body) if base_body else own_body
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():
@@ -109,32 +136,6 @@ def is_abstract(entry: MappingEntry) -> bool:
     """Whether there is no instance of a type."""
     flag = entry.value.get("abstract") if isinstance(entry.value, MappingNode) else None
     return isinstance(flag, ScalarNode) and flag.value is True
-
-
-def find_missing_ports(
-    types: TypeTable, replaced: ScalarNode, replacing: ScalarNode, component_id: str
-) -> Iterator[Diagnostic]:
-    """Report a type in the place of another that lacks one of its ports."""
-    old, new = parse_type_expression(replaced.text), types.find_type(replacing, component_id)
-    old_body = types.get_body(old) if old and old.name in types.entries else None
-    new_body = types.get_body(new) if new else None
-    if old is None or old_body is None or new_body is None:
-        return
-    missing_ports = [
-        port.key
-        for side in ("inputs", "outputs")
-        for port in _list_entries(old_body.get(side))
-        if port.key not in {entry.key for entry in _list_entries(new_body.get(side))}
-    ]
-    if missing_ports:
-        yield Diagnostic(
-            "narrower-type",
-            f"`{replacing.text}` stands for `{replaced.text}` in `{component_id}`, but has no {join_words([f'`{port}`' for port in missing_ports])}",
-            replacing.span,
-            labels=(Label(types.entries[old.name].key_span, "the type that it replaces"),),
-            help=f"name a type that is made from `{old.name}`, or has its ports",
-            element=component_id,
-        )
 
 
 def _list_entries(node: YamlNode | None) -> list[MappingEntry]:

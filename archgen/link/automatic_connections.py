@@ -138,6 +138,7 @@ class _AutomaticConnections:
         elif candidates:
             names = [f"`{each[1]}`" for each in candidates[:_MAX_NAMED]]
             rest = [f"{len(candidates) - _MAX_NAMED} more"] if len(candidates) > _MAX_NAMED else []
+            self._sources.ambiguous_ports.add(port)
             self._resolver.suspect_ids.update(each[1] for each in candidates)
             self._resolver.diagnostics.append(
                 Diagnostic(

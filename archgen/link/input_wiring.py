@@ -83,7 +83,8 @@ class InputWiring:
                 body, "freshness", "duration", component_id, self.resolver.diagnostics
             ),
             description=mapping_values.get_text(body, "description"),
-            from_written=body.get("from") is not None,
+            from_written=body.get("from") is not None
+            or (self.sources is not None and ("input", f"{component_id}.{entry.key}") in self.sources.ambiguous_ports),
             at=entry.key_span,
             type_at=mapping_values.get_span(body, "type"),
             freshness_at=mapping_values.get_span(body, "freshness"),

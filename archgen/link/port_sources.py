@@ -48,6 +48,8 @@ class PortSources:
         self._sources: dict[PortKey, tuple[PortSource, ...]] = {}
         self._outputs_behind: dict[PortKey, tuple[str, ...]] = {}
         self._open_ports: set[PortKey] = set()
+        self.ambiguous_ports: set[PortKey] = set()
+        """Ports that could be joined in several ways, which is reported: no rule calls them unfed besides."""
 
     def list_sources(self, port: PortKey) -> tuple[PortSource, ...]:
         """Return what a port takes its data from, each reference resolved once."""

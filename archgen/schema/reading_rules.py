@@ -164,7 +164,7 @@ Good:
     ),
     _make_fixed_rule(
         "wrong-type",
-        """A value is of another kind than its key takes: a list instead of a mapping, text instead of a number.
+        """A value is of another kind than its key takes: text instead of a mapping, or instead of a number.
 
 Why: a value that was meant otherwise than it is read is worse than none.
 
@@ -174,7 +174,7 @@ Bad:
       sensing:
         components:
           camera:
-            inputs: [light]
+            inputs: light
     nodes: {camera: {implements: sensing.camera}}
 
 Good:

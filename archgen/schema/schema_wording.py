@@ -130,10 +130,10 @@ def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
     if "integer" in types:
         digits = re.match(r"\s*([0-9]+)", text)
         return f"write `{digits[1]}`, without quotes, point or unit" if digits else "write a number without unit"
-    if "array" in types:
-        return f"write `{list_wording.suggest_list(clip_text(text), schema_part)}`"
     if "propertyNames" in schema_part:
         return "write one `id: ...` line for each below it, or `{}` for none"
+    if "array" in types:
+        return f"write `{list_wording.suggest_list(clip_text(text), schema_part)}`"
     if "patternErrorMessage" in schema_part:
         return str(schema_part["patternErrorMessage"])
     return f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None

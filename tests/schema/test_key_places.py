@@ -22,8 +22,7 @@ def _component(text: str) -> str:
     [
         (_component("rate: 10 Hz"), "write it below `timing`: `timing: {rate: ...}`"),
         (_component("accuracy: 3 cm"), "write it below `performance`: `performance: {accuracy: ...}`"),
-        (_component("node: n"), "nodes are written in their own section: `nodes: {NODE: {implements: sensing.lidar}}`"),
-        (_component("package: urg"), "write it as `nodes: {NODE: {implements: sensing.lidar, package: ...}}`"),
+        (_component("package: urg"), "write it below `node`: `node: {package: ...}`"),
         (_component("topic: /a"), "write it as `nodes: {NODE: {implements: sensing.lidar, publishes: {PORT: {topic: ...}}}}`"),
         (_component("outputs: {scan: {topic: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, publishes: {scan: {topic: ...}}}}`"),
         (_component("inputs: {scan: {qos: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, subscribes: {scan: {qos: ...}}}}`"),
@@ -63,7 +62,7 @@ def test_several_keys_of_one_other_kind_are_one_mistake() -> None:
     assert find_mistakes(_component("package: urg, host: pc")) == [
         (
             "1:41 unknown-key: a component has no keys `package` or `host`"
-            " | write it as `nodes: {NODE: {implements: sensing.lidar, package: ...}}`"
+            " | write it below `node`: `node: {package: ...}`"
         )
     ]
     assert len(find_mistakes(_component("package: urg, colour: red"))) == 2

@@ -32,9 +32,8 @@ ID = "an id is lower-case words joined by `_`, such as `object_recognition`, and
         ("grops: {}", "1:1 unknown-key: no section is called `grops` | did you mean `groups`?"),
         ("groups: {g: {titel: x}}", "1:14 unknown-key: a functional group has no key `titel` | did you mean `title`?"),
         ("groups: {g: {components: {c: {name: x}}}}", "1:31 unknown-key: a component has no key `name` | the key above is the id; write the name for people as `title`"),
-        ("groups: {g: {components: {c: {inputs: [a]}}}}", "1:31 wrong-type: `inputs` is a list, but must be a mapping | `inputs` is keyed by id: write `id: ...` lines instead of a list"),
-        ("groups: {g: {components: {c: {inputs: []}}}}", "1:31 wrong-type: `inputs` is a list, but must be a mapping | write `{}` for none"),
-        ("groups: {g: {components: {c: {inputs: rgbd}}}}", "1:39 wrong-type: `inputs` is `rgbd`, but must be a mapping | write one `id: ...` line for each below it, or `{}` for none"),
+        ("groups: {g: {components: {c: {inputs: [a.b]}}}}", "1:40 wrong-value: an entry of `inputs` cannot be `a.b` | a list of ports names types; where an input comes from is written behind its id: `scan: lidar.scan`"),
+        ("groups: {g: {components: {c: {inputs: rgbd}}}}", "1:39 wrong-type: `inputs` is `rgbd`, but must be a mapping or a list | write one `id: ...` line for each below it, or `{}` for none"),
         ("groups: {g: {components: {c: {inputs: {a: {optional: yes}}}}}}", "1:54 wrong-type: `optional` is `yes`, but must be `true` or `false` | write `true`"),
         ("groups: {g: {components: {c: {inputs: {a: {optional: 'true'}}}}}}", "1:54 wrong-type: `optional` is `true` in quotes, which is a text, but must be `true` or `false` | write `true`, without quotes"),
         ("groups: {g: {components: {c: {inputs: {a: {optional: maybe}}}}}}", "1:54 wrong-type: `optional` is `maybe`, but must be `true` or `false` | None"),
@@ -90,7 +89,7 @@ def test_keys_that_look_like_numbers() -> None:
         "1:40 wrong-type: `7` is a list, but must be text or a mapping | its keys are `title`, `cores`, `scheduling`, `description`, `tags`",
         f"1:40 wrong-value: `7` cannot be an id | {ID}",
         "2:24 wrong-value: `1` cannot be `x` | an address begins with `https://`, `http://` or `mailto:` and holds no blank",
-        "2:28 unknown-key: a functional group has no key `0` | its keys are `title`, `description`, `owner`, `tags`, `urls`, `layout`, `components`",
+        "2:28 unknown-key: a functional group has no key `0` | its keys are `title`, `description`, `owner`, `tags`, `urls`, `layout`, `components`, `autoconnect`",
     ]
 
 
