@@ -199,6 +199,25 @@ class Architecture:
         inner_leaves = tuple(leaf for child in shell.children for leaf in self.leaves_of(child))
         return (component_id, *inner_leaves) if component_id in self.components else inner_leaves
 
+    def leaf_ports_of(self, kind: Literal["input", "output"], port_id: str) -> tuple[str, ...]:
+        """Return the ports of leaves behind a port of a composed component; that of a leaf stands for itself."""
+        behind = self.shell_ports.get(f"{kind} {port_id}", ())
+        return tuple(leaf for each in behind for leaf in self.leaf_ports_of(kind, each)) or (port_id,)
+
+    def list_types_of(self, component: Component) -> Iterator[str]:
+        """Yield the component types that a component is an instance of, or is part of: with bindings, without, and bases."""
+        around: Component | None = component
+        while around is not None:
+            type_text = around.component_type
+            while type_text is not None:
+                yield type_text
+                name = type_text.partition("<")[0]
+                if name != type_text:
+                    yield name
+                base = self.component_types.get(name)
+                type_text = base.base if base else None
+            around = self.shells.get(around.parent or "")
+
     def nodes_using(self, resource_id: str) -> Iterator[Node]:
         """Yield the nodes of which an activity uses a resource."""
         return (

@@ -52,6 +52,9 @@ def find_by_key(
     """Return the components and nodes that a key's value selects; `*` in it stands for any characters."""
     if key == "type":
         return SelectorHit(frozenset(_find_by_type(architecture, " ".join(value.split()))), frozenset())
+    if key == "is":
+        components = (c.id for c in architecture.components.values() if _matches_any(value, architecture.list_types_of(c)))
+        return SelectorHit(frozenset(components), frozenset())
     if key == "tag":
         return _find_tagged(architecture, value)
     if key == "finding":
@@ -62,7 +65,7 @@ def find_by_key(
     components = (
         (c.id for c in architecture.components.values() if _matches_any(value, component_values(c)))
         if component_values
-        else ()
+        else iter(())
     )
     nodes = (n.id for n in architecture.nodes.values() if _matches_any(value, node_values(n))) if node_values else ()
     # A node of one partner may implement components of others: `owner:` selects the node without those components.
@@ -138,6 +141,8 @@ def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> 
             components.add(port.component)
         elif element_id in architecture.components:
             components.add(element_id)
+        elif element_id in architecture.shells:
+            components.update(architecture.leaves_of(element_id))
         elif element_id in architecture.groups:
             components.update(c.id for c in architecture.groups[element_id].components.values())
         elif element_id in architecture.nodes:
