@@ -54,7 +54,7 @@ def link_project(  # noqa: PLR0913 - all by name
     components, shells = declared_groups.components, declared_groups.shells
     containers = deployment_declaration.declare_containers(root, resolver)
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(root, element_outline, expansion, written_targets, declared_groups, diagnostics)
+    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, diagnostics)
     implements = implemented.implements
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
@@ -63,7 +63,7 @@ def link_project(  # noqa: PLR0913 - all by name
     requirements = section_declaration.declare_requirements(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
-    chains = section_declaration.declare_chains(root, resolver, implements)
+    chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference

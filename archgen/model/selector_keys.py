@@ -53,7 +53,9 @@ def find_by_key(
     if key == "type":
         return SelectorHit(frozenset(_find_by_type(architecture, " ".join(value.split()))), frozenset())
     if key == "is":
-        components = (c.id for c in architecture.components.values() if _matches_any(value, architecture.list_types_of(c)))
+        components = (
+            c.id for c in architecture.components.values() if _matches_any(value, architecture.list_types_of(c))
+        )
         return SelectorHit(frozenset(components), frozenset())
     if key == "tag":
         return _find_tagged(architecture, value)
@@ -62,10 +64,10 @@ def find_by_key(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
         )
     component_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
-    components = (
+    components: Iterable[str] = (
         (c.id for c in architecture.components.values() if _matches_any(value, component_values(c)))
         if component_values
-        else iter(())
+        else ()
     )
     nodes = (n.id for n in architecture.nodes.values() if _matches_any(value, node_values(n))) if node_values else ()
     # A node of one partner may implement components of others: `owner:` selects the node without those components.

@@ -149,7 +149,11 @@ class _GroupDeclarer:
     def _add_outside(self, output: Output) -> Output:
         """Return an output with the reader outside of the system that a composed component gives it on to."""
         body = self.outside_readers.get(output.id)
-        return replace(output, external=mapping_values.get_text(body, "external")) if body and not output.external else output
+        return (
+            replace(output, external=mapping_values.get_text(body, "external"))
+            if body and not output.external
+            else output
+        )
 
     def _declare_rest(self, shell: ComponentShell, open_shells: OpenShells) -> Component:
         """Declare what is not designed yet of a composed component: the ports that nothing inside carries."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -98,25 +98,13 @@ def _element_title(lookup: Lookup, kind: str, element_id: str) -> str:
 
 def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     """Make the card of one element."""
-    architecture = lookup.architecture
-    if kind == "group":
-        return _group_card(architecture.groups[element_id])
-    if kind == "component":
-        return _component_card(lookup, architecture.components[element_id])
-    if kind == "composed":
-        return _composed_card(lookup, architecture.shells[element_id])
-    if kind == "component type":
-        return _component_type_card(lookup, architecture.component_types[element_id])
-    if kind in {"input", "output"}:
-        return _port_card(lookup, _elements_by_kind(architecture)[kind][element_id])
-    if kind == "node":
-        return _node_card(lookup, architecture.nodes[element_id])
-    if kind == "topic":
-        return _topic_card(lookup, architecture.topics[element_id])
-    return _generic_card(lookup, kind, element_id)
+    make_kind_card = _CARD_MAKERS.get(kind)
+    if make_kind_card is None:
+        return _generic_card(lookup, kind, element_id)
+    return make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
 
 
-def _group_card(group: Group) -> ElementCard:
+def _group_card(_lookup: Lookup, group: Group) -> ElementCard:
     facts = [
         ("owner", ", ".join(group.owners) or "?"),
         ("tags", ", ".join(group.tags)),
@@ -394,3 +382,16 @@ def _format_fact(value: object) -> str:
 def _known_facts(facts: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
     """Drop facts without a value."""
     return tuple((name, value) for name, value in facts if value)
+
+
+_CARD_MAKERS: Mapping[str, Callable[[Lookup, Any], ElementCard]] = {
+    "group": _group_card,
+    "component": _component_card,
+    "composed": _composed_card,
+    "component type": _component_type_card,
+    "input": _port_card,
+    "output": _port_card,
+    "node": _node_card,
+    "topic": _topic_card,
+}
+"""What makes the card of an element; other kinds have a list of fields."""
