@@ -53,10 +53,10 @@ def find_by_key(
     if key == "type":
         return SelectorHit(frozenset(_find_by_type(architecture, " ".join(value.split()))), frozenset())
     if key == "is":
-        components = (
+        instances = (
             c.id for c in architecture.components.values() if _matches_any(value, architecture.list_types_of(c))
         )
-        return SelectorHit(frozenset(components), frozenset())
+        return SelectorHit(frozenset(instances), frozenset())
     if key == "tag":
         return _find_tagged(architecture, value)
     if key == "finding":

@@ -8,9 +8,9 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
+from archgen.model.path_resolver import ElementRef
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
-from archgen.model.path_resolver import ElementRef
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
 _WAYPOINT_KINDS = ("node", "component", "output")

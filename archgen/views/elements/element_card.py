@@ -221,7 +221,11 @@ def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:
 
 def _list_readers(lookup: Lookup, port: Output) -> list[str]:
     """Return who reads an output."""
-    readers = [connection.input for connection in lookup.readers_of.get(port.id, ())]
+    readers = [
+        connection.input
+        for leaf in lookup.architecture.leaf_ports_of("output", port.id)
+        for connection in lookup.readers_of.get(leaf, ())
+    ]
     return readers + ([f"outside: {port.external}"] if port.external else [])
 
 
