@@ -99,11 +99,10 @@ class TypeTable:
         base = self.find_type(base_reference, expression.name, is_base=True)
         base_body = self.get_body(base) if base else None
         self._open_names.pop()
-        return (
-            InstanceOverlay(self.diagnostics, self.may_replace).lay_over_type(base_body, own_body)
-            if base_body
-            else own_body
-        )
+        if base_body is None:
+            return own_body
+        overlay = InstanceOverlay(self.diagnostics, self.may_replace)
+        return overlay.lay_over_type(base_body, own_body, expression.name)
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():

@@ -14,7 +14,7 @@ from archgen.link.declare.component_type_declaration import declare_component_ty
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import declare_types
-from archgen.link.element_outline import ElementOutline, build_outline
+from archgen.link.element_outline import ElementOutline, build_outline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
 from archgen.model.architecture import Architecture
@@ -48,6 +48,7 @@ def link_project(  # noqa: PLR0913 - all by name
     diagnostics: list[Diagnostic] = list(expansion.diagnostics)
     damaged_elements = damaged_elements | expansion.damaged_elements
     element_outline = build_outline(expansion)
+    diagnostics += diagnose_undeclared_inputs(element_outline)
     types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     declared_groups = declare_groups(element_outline, resolver, types)
