@@ -1,6 +1,6 @@
 """All stages in order, from YAML files to findings. Read this module first for an overview of archgen.
 
-project -> syntax -> schema -> link -> model -> transform -> analyses -> findings
+project -> syntax -> schema -> compose -> link -> model -> transform -> analyses -> findings
 
 `archgen.products` goes on from there: views -> emit -> files.
 """
