@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.declare import deployment_declaration, section_declaration
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
-from archgen.link.declare.type_declaration import declare_types
-from archgen.link.element_outline import ElementOutline, build_outline
+from archgen.link.declare.type_declaration import DeclaredTypes
+from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
-from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import MappingNode
 
 
 def link_project(  # noqa: PLR0913 - all by name
     root: MappingNode,
+    element_outline: ElementOutline,
     *,
     default_id: str,
     default_title: str,
-    shipped_types: Mapping[str, ConceptualType],
+    declared_types: DeclaredTypes,
     interfaces: Interfaces,
     lost_keys: frozenset[str] = frozenset(),
     damaged_elements: frozenset[str] = frozenset(),
@@ -40,9 +38,8 @@ def link_project(  # noqa: PLR0913 - all by name
     # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
     # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
     # containers and components. Every step appends to the same list of diagnostics.
-    diagnostics: list[Diagnostic] = []
-    element_outline = build_outline(root)
-    types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
+    diagnostics: list[Diagnostic] = [*declared_types.diagnostics]
+    types = declared_types.types
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     groups, components, connections, edges = declare_groups(element_outline, resolver, types)
     containers = deployment_declaration.declare_containers(root, resolver)

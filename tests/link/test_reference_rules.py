@@ -12,6 +12,10 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "unknown-reference": ("error", True),
         "ambiguous-reference": ("error", True),
         "hidden-reference": ("warning", False),
+        "unknown-field-type": ("error", True),
+        "circular-fields": ("error", True),
+        "conflicting-message": ("error", True),
+        "unbound-generic": ("error", True),
         "missing-chapter": ("error", True),
         "missing-parameter-file": ("warning", False),
     }
