@@ -211,7 +211,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         loaded_project.documents, loaded_project.lost_keys, damaged_elements
     )
     outline = element_outline.build_outline(merged_table)
-    declared_types = _declare_types(loaded_project, merged_table, outline)
+    declared_types = _declare_types(loaded_project, merged_table, outline, damaged_elements)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
         merged_table,
@@ -298,7 +298,10 @@ def _find_silenced(
 
 
 def _declare_types(
-    loaded_project: LoadedProject, merged_table: MappingNode, outline: element_outline.ElementOutline
+    loaded_project: LoadedProject,
+    merged_table: MappingNode,
+    outline: element_outline.ElementOutline,
+    damaged_elements: frozenset[str],
 ) -> type_declaration.DeclaredTypes:
     """Return the types: those of the project, and those that ship and are used."""
     distro = guess_distro(loaded_project.distro)
@@ -307,6 +310,7 @@ def _declare_types(
         shipped_types.load_shipped_types(distro),
         distro,
         loaded_project.lost_keys,
+        damaged_elements,
         loaded_project.partial,
     )
     return type_declaration.declare_types(merged_table, outline, sources)

@@ -27,7 +27,8 @@ def _spans_by_type(architecture: Architecture) -> dict[str, list[Span]]:
     # What a field holds is sent, too.
     for type_ in architecture.types.values():
         for _, field in type_.list_fields():
-            if type_.at != NO_SPAN and field.element_type in architecture.types:
+            is_parameter = field.element_type in type_.generic
+            if type_.at != NO_SPAN and not is_parameter and field.element_type in architecture.types:
                 spans_by_type.setdefault(field.element_type, []).append(field.type_at)
     return spans_by_type
 
@@ -130,7 +131,7 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     used_types = {port.type for port in _all_ports(architecture)}
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
-        used_types |= {field.element_type for _, field in type_.list_fields()}
+        used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)
     used_types |= set(_list_arguments(used_types))
     # An unused mapping beside a used type without one is most likely a misspelt name.
     unmapped_names = {name for name in used_types if name and not _is_mapped(architecture, name)}

@@ -117,15 +117,13 @@ def _find_conflict(
     if name not in shipped.names and name not in spans:
         return None
     labels = (Label(spans[name], "its definition"),) if name in spans else ()
-    place = "" if name in spans else ", which is a message of ROS"
+    is_own = name in spans
     return Diagnostic(
         CONFLICTING_MESSAGE,
-        f"the type `{type_name}` defines `{name}`{place} once more",
+        f"the type `{type_name}` defines `{name}` once more{'' if is_own else ', which is a message of ROS'}",
         type_definition.span,
         labels=labels,
-        help="take the fields away: it is known as it is"
-        if not place
-        else "name a message of your own: `message: my_msgs/msg/Name`",
+        help="keep one of them" if is_own else "name a message of your own: `message: my_msgs/msg/Name`",
         element=type_name,
     )
 

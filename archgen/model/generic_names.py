@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 MAX_NAME_LENGTH = 200
 """The length of a type's name: generic types in generic types end here."""
+_MAX_READ_LENGTH = 2 * MAX_NAME_LENGTH
 _MARK = re.compile(r"<=[0-9]+|[<>,]")
 """What divides a name; the bound of a text (`string<=10`) does not."""
 
@@ -25,9 +26,10 @@ class GenericName(NamedTuple):
 
 @lru_cache(4096)
 def read_generic_name(name: str) -> GenericName:
-    """Return the parts of a name; a name whose brackets do not close is plain."""
+    """Return the parts of a name; a name whose brackets do not close is plain, and so is one that nobody can read."""
     start = name.find("<")
-    if start < 1 or not name.endswith(">"):
+    # Each level of brackets is read once more with the level around it.
+    if start < 1 or not name.endswith(">") or len(name) > _MAX_READ_LENGTH:
         return GenericName(name)
     cuts, depth = [start], 0
     for mark in _MARK.finditer(name, start):

@@ -13,7 +13,7 @@ from archgen.model.quantity import Quantity
 
 _FULL_NAME = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)/(msg|srv|action)/([A-Z][A-Za-z0-9_]*)\Z", re.ASCII)
 _SHORT_NAME = re.compile(r"([a-z][a-z0-9_]*)/([A-Z][A-Za-z0-9_]*)\Z", re.ASCII)
-
+_BRACKETS = re.compile(r"(?:\[[^\[\]]*\])+\Z")
 
 PART_KEYS = ("request", "response", "feedback")
 """The keys of a service's or action's type that name a type or hold fields, in the order of a definition."""
@@ -35,14 +35,13 @@ class DataField:
     @property
     def element_type(self) -> str:
         """The type without the brackets of an array; empty while it is not known."""
-        text = self.type or ""
-        return text.rpartition("[")[0].rstrip() if text.endswith("]") else text
+        return (self.type or "").removesuffix(self.array).rstrip()
 
     @property
     def array(self) -> str:
         """The brackets of an array as written; empty for a single value."""
-        text = self.type or ""
-        return "".join(text.rpartition("[")[1:]) if text.endswith("]") else ""
+        brackets = _BRACKETS.search(self.type or "")
+        return brackets[0] if brackets else ""
 
     @property
     def meaning(self) -> str:

@@ -24,6 +24,8 @@ class TypeReading(NamedTuple):
     name: str
     ros1: bool
     diagnostics: list[Diagnostic]
+    is_damaged: bool = False
+    """Whether something in the type could not be read: that is reported, and may be what seems to be missing."""
 
     def report(self, rule: str, message: str, span: Span, help_line: str | None = None) -> None:
         """Report what is wrong with the type."""
@@ -40,8 +42,14 @@ class TypeContent(TypedDict):
     generic: tuple[str, ...]
 
 
+_CONTENT_KEYS = frozenset({"fields", "constants", "values", "generic", *PART_KEYS})
+
+
 def read_content(body: MappingNode, reading: TypeReading) -> TypeContent:
     """Return what a type says of its message. What ROS would refuse is reported and left out."""
+    # Nearly every type is only mapped to a message.
+    if _CONTENT_KEYS.isdisjoint(body.entries):
+        return {"fields": None, "constants": (), "values": (), "part_fields": {}, "generic": ()}
     fields = _read_fields(body, "fields", reading)
     parts = {key: part for key in PART_KEYS if (part := _read_fields(body, key, reading)) is not None}
     values = tuple(_read_names(body, "values", reading))
@@ -81,7 +89,7 @@ def _read_fields(body: MappingNode, key: str, reading: TypeReading) -> tuple[Dat
 def _read_field(entry: MappingEntry, reading: TypeReading) -> DataField:
     body = mapping_values.get_body(entry)
     type_text = mapping_values.get_text(body, "type")
-    if not type_text:
+    if not type_text and not reading.is_damaged:
         help_line = f"write what it holds: `{entry.key}: float64`"
         reading.report("missing-key", f"the field `{entry.key}` lacks `type`", entry.key_span, help_line)
     default = body.get("default")
@@ -142,6 +150,8 @@ def _read_constant(entry: MappingEntry, reading: TypeReading) -> Iterator[DataCo
     body = mapping_values.get_body(entry)
     type_node, value_node = (mapping_values.get_scalar(body, key) for key in ("type", "value"))
     if type_node is None or value_node is None:
+        if reading.is_damaged:
+            return
         missing_key = "value" if type_node else "type"
         help_line = f"write both: `{entry.key}: {{type: uint8, value: 3}}`"
         reading.report("missing-key", f"the constant `{entry.key}` lacks `{missing_key}`", entry.key_span, help_line)

@@ -20,6 +20,7 @@ _ROS_WORDS = {True: frozenset({"time", "duration", "Header"}), False: frozenset(
 """Types that ROS 1 (True) and ROS 2 know beside those that have literals."""
 _PLACEHOLDER = "std_msgs/Empty"
 """A message that stands for one that is not known yet, where only the brackets behind it are judged."""
+_MAX_GUESSES = 1_000
 _NO_GUESS_HELP = "declare it below `types`, or write a type of ROS or a message: `float64`, `geometry_msgs/msg/Point`"
 
 
@@ -30,6 +31,7 @@ class TypeSources(NamedTuple):
     shipped_types: Mapping[str, ConceptualType]
     distro: str | None = None
     lost_keys: frozenset[str] = frozenset()
+    damaged_elements: frozenset[str] = frozenset()
     is_partial: bool = False
 
 
@@ -40,6 +42,7 @@ class FieldTypeReader:
         self.ros1 = is_ros_1(sources.distro)
         self._types = types
         self._sources = sources
+        self._guess_count = 0
 
     def read_type(self, field: DataField, holder: ConceptualType) -> FieldType | TypeComplaint | None:
         """Return what a field holds, or what is wrong with it; None where nobody knows it.
@@ -96,6 +99,10 @@ class FieldTypeReader:
         base, arguments = read_generic_name(name)
         if arguments and base in self._types:
             return f"`{base}` is no generic type: write `{base}`"
+        # A guess compares a name with all others: of a hostile project's unknown names not each gets one.
+        self._guess_count += 1
+        if self._guess_count > _MAX_GUESSES:
+            return _NO_GUESS_HELP
         ros_types = list_literal_types(ros1=self.ros1)
         guess = did_you_mean(name, {*ros_types, *parameters, *self._types, *self._sources.shipped_types})
         return guess or self._suggest_message(name) or _NO_GUESS_HELP

@@ -20,6 +20,8 @@ from archgen.syntax.interface_types import FieldType, TypeComplaint
 
 _PART_KEYS_BY_KIND = {"srv": PART_KEYS[:2], "action": PART_KEYS}
 _LIMITS = (("uint8", 2**8), ("uint16", 2**16))
+MAX_TAKEN_FIELDS = 20_000
+"""Fields that services and actions may take from the types that they name: each may take the same ones."""
 VALUE_FIELD = "value"
 """The field of an enumeration's message, which holds one of its constants."""
 
@@ -51,6 +53,7 @@ class DefinitionMaker:
         self._types = types
         self._type_reader = type_reader
         self._diagnostics = diagnostics
+        self._taken_count = 0
 
     def make_definition(self, conceptual_type: ConceptualType, span: Span) -> TypeDefinition:
         """Return the definition of the message that a type is."""
@@ -97,6 +100,14 @@ class DefinitionMaker:
             field_name = "_".join(inner_name.lower().split())
             help_line = f"write them: `{key}: {{{clip_text(field_name)}: {inner_name}}}`"
             self._report(text, conceptual_type.at, help_line, conceptual_type)
+            return _Part(())
+        self._taken_count += len(inner_type.fields)
+        if self._taken_count > MAX_TAKEN_FIELDS:
+            text = f"`{conceptual_type.name}` and others take more than {MAX_TAKEN_FIELDS:,} fields from the types they name"
+            help_line = "name one field that holds the type: no service needs so many"
+            self._diagnostics.append(
+                Diagnostic("too-large", text, conceptual_type.at, help=help_line, element=conceptual_type.name)
+            )
             return _Part(())
         return self._make_message_part(inner_type)
 

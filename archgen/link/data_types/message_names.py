@@ -26,6 +26,9 @@ def name_messages(
     """
     first_types, defining_types = dict[str, ConceptualType](), list[str]()
     for name, conceptual_type in types.items():
+        if conceptual_type.generic and conceptual_type.message:
+            diagnostics.append(_diagnose_generic_message(conceptual_type))
+            types[name] = replace(conceptual_type, message=None)
         if not defines_message(conceptual_type, types):
             continue
         kind = find_message_kind(conceptual_type)
@@ -77,6 +80,16 @@ def _list_words(types: Mapping[str, ConceptualType], type_name: str) -> Iterator
         base, arguments = read_generic_name(name) if is_bound_name(name, types) else (name, ())
         yield from (word[:1].upper() + word[1:] for word in _WORD.findall(base.rpartition("/")[2]))
         pending_names += reversed(arguments)
+
+
+def _diagnose_generic_message(generic_type: ConceptualType) -> Diagnostic:
+    name, span = generic_type.name, first_written_span(generic_type.message_at, generic_type.at)
+    bound_name = f"{name}<{', '.join(generic_type.generic)}>"
+    help_line = (
+        f"leave `message` out; what is made of it has its own: `{bound_name}: {{message: {generic_type.message}}}`"
+    )
+    text = f"`{name}` is generic, which is no single message"
+    return Diagnostic(CONFLICTING_MESSAGE, text, span, help=help_line, element=name)
 
 
 _KIND_PHRASES = {"msg": "fields of a message", "srv": "parts of a service", "action": "parts of an action"}

@@ -10,7 +10,7 @@ from archgen.link.data_types.generic_types import is_bound_name, list_held_names
 from archgen.model.generic_names import MAX_NAME_LENGTH, read_generic_name
 from archgen.model.message_types import PART_KEYS, ConceptualType, full_message_name
 
-MAX_MADE_FIELDS = 100_000
+MAX_MADE_FIELDS = 20_000
 """Fields that a project may make of its generic types: each generic type in another one may double them."""
 
 
@@ -102,19 +102,19 @@ class _TypeAdder:
                 pending_names += _list_inner_names(added_type, pending.first_name, self._types)
 
     def _make_bound_type(self, pending: _PendingName) -> ConceptualType | None:
-        bound_type = make_bound_type(pending.name, self._types)
-        if bound_type is None:
-            # As unbound as the generic type itself: that is reported, and that it has no message follows.
-            return ConceptualType(pending.name, generic=self._types[read_generic_name(pending.name).base].generic)
-        self._made_count += 1 + sum(1 for _ in bound_type.list_fields())
+        generic_type = self._types[read_generic_name(pending.name).base]
+        # Counted before they are made.
+        self._made_count += 1 + sum(map(len, (generic_type.fields or (), *generic_type.part_fields.values())))
         if len(pending.name) > MAX_NAME_LENGTH:
             reason = f"makes types with names of more than {MAX_NAME_LENGTH} characters"
         elif self._made_count > MAX_MADE_FIELDS:
             reason = f"and other generic types make more than {MAX_MADE_FIELDS:,} fields"
         else:
-            return bound_type
+            # As unbound as the generic type itself: that is reported, and that it has no message follows.
+            unbound_type = ConceptualType(pending.name, generic=generic_type.generic)
+            return make_bound_type(pending.name, self._types) or unbound_type
         self.oversized_types.append(OversizedType(pending.first_name, reason))
-        return None
+        return ConceptualType(pending.name, generic=generic_type.generic)
 
     def _make_plain_type(self, pending: _PendingName) -> ConceptualType | None:
         message, shipped_type = full_message_name(pending.name), self._shipped_types.get(pending.name)

@@ -37,7 +37,7 @@ class DeclaredTypes:
 def declare_types(root: MappingNode, outline: ElementOutline, sources: TypeSources) -> DeclaredTypes:
     """Return every type that is declared or used, by name; the project's own declaration wins."""
     diagnostics = list[Diagnostic]()
-    types = _declare_own_types(root, diagnostics, ros1=is_ros_1(sources.distro))
+    types = _declare_own_types(root, sources, diagnostics)
     if not any(each.has_content or each.generic for each in types.values()):
         # Nearly every project: its ports need not be looked at one by one.
         add_used_types(types, outline.list_used_types(), sources.shipped_types)
@@ -56,10 +56,14 @@ def declare_types(root: MappingNode, outline: ElementOutline, sources: TypeSourc
     )
 
 
-def _declare_own_types(root: MappingNode, diagnostics: list[Diagnostic], *, ros1: bool) -> dict[str, ConceptualType]:
-    types: dict[str, ConceptualType] = {}
+def _declare_own_types(
+    root: MappingNode, sources: TypeSources, diagnostics: list[Diagnostic]
+) -> dict[str, ConceptualType]:
+    types, ros1 = dict[str, ConceptualType](), is_ros_1(sources.distro)
     for _, entry, body in mapping_values.iterate_elements(root, "types"):
-        declared_type = _declare_type(entry, body, diagnostics, ros1=ros1)
+        name = mapping_values.normalise_type_name(entry.key)
+        reading = TypeReading(name, ros1, diagnostics, is_damaged=entry.key in sources.damaged_elements)
+        declared_type = _declare_type(entry, body, reading)
         earlier_type = types.setdefault(declared_type.name, declared_type)
         if earlier_type is not declared_type:
             diagnostics.append(_diagnose_duplicate_type(declared_type, earlier_type))
@@ -139,15 +143,12 @@ def _sort_types(types: dict[str, ConceptualType]) -> dict[str, ConceptualType]:
     return {listed_type.name: listed_type for listed_type in (*project_types, *other_types)}
 
 
-def _declare_type(
-    entry: MappingEntry, body: MappingNode, diagnostics: list[Diagnostic], *, ros1: bool
-) -> ConceptualType:
-    name = mapping_values.normalise_type_name(entry.key)
+def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading) -> ConceptualType:
     status = mapping_values.get_text(body, "status")
-    content = read_content(body, TypeReading(name, ros1, diagnostics))
+    content = read_content(body, reading)
     return ConceptualType(
-        name=name,
-        message=mapping_values.get_message(body) or full_message_name(name),
+        name=reading.name,
+        message=mapping_values.get_message(body) or full_message_name(reading.name),
         comment=mapping_values.get_text(body, "comment"),
         size=mapping_values.get_quantity(body, "size", "size"),
         status=status if status in {"existing", "planned"} else None,  # type: ignore[arg-type]
