@@ -84,10 +84,8 @@ def _list_words(types: Mapping[str, ConceptualType], type_name: str) -> Iterator
 
 def _diagnose_generic_message(generic_type: ConceptualType) -> Diagnostic:
     name, span = generic_type.name, first_written_span(generic_type.message_at, generic_type.at)
-    bound_name = f"{name}<{', '.join(generic_type.generic)}>"
-    help_line = (
-        f"leave `message` out; what is made of it has its own: `{bound_name}: {{message: {generic_type.message}}}`"
-    )
+    bound_name = f"{name}<{', '.join(['Pose'] * len(generic_type.generic))}>"
+    help_line = f"leave it out; what is made of it may have one: `{bound_name}: {{message: {generic_type.message}}}`"
     text = f"`{name}` is generic, which is no single message"
     return Diagnostic(CONFLICTING_MESSAGE, text, span, help=help_line, element=name)
 
