@@ -108,7 +108,7 @@ def test_a_generic_type_says_what_changed_in_it(compared: Compared) -> None:
         "type `Box`: field `when` set to `Place`",
     ]
     comparison = compared(
-        ROBOT, ROBOT.replace("[T], fields", "[S, T], fields").replace("Box<Robot", "Box<Place, Robot")
+        ROBOT, ROBOT.replace("[T], fields", "[S, T], fields").replace("Box<Robot pose>", '"Box<Place, Robot pose>"')
     )
     assert "type `Box`: type parameters `S` added" in [change.text for change in comparison.changes]
 

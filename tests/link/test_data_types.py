@@ -11,7 +11,6 @@ from archgen import pipeline
 from archgen.link.data_types import field_reading, generic_types, message_definitions, message_names, used_types
 from archgen.link.data_types.circular_fields import drop_circular_fields
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
-from archgen.model.generic_names import read_generic_name, write_generic_name
 from archgen.model.known_interfaces import Interface
 from archgen.model.message_types import ConceptualType, DataField
 from archgen.pipeline import CheckedProject
@@ -296,25 +295,6 @@ def test_packing_keeps_fields_where_they_are_and_makes_no_definitions_of_them(ch
 def test_types_that_multiply_have_a_limit(checked: Checked, types: str, output: str, message: str) -> None:
     findings = [finding for finding in checked(project(types, output)).findings if finding.severity == "error"]
     assert message in [finding.message for finding in findings if finding.rule == "too-large"]
-
-
-@pytest.mark.parametrize(
-    ("name", "base", "arguments", "written"),
-    [
-        ("Envelope< Pose,Twist >", "Envelope", ("Pose", "Twist"), "Envelope<Pose, Twist>"),
-        ("A<B<C>, string<=10>", "A", ("B<C>", "string<=10"), "A<B<C>, string<=10>"),
-        ("a < b", "a < b", (), "a < b"),
-        ("A<>", "A<>", (), "A<>"),
-        ("A<B>>", "A<B>>", (), "A<B>>"),
-        ("A<B><C>", "A<B><C>", (), "A<B><C>"),
-        ("A<B>[]", "A<B>[]", (), "A<B>[]"),
-        ("<A>", "<A>", (), "<A>"),
-        ("A<" * 300 + ">" * 300, "A<" * 300 + ">" * 300, (), "A<" * 300 + ">" * 300),
-    ],
-)
-def test_names_of_generic_types(name: str, base: str, arguments: tuple[str, ...], written: str) -> None:
-    assert read_generic_name(name) == (base, arguments)
-    assert write_generic_name(name) == written
 
 
 def test_only_generic_types_are_bound() -> None:
