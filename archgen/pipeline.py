@@ -27,6 +27,7 @@ from archgen.findings import (
 )
 from archgen.frozen import dataclass
 from archgen.link import (
+    element_outline,
     interface_sources,
     parameter_files,
     report_chapters,
@@ -34,6 +35,9 @@ from archgen.link import (
     slice_merging,
     title_guesses,
 )
+from archgen.link.data_types.field_types import TypeSources
+from archgen.link.declare import section_declaration, type_declaration
+from archgen.link.interface_sources import TypeMessages
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
@@ -214,12 +218,16 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     merged_table, merge_findings = slice_merging.merge_documents(
         loaded_project.documents, loaded_project.lost_keys, damaged_elements
     )
-    known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table)
+    expansion = compose.expand_project(merged_table)
+    outline = element_outline.build_outline(expansion)
+    declared_types = _declare_types(loaded_project, merged_table, outline, damaged_elements)
+    known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
-        merged_table,
+        expansion,
+        outline,
         default_id=loaded_project.id,
         default_title=loaded_project.title,
-        shipped_types=shipped_types.load_shipped_types(guess_distro(loaded_project.distro)),
+        declared_types=declared_types,
         interfaces=known_interfaces,
         lost_keys=loaded_project.lost_keys,
         damaged_elements=damaged_elements,
@@ -307,17 +315,39 @@ def _find_silenced(
     return tuple(finding for finding in all_findings if finding not in shown_findings)
 
 
+def _declare_types(
+    loaded_project: LoadedProject,
+    merged_table: MappingNode,
+    outline: element_outline.ElementOutline,
+    damaged_elements: frozenset[str],
+) -> type_declaration.DeclaredTypes:
+    """Return the types: those of the project, and those that ship and are used."""
+    distro = guess_distro(loaded_project.distro)
+    sources = TypeSources(
+        section_declaration.declare_project(merged_table, loaded_project.id, loaded_project.title).id,
+        shipped_types.load_shipped_types(distro),
+        distro,
+        loaded_project.lost_keys,
+        damaged_elements,
+        loaded_project.partial,
+    )
+    return type_declaration.declare_types(merged_table, outline, sources)
+
+
 def _load_interfaces(
-    loaded_project: LoadedProject, merged_table: MappingNode
+    loaded_project: LoadedProject, merged_table: MappingNode, declared_types: type_declaration.DeclaredTypes
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
-    """Read the project's own interface definitions (files, and `ros.definitions`), which override the shipped ones."""
+    """Read the project's own interface definitions, which override the shipped ones: files, `ros.definitions`, types."""
     texts, diagnostics = read_interface_files(loaded_project)
     ros_section = merged_table.get("ros")
     inline_table = ros_section.get("definitions") if isinstance(ros_section, MappingNode) else None
     entries = inline_table if isinstance(inline_table, MappingNode) else ()
     inline_definitions = {e.key: (e.value.text, e.value.span) for e in entries if isinstance(e.value, ScalarNode)}
     known_interfaces, load_diagnostics = interface_sources.load_interfaces(
-        guess_distro(loaded_project.distro), tuple(texts.items()), inline_definitions
+        guess_distro(loaded_project.distro),
+        tuple(texts.items()),
+        inline_definitions,
+        TypeMessages(declared_types.definitions, declared_types.message_mentions),
     )
     return known_interfaces, (*diagnostics, *load_diagnostics)
 

@@ -8,15 +8,14 @@ from pathlib import Path
 import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.link.project_linking import link_project
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
-from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.transform import transform_architecture
 from tests import property_sizes
+from tests.linking import link_table
 from tests.running import RAMCIP, REVISION, archgen, made_once
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
@@ -31,9 +30,7 @@ def _link(text: str) -> tuple[Architecture, tuple[Diagnostic, ...]]:
     assert document is not None, found
     assert (validate_document(document), normalise_document(document)) == ((), ())
     table, _ = merge_documents([document])
-    return link_project(
-        table, default_id="robot", default_title="Robot", shipped_types=SHIPPED, interfaces=Interfaces("jazzy")
-    )
+    return link_table(table, "robot", SHIPPED)
 
 
 @pytest.fixture

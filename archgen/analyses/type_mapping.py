@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
+from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import ConceptualType
 
 
@@ -23,6 +24,12 @@ def _spans_by_type(architecture: Architecture) -> dict[str, list[Span]]:
     for port in _all_ports(architecture):
         if port.type is not None and not port.physical:
             spans_by_type.setdefault(port.type, []).append(port.type_at if port.type_at != NO_SPAN else port.at)
+    # What a field holds is sent, too.
+    for type_ in architecture.types.values():
+        for _, field in type_.list_fields():
+            is_parameter = field.element_type in type_.generic
+            if type_.at != NO_SPAN and not is_parameter and field.element_type in architecture.types:
+                spans_by_type.setdefault(field.element_type, []).append(field.type_at)
     return spans_by_type
 
 
@@ -58,7 +65,8 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     for name, spans in _spans_by_type(architecture).items():
         type_ = architecture.types.get(name)
-        if type_ is None or type_.message is None:
+        # Why a type with fields has no message, or one that is not bound, is reported with the type.
+        if type_ is None or (type_.message is None and not type_.has_content and not type_.generic):
             meant_message = architecture.interfaces.read_message(name)
             yield Diagnostic(
                 "unmapped-type",
@@ -88,7 +96,7 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     """Nothing has a type that the project declares.
 
     Why: the mapping is written for nobody: the port that had this type was renamed or taken away, or the name differs in a
-    letter. Types that stand in another one's `request`, `response` or `feedback` are used.
+    letter. Types that stand in another one's `request`, `response` or `feedback`, or in its fields, are used.
 
     Bad:
 
@@ -123,6 +131,8 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     used_types = {port.type for port in _all_ports(architecture)}
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
+        used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)
+    used_types |= set(_list_arguments(used_types))
     # An unused mapping beside a used type without one is most likely a misspelt name.
     unmapped_names = {name for name in used_types if name and not _is_mapped(architecture, name)}
     for type_ in architecture.types.values():
@@ -134,6 +144,16 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
                 help=did_you_mean(type_.name, unmapped_names),
                 element=type_.name,
             )
+
+
+def _list_arguments(names: Iterable[str | None]) -> Iterator[str]:
+    """Yield what names of generic types name: `List`, `Pair<A, B>`, `Pair`, `A` and `B` for `List<Pair<A, B>>`."""
+    pending_names = [name for name in names if name]
+    while pending_names:
+        base, arguments = read_generic_name(pending_names.pop())
+        if arguments:
+            yield from (base, *arguments)
+            pending_names += arguments
 
 
 def _is_mapped(architecture: Architecture, name: str) -> bool:

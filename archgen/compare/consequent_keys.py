@@ -49,6 +49,8 @@ def _follows_by_kind(
                 if key in {"inputs", "outputs"}
                 else _follows_mapping(key, old_element, new_element)
             )
+        case "type":
+            return key.startswith("fields.") and _follows_definition(key, old_element, new_element, before, after)
         case "node":
             # A node may move into a container on the same host: "host" vanishes from its values, but it runs where it
             # ran.
@@ -60,6 +62,23 @@ def _follows_by_kind(
             )
     is_unnamed = new_element.kind == "project" and key in {"id", "title"} and None in {old_value, new_value}
     return is_unnamed or key == "carried" or (key == "chapters" and _only_chapters_differ(old_value, new_value))
+
+
+def _follows_definition(
+    key: str, old_element: ComparedElement, new_element: ComparedElement, before: ElementsByKey, after: ElementsByKey
+) -> bool:
+    """Whether the definition of a type's message says itself that a field came, went or holds something else."""
+    field_name = key.rpartition(".")[2]
+    old_lines, new_lines = (
+        _list_field_lines(field_name, elements.get(("message", str(element.values.get("message")))))
+        for element, elements in ((old_element, before), (new_element, after))
+    )
+    return old_lines != new_lines
+
+
+def _list_field_lines(field_name: str, message: ComparedElement | None) -> list[str]:
+    lines = message.values.get("fields") if message else None
+    return [line for line in lines if line.endswith(f" {field_name}")] if isinstance(lines, tuple) else []
 
 
 def _is_same_title(

@@ -15,6 +15,7 @@ _MAX_LENGTH = 80
 _NAMED_SECTIONS = {
     "parameters": "parameter",
     "constants": "constant",
+    "fields": "field",
     "defaults": "default of",
     "comments": "what is said of",
     "callback_groups": "callback group",

@@ -127,32 +127,6 @@ Good:
     nodes: {left: {implements: left}, screen: {implements: screen}}
 """
 
-UNBOUND_GENERIC = """A generic component type is used without saying for which types its names stand, or with too many or too few.
-
-Why: `generic: [T]` makes `T` stand for a conceptual type that each instance names: `filter<Robot pose>`.
-
-Bad:
-    component_types:
-      filter: {generic: [T], inputs: {raw: T}, outputs: {clean: T}}
-    groups:
-      perception:
-        components:
-          lidar: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-          smooth: {is: filter, inputs: {raw: lidar.scan}}
-    nodes: {lidar: {implements: lidar}, smooth: {implements: smooth}}
-
-Good:
-    component_types:
-      filter: {generic: [T], inputs: {raw: T}, outputs: {clean: T}}
-    groups:
-      perception:
-        components:
-          lidar: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-          smooth: {is: filter<sensor_msgs/msg/LaserScan>, inputs: {raw: lidar.scan}}
-          stop: {inputs: {scan: smooth.clean}}
-    nodes: {lidar: {implements: lidar}, smooth: {implements: smooth}, stop: {implements: stop}}
-"""
-
 NARROWER_TYPE = """A type that stands in the place of another has fewer ports.
 
 Why: An instance, or a type made from a type, may say of a component inside that it is of another type. What is around it is connected
@@ -219,7 +193,6 @@ RULES: tuple[Rule, ...] = (
     Rule("changed-reference", Severity.ERROR, CHANGED_REFERENCE, fixed=True),
     Rule("circular-types", Severity.ERROR, CIRCULAR_TYPES, fixed=True),
     Rule("abstract-type", Severity.ERROR, ABSTRACT_TYPE, fixed=True),
-    Rule("unbound-generic", Severity.ERROR, UNBOUND_GENERIC, fixed=True),
     Rule("narrower-type", Severity.ERROR, NARROWER_TYPE, fixed=True),
     Rule("too-many-elements", Severity.ERROR, TOO_MANY_ELEMENTS, fixed=True),
 )

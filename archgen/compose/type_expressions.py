@@ -1,13 +1,14 @@
-"""Names of types with what generic ones stand for: `filter<Pose>`, `Envelope<Pair<Pose, Twist>>`."""
+"""Names of types with what generic ones stand for: `filter<Pose>`, `pair<Pose, Envelope<Twist>>`."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from functools import lru_cache
 from typing import NamedTuple
 
-MAX_TYPE_LENGTH = 1000
+from archgen.model.generic_names import MAX_NAME_LENGTH, read_generic_name
+
+MAX_TYPE_LENGTH = 2 * MAX_NAME_LENGTH
 """So many letters the name of a bound type may have: a generic type that holds itself twice doubles it each time."""
 _WORD = re.compile(r"[^<>,]+")
 
@@ -23,31 +24,12 @@ class TypeExpression(NamedTuple):
         return f"{self.name}<{', '.join(self.arguments)}>" if self.arguments else self.name
 
 
-@lru_cache(1024)
 def parse_type_expression(text: str) -> TypeExpression | None:
     """Return the parts of `name<A, B<C>>`; None if its brackets do not match or something is missing."""
-    name, bracket, rest = text.strip().partition("<")
-    if not bracket:
-        return TypeExpression(name.strip(), ()) if ">" not in name and name.strip() else None
-    if not rest.endswith(">"):
+    generic_name = read_generic_name(text.strip())
+    if not generic_name.base or not {"<", ">"}.isdisjoint(generic_name.base):
         return None
-    arguments = _split_arguments(rest[:-1])
-    if not name.strip() or not arguments or not all(arguments):
-        return None
-    return TypeExpression(name.strip(), arguments)
-
-
-def _split_arguments(text: str) -> tuple[str, ...] | None:
-    """Return the parts between commas that stand in no further brackets; None if brackets do not match."""
-    parts, depth, start = [], 0, 0
-    for position, letter in enumerate(text):
-        depth += (letter == "<") - (letter == ">")
-        if depth < 0:
-            return None
-        if letter == "," and depth == 0:
-            parts.append(text[start:position].strip())
-            start = position + 1
-    return None if depth else (*parts, text[start:].strip())
+    return TypeExpression(generic_name.base, generic_name.arguments)
 
 
 def bind_type_name(text: str, bindings: Mapping[str, str]) -> str:

@@ -29,6 +29,12 @@ class TypeTable:
 
     def find_type(self, reference: ScalarNode, element_id: str, *, is_base: bool = False) -> TypeExpression | None:
         """Return what the name of a type means; None, and a diagnostic, if there is none of it."""
+        if len(reference.text) > MAX_TYPE_LENGTH:
+            message = (
+                f"the name of this type has {len(reference.text):,} letters; a type that holds itself grows for ever"
+            )
+            self.diagnostics.append(Diagnostic("too-large", message, reference.span, element=element_id))
+            return None
         expression = parse_type_expression(reference.text)
         entry = self.entries.get(expression.name) if expression else None
         if expression is None or entry is None:
@@ -40,12 +46,6 @@ class TypeTable:
             return None
         if not is_base and is_abstract(entry):
             self.diagnostics.append(_diagnose_abstract(reference, entry, self._list_derived(entry.key), element_id))
-            return None
-        if len(reference.text) > MAX_TYPE_LENGTH:
-            message = (
-                f"the name of this type has {len(reference.text):,} letters; a type that holds itself grows for ever"
-            )
-            self.diagnostics.append(Diagnostic("too-large", message, reference.span, element=element_id))
             return None
         return expression
 

@@ -10,11 +10,17 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.link.data_types.field_types import UNKNOWN_FIELD_TYPE
+from archgen.link.data_types.generic_types import TypeMention
+from archgen.link.data_types.message_definitions import TypeDefinition
+from archgen.link.data_types.message_names import CONFLICTING_MESSAGE
 from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distros, load_shipped_interfaces
+from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface, Interfaces
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.interface_definitions import INVALID_INTERFACE, InterfaceDefinition, parse_definition
@@ -26,19 +32,32 @@ _FULL_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Za-z][A-Za
 _ROS2_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*\Z", re.ASCII)
 
 
+class TypeMessages(NamedTuple):
+    """The messages that types of the project define by their fields, and the messages that these fields name."""
+
+    definitions: tuple[TypeDefinition, ...] = ()
+    mentions: tuple[TypeMention, ...] = ()
+
+
+NO_TYPE_MESSAGES = TypeMessages()
+
+
 def load_interfaces(
     distro: str | None,
     definition_files: Sequence[tuple[str, str]] = (),
     inline_definitions: Mapping[str, tuple[str, Span]] | None = None,
+    type_messages: TypeMessages = NO_TYPE_MESSAGES,
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
     """Return the interfaces known for a distribution, and what is wrong with the project's own definitions.
 
     `definition_files` are pairs of path and text; `inline_definitions` are those of `ros: {definitions: ...}` by full
     name, each with the span of its text.
     """
-    if not definition_files and not inline_definitions:
+    if not definition_files and not inline_definitions and type_messages == NO_TYPE_MESSAGES:
         return load_shipped_interfaces(distro), ()
-    return _load_own_definitions(distro, tuple(definition_files), tuple((inline_definitions or {}).items()))
+    return _load_own_definitions(
+        distro, tuple(definition_files), tuple((inline_definitions or {}).items()), type_messages
+    )
 
 
 @lru_cache(4)
@@ -46,6 +65,7 @@ def _load_own_definitions(
     distro: str | None,
     definition_files: tuple[tuple[str, str], ...],
     inline_definitions: tuple[tuple[str, tuple[str, Span]], ...],
+    type_messages: TypeMessages,
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
     """Lay the project's own definitions over what ships; cached, because most revisions of a project share them."""
     # The arguments are tuples, not a list and a dict, to be hashable for the cache.
@@ -64,14 +84,48 @@ def _load_own_definitions(
             continue
         own_definitions[name], spans[name] = definition, span
         diagnostics += definition.diagnostics
+    file_definitions = dict(own_definitions)
+    for type_definition in type_messages.definitions:
+        conflict = _find_conflict(type_definition, shipped, spans, ros1=is_ros1)
+        if conflict is None:
+            name = type_definition.definition.interface.name
+            own_definitions[name] = type_definition.definition
+        # What the types of its request and response say describes a service; its definition is where it is.
+        elif not type_definition.is_implied:
+            diagnostics.append(conflict)
     interfaces = _merge_interfaces(
         shipped, {name: definition.interface for name, definition in own_definitions.items()}
     )
     # Only after all are merged: a definition may name a message that a later one defines.
-    for definition in own_definitions.values():
-        diagnostics += _find_unknown_fields(definition, interfaces)
-    diagnostics += _find_self_containing(own_definitions)
+    for definition in file_definitions.values():
+        for message, span in definition.references:
+            diagnostics += _find_unknown_field(TypeMention(message, span, ""), interfaces)
+    for mention in type_messages.mentions:
+        diagnostics += _find_unknown_field(mention, interfaces)
+    diagnostics += _find_self_containing(file_definitions, own_definitions)
     return interfaces, tuple(diagnostics)
+
+
+def _find_conflict(
+    type_definition: TypeDefinition, shipped: Interfaces, spans: Mapping[str, Span], *, ros1: bool
+) -> Diagnostic | None:
+    """Return why a type does not define its message: there is one already, or it is none in ROS 2."""
+    name, type_name = type_definition.definition.interface.name, type_definition.type_name
+    name_problems = list[Diagnostic]()
+    if not _check_name(name, type_definition.span, name_problems, ros1=ros1):
+        return replace(name_problems[0], element=type_name)
+    if name not in shipped.names and name not in spans:
+        return None
+    labels = (Label(spans[name], "its definition"),) if name in spans else ()
+    is_own = name in spans
+    return Diagnostic(
+        CONFLICTING_MESSAGE,
+        f"the type `{type_name}` defines `{name}` once more{'' if is_own else ', which is a message of ROS'}",
+        type_definition.span,
+        labels=labels,
+        help="keep one of them" if is_own else "name a message of your own: `message: my_msgs/msg/Name`",
+        element=type_name,
+    )
 
 
 def interface_name_of(file: str) -> str | None:
@@ -130,44 +184,46 @@ def _move_spans(definition: InterfaceDefinition, span: Span) -> InterfaceDefinit
     return InterfaceDefinition(definition.interface, tuple(references), tuple(moved_diagnostics))
 
 
-def _find_unknown_fields(definition: InterfaceDefinition, interfaces: Interfaces) -> Iterator[Diagnostic]:
-    """Report fields whose message certainly does not exist (an error), or looks like a misspelt one (a note)."""
-    for message, span in definition.references:
-        answer = interfaces.status_of(message)
-        if answer == "known":
-            continue
-        guess = interfaces.find_nearest(message)
-        help_line = f"did you mean `{_short_message_name(guess)}`?" if guess and "/msg/" in guess else None
-        if answer == "wrong":
-            yield Diagnostic(INVALID_INTERFACE, f"there is no message `{message}`", span, help=help_line)
-        # The package is unknown or known only in part, so the message may well exist. A note is worth it only if a
-        # package of nearly the same name has it: `geometry_msg/Pose` is most likely a slip.
-        elif (
-            guess and help_line and interfaces.has_names and find_closest(message.split("/")[0], [guess.split("/")[0]])
-        ):
-            yield Diagnostic("unchecked-message", f"archgen holds no message `{message}`", span, help=help_line)
+def _find_unknown_field(mention: TypeMention, interfaces: Interfaces) -> Iterator[Diagnostic]:
+    """Report a field whose message certainly does not exist (an error), or looks like a misspelt one (a note).
+
+    The mention is that of a type, or without an element that of a definition.
+    """
+    message, span, element = mention.name, mention.span, mention.element or None
+    answer = interfaces.status_of(message)
+    if answer == "known":
+        return
+    guess = interfaces.find_nearest(message)
+    help_line = f"did you mean `{_short_message_name(guess)}`?" if guess and "/msg/" in guess else None
+    if answer == "wrong":
+        rule = UNKNOWN_FIELD_TYPE if element else INVALID_INTERFACE
+        yield Diagnostic(rule, f"there is no message `{message}`", span, help=help_line, element=element)
+    # The package is unknown or known only in part, so the message may well exist. A note is worth it only if a
+    # package of nearly the same name has it: `geometry_msg/Pose` is most likely a slip.
+    elif guess and help_line and interfaces.has_names and find_closest(message.split("/")[0], [guess.split("/")[0]]):
+        text = f"archgen holds no message `{message}`"
+        yield Diagnostic("unchecked-message", text, span, help=help_line, element=element)
 
 
-def _find_self_containing(own_definitions: Mapping[str, InterfaceDefinition]) -> Iterator[Diagnostic]:
-    """Report fields through which a message of the project contains itself: ROS refuses such messages."""
-    for name, definition in own_definitions.items():
+def _find_self_containing(
+    file_definitions: Mapping[str, InterfaceDefinition], own_definitions: Mapping[str, InterfaceDefinition]
+) -> Iterator[Diagnostic]:
+    """Report fields through which a message of the project contains itself: ROS refuses such messages.
+
+    Circles of types alone are found before there are definitions of them.
+    """
+    held_messages = {
+        name: [message for message, _ in definition.references if message in own_definitions]
+        for name, definition in own_definitions.items()
+    }
+    ring_numbers = {name: number for number, ring in enumerate(find_rings(held_messages)) for name in ring}
+    for name, definition in file_definitions.items():
         for message, span in definition.references:
-            if name in _list_inner_messages(message, own_definitions):
+            if name in ring_numbers and ring_numbers.get(message) == ring_numbers[name]:
                 detour = "" if message == name else f", through `{message}`"
                 yield Diagnostic(
                     INVALID_INTERFACE, f"`{name}` holds itself{detour}", span, help="name it by an id or an index"
                 )
-
-
-def _list_inner_messages(name: str, own_definitions: Mapping[str, InterfaceDefinition]) -> set[str]:
-    """Return a message and all messages of the project that it contains, directly or not."""
-    inner_messages, pending_messages = set[str](), [name]
-    while pending_messages:
-        message = pending_messages.pop()
-        if message not in inner_messages and message in own_definitions:
-            inner_messages.add(message)
-            pending_messages += (inner for inner, _ in own_definitions[message].references)
-    return inner_messages
 
 
 def _short_message_name(message: str) -> str:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from archgen.compose import expand_project
+from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
@@ -13,22 +11,22 @@ from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
-from archgen.link.declare.type_declaration import declare_types
-from archgen.link.element_outline import ElementOutline, build_outline, diagnose_undeclared_inputs
+from archgen.link.declare.type_declaration import DeclaredTypes
+from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
-from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import MappingNode
 
 
 def link_project(  # noqa: PLR0913 - all by name
-    root: MappingNode,
+    expansion: ExpandedProject,
+    element_outline: ElementOutline,
     *,
     default_id: str,
     default_title: str,
-    shipped_types: Mapping[str, ConceptualType],
+    declared_types: DeclaredTypes,
     interfaces: Interfaces,
     lost_keys: frozenset[str] = frozenset(),
     damaged_elements: frozenset[str] = frozenset(),
@@ -43,13 +41,11 @@ def link_project(  # noqa: PLR0913 - all by name
     # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
     # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
     # containers and components. Every step appends to the same list of diagnostics.
-    expansion = expand_project(root)
     root = expansion.root
-    diagnostics: list[Diagnostic] = list(expansion.diagnostics)
-    damaged_elements = damaged_elements | expansion.damaged_elements
-    element_outline = build_outline(expansion)
+    diagnostics: list[Diagnostic] = [*expansion.diagnostics, *declared_types.diagnostics]
     diagnostics += diagnose_undeclared_inputs(element_outline)
-    types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
+    damaged_elements = damaged_elements | expansion.damaged_elements
+    types = declared_types.types
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     declared_groups = declare_groups(element_outline, resolver, types)
     components, shells = declared_groups.components, declared_groups.shells

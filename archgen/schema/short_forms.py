@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
 from archgen.schema import component_sugar
+from archgen.model.generic_names import write_generic_name
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
@@ -71,6 +72,14 @@ _NODE_FORM = ElementForm(
 )
 # One latency is both the best and the worst: a constant.
 _LINK_FORM = ElementForm(("connects",), frozenset({"connects"}), part_forms={"latency": ElementForm(("best", "worst"))})
+_FIELD_FORM = ElementForm(("type",))
+_TYPE_FORM = ElementForm(
+    ("message",),
+    keyed_forms={
+        **dict.fromkeys(("fields", "request", "response", "feedback"), _FIELD_FORM),
+        "constants": _PLAIN_FORM,
+    },
+)
 _ROOT_FORM = ElementForm(
     keyed_forms={
         "partners": _TITLED_FORM,
@@ -79,7 +88,7 @@ _ROOT_FORM = ElementForm(
         "component_types": _COMPONENT_TYPE_FORM,
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
         "nodes": _NODE_FORM,
-        "types": ElementForm(("message",)),
+        "types": _TYPE_FORM,
         "hosts": _TITLED_FORM,
         "containers": _CONTAINER_FORM,
         "resources": ElementForm(("host",)),
@@ -121,13 +130,13 @@ def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:
 
 
 def fold_type_name(name: str) -> str:
-    """Return a type's name as it is compared: runs of blanks folded to one, in Unicode's composed form (NFC)."""
+    """Return a type's name as it is compared: runs of blanks folded to one, in Unicode's composed form (NFC).
+
+    `Envelope< Pose,Twist >` is `Envelope<Pose, Twist>`.
+    """
     # Nearly every name is plain ASCII without double blanks and needs no work.
-    return name if name.isascii() and "  " not in name and name == name.strip() else _fold_name(name)
-
-
-def _fold_name(name: str) -> str:
-    return unicodedata.normalize("NFC", " ".join(name.split()))
+    is_folded = name.isascii() and "  " not in name and "<" not in name and name == name.strip()
+    return name if is_folded else write_generic_name(unicodedata.normalize("NFC", " ".join(name.split())))
 
 
 def _normalise_element(node: YamlNode, form: ElementForm) -> MappingNode:

@@ -25,9 +25,9 @@ RULES = (
         Severity.ERROR,
         """A definition of a message, a service or an action that ROS would refuse.
 
-Why: archgen reads the project's own `.msg`, `.srv` and `.action` files (`ros: {interfaces: [...]}`) to know which
-messages exist and what is in them. A definition with a mistake builds nowhere; here it is shown before anybody tries.
-The grammar is that of ROS 1 where the distribution is noetic, and that of ROS 2 everywhere else.
+Why: archgen reads the project's own `.msg`, `.srv` and `.action` files (`ros: {interfaces: [...]}`), and the `fields` of
+its types, to know which messages exist and what is in them. A definition with a mistake builds nowhere; here it is shown
+before anybody tries. The grammar is that of ROS 1 where the distribution is noetic, and that of ROS 2 everywhere else.
 
 Bad:
 
@@ -133,9 +133,9 @@ class _DefinitionReader:
 
     def check_name(self, kind: str, name: str, span: Span) -> bool:
         """Check the name of a field or a constant; False, and a diagnostic, if it is malformed or already taken."""
-        pattern = (_ROS1_NAMES if self.ros1 else _ROS2_NAMES)[kind]
-        if not pattern.match(name):
-            self.add_diagnostic(f"`{name}` is no name of a {kind}", span, _NAME_HELP[kind, self.ros1])
+        help_line = explain_bad_name(kind, name, ros1=self.ros1)
+        if help_line:
+            self.add_diagnostic(f"`{name}` is no name of a {kind}", span, help_line)
             return False
         first_span = self.name_spans.setdefault((kind, name), span)
         if first_span is not span:
@@ -147,6 +147,12 @@ class _DefinitionReader:
         self, message: str, span: Span, help_line: str | None = None, labels: tuple[Label, ...] = ()
     ) -> None:
         self.diagnostics.append(Diagnostic(INVALID_INTERFACE, message, span, labels=labels, help=help_line))
+
+
+def explain_bad_name(kind: str, name: str, *, ros1: bool) -> str | None:
+    """Return how ROS writes the name of a `field` or a `constant`; None for a name that it takes."""
+    pattern = (_ROS1_NAMES if ros1 else _ROS2_NAMES)[kind]
+    return None if pattern.match(name) else _NAME_HELP[kind, ros1]
 
 
 def parse_definition(text: str, name: str, file: str, *, ros1: bool) -> InterfaceDefinition:

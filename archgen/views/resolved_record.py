@@ -11,12 +11,12 @@ from dataclasses import asdict
 from archgen.model.architecture import Architecture, Chain, Requirement
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Host, Link
-from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.views.lookup import Lookup
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
 from archgen.views.shapes import Record
 from archgen.views.timing_record import record_timing
+from archgen.views.type_record import record_type
 
 RECORD_VERSION = 1
 """Version of the format, written as `archgen_resolved`."""
@@ -51,7 +51,7 @@ def make_record(lookup: Lookup) -> Record:
         ],
         "nodes": {node.id: _record_node(lookup, node) for node in lookup.shown_nodes()},
         "topics": _record_topics(lookup),
-        "types": {t.name: _record_type(t) for t in architecture.types.values()},
+        "types": {t.name: record_type(t, architecture.interfaces) for t in architecture.types.values()},
         "hosts": {host.id: _record_host(host) for host in architecture.hosts.values()},
         "containers": {
             c.id: pick_fields(c, "title", "host", "threads", "scheduling") for c in architecture.containers.values()
@@ -107,11 +107,6 @@ def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:
     component_ids = [component.id for component in lookup.shown_components(group.id)]
     fields = pick_fields(group, "title", "description", "owner", "co_owners", "tags")
     return fields | drop_unknown({"components": component_ids, "urls": dict(group.urls)})
-
-
-def _record_type(conceptual_type: ConceptualType) -> dict[str, object]:
-    keys = ("message", "comment", "status", "request", "response", "feedback")
-    return pick_fields(conceptual_type, *keys) | drop_unknown({"size": record_quantity(conceptual_type.size, "B")})
 
 
 def _record_host(host: Host) -> dict[str, object]:

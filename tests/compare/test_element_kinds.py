@@ -100,6 +100,7 @@ SCHEMA_ONLY = {
     "input from": "the kind `connection`",
     **dict.fromkeys(("node publishes", "node subscribes", "node serves", "node calls"), "the kind `port`"),
     "node internal": "the kind `port`",
+    **dict.fromkeys(("type constants", "type values"), "the kind `message`"),
 }
 TABLE_ONLY_FOR_SCHEMA = {
     **dict.fromkeys(("group co_owners", "component co_owners", "node co_owners"), "the rest of the list `owner`"),
@@ -123,6 +124,7 @@ MODEL_ONLY = {
     **{f"{kind} id": "the key of the element" for kind in SECTIONS if kind != "type"},
     "type name": "the key of the element",
     "type origin": "where it is declared",
+    **dict.fromkeys(("type constants", "type values", "type part_fields"), "the kind `message`"),
     **dict.fromkeys(("component name", "input name", "output name"), "the last part of the id"),
     **dict.fromkeys(("component group", "input component", "output component"), "the beginning of the id"),
     "group components": "elements of their own",
@@ -163,6 +165,7 @@ RECORD_ONLY = {
     "component group": "the beginning of the id",
     "component nodes": "the key `implements` of nodes",
     **dict.fromkeys(("input id", "output id"), "the key of the element"),
+    **dict.fromkeys(("type constants", "type values", "type part_fields"), "the kind `message`"),
     **dict.fromkeys(("input sources", "output readers"), "the kind `connection`"),
     "output message": "that of the type",
     "node full_name": "made of name and namespace",
@@ -229,7 +232,13 @@ groups:
 component_types:
   drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
-types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}, S: {request: T, response: T, feedback: T}}
+types:
+  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}
+  S: {request: T, response: T, feedback: T}
+  F: {fields: {x: {type: float64, default: 0.5, unit: m, comment: C}, y: {type: "int8[]", default: [1, 2]}, t: T}, constants: {A: {type: int8, value: 1, comment: C}}}
+  V: {values: [ON, OFF]}
+  G: {generic: [P], fields: {p: P}}
+  Q: {request: {x: float64}, response: {f: F}, feedback: {}}
 nodes:
   n:
     implements: a
@@ -419,7 +428,7 @@ def test_no_key_is_listed_twice() -> None:
                 "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
-                "component timing.wcet.measured, node timing.wcet.p99"
+                "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99"
             ),
         ),
         (

@@ -8,10 +8,9 @@ from fractions import Fraction
 import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.link.project_linking import link_project
 from archgen.model.architecture import Architecture
-from archgen.model.known_interfaces import Interfaces
 from archgen.syntax import yaml_parser
+from tests.linking import link_table
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 
@@ -20,9 +19,7 @@ def link_unchecked(text: str) -> Architecture:
     """Link a text that the schema has not seen: what it refuses must not get into the model either."""
     document, _ = yaml_parser.parse_yaml("a.yaml", text)
     assert document is not None
-    architecture, _ = link_project(
-        document.root, default_id="r", default_title="R", shipped_types={}, interfaces=Interfaces("jazzy")
-    )
+    architecture, _ = link_table(document.root)
     return architecture
 
 

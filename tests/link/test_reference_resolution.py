@@ -9,14 +9,13 @@ import pytest
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import input_wiring
-from archgen.link.project_linking import link_project
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.architecture import Architecture
-from archgen.model.known_interfaces import Interfaces
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import ScalarNode
+from tests.linking import link_table
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 Told = Callable[[str], list[str]]
@@ -172,15 +171,7 @@ def test_what_a_file_that_could_not_be_read_may_declare_is_not_called_unknown() 
     document, _ = yaml_parser.parse_yaml("a.yaml", ROBOT % "radar")
     assert document is not None
     assert (validate_document(document), normalise_document(document)) == ((), ())
-    root = document.root
-    architecture, found = link_project(
-        root,
-        default_id="r",
-        default_title="R",
-        shipped_types={},
-        interfaces=Interfaces(),
-        lost_keys=frozenset({"radar"}),
-    )
+    architecture, found = link_table(document.root, lost_keys=frozenset({"radar"}))
     assert found == ()
     assert (architecture.unread_keys, architecture.partial) == (frozenset({"radar"}), False)
 

@@ -18,6 +18,10 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "several-sources": ("warning", False),
         "unused-node": ("note", False),
         "duplicate-port": ("error", True),
+        "unknown-field-type": ("error", True),
+        "circular-fields": ("error", True),
+        "conflicting-message": ("error", True),
+        "unbound-generic": ("error", True),
         "missing-chapter": ("error", True),
         "missing-parameter-file": ("warning", False),
     }

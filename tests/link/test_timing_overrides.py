@@ -7,15 +7,14 @@ from pathlib import Path
 import pytest
 
 from archgen.link.override_values import OverrideError
-from archgen.link.project_linking import link_project
 from archgen.link.timing_overrides import TimingOverride, apply_overrides, read_override
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Trigger
-from archgen.model.known_interfaces import Interfaces
 from archgen.model.quantity import parse_quantity
 from archgen.pipeline import check_project
 from archgen.schema import normalise_document
 from archgen.syntax import yaml_parser
+from tests.linking import link_table
 
 PROJECT = """
 groups:
@@ -144,9 +143,7 @@ def judged(text: str) -> Architecture:
     document, _ = yaml_parser.parse_yaml("a.yaml", text)
     assert document is not None
     normalise_document(document)
-    return link_project(
-        document.root, default_id="r", default_title="R", shipped_types={}, interfaces=Interfaces("jazzy")
-    )[0]
+    return link_table(document.root)[0]
 
 
 @pytest.mark.parametrize(

@@ -10,13 +10,12 @@ import json
 import random
 from dataclasses import dataclass, field
 
-from archgen.link.project_linking import link_project
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
-from archgen.model.known_interfaces import Interfaces
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.transform import transform_architecture
+from tests.linking import link_table
 from tests.timing.random_places import Places, Tree
 
 PERIODS = (2, 4, 5, 8, 10, 10, 12, 20, 20, 25, 40, 50)
@@ -29,9 +28,7 @@ def architecture(text: str) -> Architecture:
     assert document is not None, found
     assert (validate_document(document), normalise_document(document)) == ((), ()), text
     table, _ = merge_documents([document])
-    linked, problems = link_project(
-        table, default_id="r", default_title="R", shipped_types={}, interfaces=Interfaces("jazzy")
-    )
+    linked, problems = link_table(table)
     assert not problems, (problems, text)
     return transform_architecture(linked)
 

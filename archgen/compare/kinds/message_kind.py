@@ -10,21 +10,30 @@ from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.shared_keys import mark_values
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 
 _Named = TypeVar("_Named", InterfaceField, InterfaceConstant)
 
 
 class ProjectMessage(NamedTuple):
-    """An interface of one of the project's packages; its definition is None if only its name is known."""
+    """An interface of one of the project's packages; its definition is None if only its name is known.
+
+    `at` is the type that defines it by its fields; the place of a file's definition is not known here.
+    """
 
     name: str
     definition: Interface | None
+    at: Span = NO_SPAN
 
 
 def _list_messages(version: ArchitectureVersion) -> Mapping[str, ProjectMessage]:
     definitions = version.architecture.interfaces.definitions
-    return {name: ProjectMessage(name, definitions.get(name)) for name in project_messages(version.architecture)}
+    type_spans = {each.message: each.at for each in version.architecture.types.values() if each.has_content}
+    return {
+        name: ProjectMessage(name, definitions.get(name), type_spans.get(name, NO_SPAN))
+        for name in project_messages(version.architecture)
+    }
 
 
 def _read_fields(message: ProjectMessage, _context: ReadContext) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""What is written for ROS: conceptual types, message definitions, nodes, and what nodes say of their ports."""
+"""What is written for ROS: conceptual types and message definitions (in modules of their own), nodes and their ports."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import NamedTuple
 
-from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.element_likeness import letter_pairs
-from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.message_kind import MESSAGE
 from archgen.compare.kinds.shared_keys import (
@@ -22,73 +19,18 @@ from archgen.compare.kinds.shared_keys import (
     URLS,
     key_values,
     mark_values,
-    prose_key,
     read_owner,
     text_feature,
     timing_key,
 )
+from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import parameter_leaves, unordered_values
-from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node, PortUse, Qos
 from archgen.transform import ros_names
 
 _DEFAULT_QOS = Qos()
 _QOS_NAMES = tuple(each.name for each in fields(Qos) if each.name not in {"profile", "written", "at"})
 """What counts of `qos`: a profile is only another way of writing the rest."""
-
-
-def _inner_type_key(name: str) -> KeySpec:
-    return KeySpec(name, lambda each, context: context.common_id("type", getattr(each, name)), refers_to="type")
-
-
-def _is_own_type(conceptual_type: ConceptualType) -> bool:
-    return conceptual_type.origin == "project" and bool(conceptual_type.at.file)
-
-
-def _list_types(version: ArchitectureVersion) -> Mapping[str, ConceptualType]:
-    return {
-        name: conceptual_type
-        for name, conceptual_type in version.architecture.types.items()
-        if conceptual_type.origin != "message" or conceptual_type.at.file
-    }
-
-
-def _mark_ports(relations: ElementRelations, conceptual_type: ConceptualType) -> frozenset[str]:
-    ports = relations.users_by_element[f"type:{conceptual_type.name}"]
-    return relations.common_ids("output", ports) | relations.common_ids("input", ports)
-
-
-TYPE = KindSpec(
-    "type",
-    "Types",
-    (
-        KeySpec(
-            "message",
-            lambda each, context: context.common_id("message", each.message),
-            worsening=Worsening.ALWAYS,
-            refers_to="message",
-            verb="is",
-            new_verb="is",
-        ),
-        prose_key("comment"),
-        KeySpec("size", worsening=Worsening.MORE),
-        # Defaults count as not written: writing them out is no change.
-        KeySpec("status", lambda each, _: None if each.status == "existing" else each.status, Effect.SYSTEM, verb="is"),
-        _inner_type_key("request"),
-        _inner_type_key("response"),
-        _inner_type_key("feedback"),
-    ),
-    elements=_list_types,
-    features=(
-        FeatureSpec("name", 2, lambda _, each: letter_pairs(each.name)),
-        FeatureSpec("message", 3, lambda _, each: mark_values(each.message)),
-        FeatureSpec("users", 5, _mark_ports),
-        text_feature(1, "comment"),
-        FeatureSpec("size", 1, lambda _, each: mark_values(each.size)),
-        FeatureSpec("inside", 2, lambda _, each: mark_values(each.request, each.response, each.feedback)),
-    ),
-    is_declared=_is_own_type,
-)
 
 
 def _read_co_owners(node: Node, context: ReadContext) -> frozenset[str]:

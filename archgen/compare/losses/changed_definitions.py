@@ -117,6 +117,23 @@ def find_redefined_messages(context: ChangeContext) -> Iterator[PartnerLoss]:
             partners = users.partners_using_type(change.element_id)
             reason_text = f"changes the {change.key} of {tick_name(change.element_id)}, which {{}}"
             yield from context.losses_of_users([index], partners, reason_text, "uses")
+        elif change.element_kind == "type" and (change.key or "").startswith("fields."):
+            yield from _find_retyped_field(context, users, index, change)
+
+
+def _find_retyped_field(
+    context: ChangeContext, users: MessageUsers, index: int, change: Change
+) -> Iterator[PartnerLoss]:
+    """Find the users of a field that holds another conceptual type with the same message: other bytes are told above."""
+    message = context.after.types[change.element_id].message
+    if message is not None and change.before is not None and change.after is not None:
+        partners = users.partners_using_message(message)
+        field_name = tick_name((change.key or "").removeprefix("fields."))
+        reason_text = (
+            f"puts {tick_name(change.after)} instead of {tick_name(change.before)} into {field_name} of "
+            f"{tick_name(change.element_id)}; {{}} it"
+        )
+        yield from context.losses_of_users([index], partners, reason_text, "uses", "meaning")
 
 
 def _redefinition_reason(context: ChangeContext, change: Change, message_name: str) -> str:

@@ -27,6 +27,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "component_type_name": ("component_types",),
     "container": ("hosts",),
     "container.host": ("hosts",),
+    "field": ("types",),
+    "field_type": ("types",),
     "forbid.from": ("selectors",),
     "forbid.to": ("selectors",),
     "group_components": ("implemented",),
@@ -34,6 +36,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "input.from": ("sources",),
     "link": ("hosts",),
     "link.connects": ("hosts",),
+    "message_part": ("types",),
     "node": ("implemented",),
     "node.container": ("containers",),
     "node.host": ("hosts",),
@@ -79,8 +82,9 @@ _SECTIONS = (
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 
-_QUANTITIES = frozenset(
+_OFFERED_EXAMPLES = frozenset(
     {"bandwidth", "duration", "frequency", "size", "percentage", "latency", "execution_time", "timing_use"}
+    | {"constant_type", "field_type"}
 )
 """Definitions whose examples are offered: they show the form, and mean no element of another project."""
 
@@ -127,7 +131,7 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
         _offer_keys(definitions[section], names[section])
     _offer_keys(definitions["timing_uses"], names["resources"])
     for part in list(_walk_parts(schema)):
-        _explain_part(part, keeps_examples=any(part is definitions[name] for name in _QUANTITIES))
+        _explain_part(part, keeps_examples=any(part is definitions[name] for name in _OFFERED_EXAMPLES))
         if part is not schema:
             _allow_empty(part)
     for kind in sorted({kind for kinds in _OFFERS.values() for kind in kinds} - _LISTED_KINDS):
@@ -220,7 +224,7 @@ def _explain_part(part: SchemaPart, *, keeps_examples: bool) -> None:
         part["defaultSnippets"] = part.pop("offers")
     if "description" not in part:
         return
-    if part.get("$ref", "").rpartition("/")[2] in _QUANTITIES:
+    if part.get("$ref", "").rpartition("/")[2] in _OFFERED_EXAMPLES:
         examples = []
     blocks = [f"```yaml\n{_write_example(example)}\n```" for example in examples if example not in ({}, [])]
     part["markdownDescription"] = "\n\n".join((part["description"], *(f"Example:\n\n{block}" for block in blocks)))

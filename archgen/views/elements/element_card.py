@@ -13,6 +13,7 @@ from archgen.model.node import Node, Topic
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state, name_chain
+from archgen.views.tables.type_fields import list_field_lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,6 +335,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     ]
     lists: list[tuple[str, tuple[str, ...]]] = []
     if kind == "type":
+        facts += [("values", _format_fact(element.values)), ("generic", _format_fact(element.generic))]
+        field_lines = tuple(list_field_lines(element))
+        lists += [("fields", field_lines)] if field_lines else []
         lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
     elif kind == "requirement":
         serving_components = lookup.components_for_requirement.get(element_id, ())

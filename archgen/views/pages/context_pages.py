@@ -30,7 +30,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
 )
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import architecture_tables, type_fields
 from archgen.views.timing import element_timing
 from archgen.views.timing.host_waterfall import make_host_waterfall
 
@@ -200,6 +200,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
     # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
     architecture = lookup.architecture
+    blocks += type_fields.make_field_tables(architecture, conceptual_type)
     producing_outputs = lookup.outputs_of_type.get(conceptual_type.name, ())
     if producing_outputs:
         blocks += [

@@ -131,6 +131,9 @@ class MessagePages:
         package = message.split("/", maxsplit=1)[0]
         if self._definition_of(message) is None:
             return (Text("not at hand: give the package's files below ros.interfaces to see its fields", muted=True),)
+        defining_types = [each for each in self._types_of(message) if each.has_content]
+        if defining_types:
+            return (Text("by the fields of the type "), *inline_text.type_link(defining_types[0].name))
         if package in interfaces.project_packages:
             return (Text("in the project's own files"),)
         return (Text(f"as ROS {(interfaces.distro or '').capitalize()}".rstrip() + " has it"),)

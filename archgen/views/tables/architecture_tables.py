@@ -12,12 +12,14 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity
 from archgen.model.architecture import Chain, Requirement
 from archgen.model.component import Connection
 from archgen.model.deployment import Link
+from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
 from archgen.views import element_references, inline_text, requirement_servers
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text
+from archgen.views.tables import type_fields
 
 _SEVERITY_STATES: Mapping[Severity, Status] = {
     Severity.ERROR: "error",
@@ -100,7 +102,7 @@ def shown_connections(lookup: Lookup) -> list[Connection]:
 
 
 def shown_types(lookup: Lookup) -> list[ConceptualType]:
-    """Return the types that shown ports use or read; without a scope all of them, used or not."""
+    """Return the types that shown ports use or read, and those in their fields; without a scope all, used or not."""
     architecture = lookup.architecture
     if lookup.scope.components is None:
         return list(architecture.types.values())
@@ -108,6 +110,10 @@ def shown_types(lookup: Lookup) -> list[ConceptualType]:
     used |= {port.type for port in architecture.inputs.values() if lookup.scope.shows_component(port.component)}
     for connection in shown_connections(lookup):
         used |= {architecture.outputs[output].type for output in connection.outputs}
+    held_types = {
+        each.name: [field.element_type for _, field in each.list_fields()] for each in architecture.types.values()
+    }
+    used |= find_reachable(held_types, filter(None, used)).keys()
     # In the order of the type mapping, not of the ports.
     return [conceptual_type for conceptual_type in architecture.types.values() if conceptual_type.name in used]
 
@@ -169,7 +175,8 @@ def describe_mapping(conceptual_type: ConceptualType) -> str:
     ]
     planned_remark = "message is planned" if conceptual_type.status == "planned" else ""
     comment = " ".join((conceptual_type.comment or "").split())
-    return "; ".join(part for part in (comment, planned_remark, *inner_messages) if part)
+    content = type_fields.describe_content(conceptual_type)
+    return "; ".join(part for part in (comment, planned_remark, *content, *inner_messages) if part)
 
 
 def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requirement]) -> Table | None:

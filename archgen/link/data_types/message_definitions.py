@@ -1,0 +1,161 @@
+"""Turn types with fields into definitions of messages, as if their `.msg`, `.srv` and `.action` files were there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.link.data_types.field_reading import explain_bad_text, write_literal
+from archgen.link.data_types.field_types import FieldTypeReader
+from archgen.link.data_types.message_names import find_message_kind
+from archgen.model.generic_names import read_generic_name
+from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
+from archgen.model.message_types import PART_KEYS, ConceptualType, DataField
+from archgen.schema.quantity_wording import clip_text
+from archgen.syntax.interface_definitions import INVALID_INTERFACE, InterfaceDefinition
+from archgen.syntax.interface_literals import explain_bad_default
+from archgen.syntax.interface_types import FieldType, TypeComplaint
+
+_PART_KEYS_BY_KIND = {"srv": PART_KEYS[:2], "action": PART_KEYS}
+_LIMITS = (("uint8", 2**8), ("uint16", 2**16))
+MAX_TAKEN_FIELDS = 20_000
+"""Fields that services and actions may take from the types that they name: each may take the same ones."""
+VALUE_FIELD = "value"
+"""The field of an enumeration's message, which holds one of its constants."""
+
+
+class TypeDefinition(NamedTuple):
+    """A message that a type defines, and the span of the type."""
+
+    type_name: str
+    span: Span
+    definition: InterfaceDefinition
+    is_implied: bool
+    """Whether it only follows from the types that the type names: then a definition elsewhere counts."""
+
+
+class _Part(NamedTuple):
+    """The fields and constants of a message, or of a part of a service or action."""
+
+    fields: tuple[InterfaceField, ...]
+    constants: tuple[InterfaceConstant, ...] = ()
+    references: tuple[tuple[str, Span], ...] = ()
+
+
+class DefinitionMaker:
+    """Makes the definitions of a project's types, and reports what ROS would refuse in their fields."""
+
+    def __init__(
+        self, types: Mapping[str, ConceptualType], type_reader: FieldTypeReader, diagnostics: list[Diagnostic]
+    ) -> None:
+        self._types = types
+        self._type_reader = type_reader
+        self._diagnostics = diagnostics
+        self._taken_count = 0
+
+    def make_definition(self, conceptual_type: ConceptualType, span: Span) -> TypeDefinition:
+        """Return the definition of the message that a type is."""
+        kind, message = find_message_kind(conceptual_type), conceptual_type.message or ""
+        parts = (
+            [self._make_message_part(conceptual_type)]
+            if kind == "msg"
+            else [self._make_inner_part(conceptual_type, key) for key in _PART_KEYS_BY_KIND[kind]]
+        )
+        constants = tuple(part.constants for part in parts)
+        interface = Interface(message, tuple(part.fields for part in parts), constants if any(constants) else ())
+        references = tuple(reference for part in parts for reference in part.references)
+        definition = InterfaceDefinition(interface, references, ())
+        return TypeDefinition(conceptual_type.name, span, definition, is_implied=not conceptual_type.has_content)
+
+    def check_fields(self, conceptual_type: ConceptualType) -> None:
+        """Report what is wrong with the fields of a type of which no message is made."""
+        for part in (conceptual_type.fields or (), *conceptual_type.part_fields.values()):
+            self._make_part(part, conceptual_type)
+
+    def _make_message_part(self, conceptual_type: ConceptualType) -> _Part:
+        written = self._make_part(conceptual_type.fields or (), conceptual_type)
+        constants = tuple(
+            InterfaceConstant(each.name, each.type, each.value, each.comment or "")
+            for each in conceptual_type.constants
+        )
+        if not conceptual_type.values:
+            return _Part(written.fields, constants, written.references)
+        count = len(conceptual_type.values)
+        value_type = next((name for name, limit in _LIMITS if count <= limit), "uint32")
+        values = (
+            InterfaceConstant(name, value_type, str(number)) for number, name in enumerate(conceptual_type.values)
+        )
+        return _Part((InterfaceField(VALUE_FIELD, value_type),), (*values, *constants))
+
+    def _make_inner_part(self, conceptual_type: ConceptualType, key: str) -> _Part:
+        """Return a part of a service or action: its fields as written, or those of the type that is named."""
+        inner_name = getattr(conceptual_type, key)
+        inner_type = self._types.get(inner_name) if inner_name else None
+        if inner_type is None or key in conceptual_type.part_fields:
+            return self._make_part(conceptual_type.part_fields.get(key, ()), conceptual_type)
+        if inner_type.fields is None:
+            text = f"`{conceptual_type.name}` takes the fields of `{inner_name}` as its {key}, and they are not known"
+            field_name = "_".join(inner_name.lower().split())
+            help_line = f"write them: `{key}: {{{clip_text(field_name)}: {inner_name}}}`"
+            self._report(text, conceptual_type.at, help_line, conceptual_type)
+            return _Part(())
+        self._taken_count += len(inner_type.fields)
+        if self._taken_count > MAX_TAKEN_FIELDS:
+            text = f"`{conceptual_type.name}` and others take more than {MAX_TAKEN_FIELDS:,} fields from the types they name"
+            help_line = "name one field that holds the type: no service needs so many"
+            self._diagnostics.append(
+                Diagnostic("too-large", text, conceptual_type.at, help=help_line, element=conceptual_type.name)
+            )
+            return _Part(())
+        return self._make_message_part(inner_type)
+
+    def _make_part(self, fields: Sequence[DataField], conceptual_type: ConceptualType) -> _Part:
+        made_fields, references = list[InterfaceField](), list[tuple[str, Span]]()
+        for field in fields:
+            field_type = self._type_reader.read_type(field, conceptual_type)
+            if isinstance(field_type, TypeComplaint):
+                self._report(field_type.message, field.type_at, field_type.help, conceptual_type)
+            if not isinstance(field_type, FieldType):
+                continue
+            default = self._write_default(field, field_type, conceptual_type)
+            made_fields.append(InterfaceField(field.name, field_type.name, field_type.array, default, field.meaning))
+            if "/" in field_type.base:
+                references.append((field_type.base, field.type_at))
+        return _Part(tuple(made_fields), (), tuple(references))
+
+    def _write_default(self, field: DataField, field_type: FieldType, conceptual_type: ConceptualType) -> str:
+        """Return the default of a field as definitions write it; empty for none, and for one that ROS refuses."""
+        if field.default is None:
+            return ""
+        ros1, items = self._type_reader.ros1, (field.default,) if isinstance(field.default, str) else field.default
+        literals = [write_literal(field_type.base, item, ros1=ros1) for item in items]
+        literal = literals[0] if isinstance(field.default, str) else f"[{', '.join(literals)}]"
+        reason = next(self._explain_bad_default(items, field, field_type, literal), None)
+        if reason is None:
+            return literal
+        self._report(
+            f"`{clip_text(literal)}` is no default of `{field.name}`", field.default_at, reason, conceptual_type
+        )
+        return ""
+
+    def _explain_bad_default(
+        self, items: Sequence[str], field: DataField, field_type: FieldType, literal: str
+    ) -> Iterator[str]:
+        if self._type_reader.ros1:
+            yield "a field of ROS 1 has no default"
+        elif not field_type.is_builtin:
+            yield "only a field of a builtin type has a default"
+        elif field_type.array and isinstance(field.default, str):
+            yield "the default of an array is a list, as in `[1, 2]`"
+        elif not field_type.array and not isinstance(field.default, str):
+            yield f"a list is the default of an array, as in `{field_type.name}[]`"
+        else:
+            yield from filter(None, (explain_bad_text(field_type.base, item, ros1=False) for item in items))
+            yield from filter(None, [explain_bad_default(field_type, literal)])
+
+    def _report(self, message: str, span: Span, help_line: str | None, conceptual_type: ConceptualType) -> None:
+        # What generic types make has the fields of the generic one: it is wrong there, once.
+        element = read_generic_name(conceptual_type.name).base
+        self._diagnostics.append(Diagnostic(INVALID_INTERFACE, message, span, help=help_line, element=element))
