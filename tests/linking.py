@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from archgen.compose import expand_project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link.data_types.field_types import TypeSources
 from archgen.link.declare.type_declaration import declare_types
@@ -22,9 +23,10 @@ def link_table(
     lost_keys: frozenset[str] = frozenset(),
 ) -> tuple[Architecture, tuple[Diagnostic, ...]]:
     """Link a table as that of a project whose id and title are those of the test."""
-    outline = build_outline(table)
+    expansion = expand_project(table)
+    outline = build_outline(expansion)
     return link_project(
-        table,
+        expansion,
         outline,
         default_id=project_id,
         default_title=project_id.capitalize(),

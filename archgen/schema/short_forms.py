@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
-from archgen.schema import component_sugar
 from archgen.model.generic_names import write_generic_name
+from archgen.schema import component_sugar
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:

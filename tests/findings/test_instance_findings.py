@@ -25,5 +25,7 @@ def test_each_mistake_of_a_type_is_one_finding_that_names_its_instances() -> Non
 
 
 def test_a_mistake_of_an_instance_stays_its_own() -> None:
-    wrong = [finding for finding in check_text(f"{TEXT}\nviews: {{v: {{show: xyzzy}}}}") if finding.rule == "wrong-selector"]
+    wrong = [
+        finding for finding in check_text(f"{TEXT}\nviews: {{v: {{show: xyzzy}}}}") if finding.rule == "wrong-selector"
+    ]
     assert [(finding.span.line, finding.labels) for finding in wrong] == [(13, ())]
