@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
+from archgen.schema.parameter_forms import expand_parameters
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
@@ -47,7 +48,10 @@ _COMPONENT_FORM = ElementForm(
         "inputs": ElementForm(("from",), frozenset({"from"})),
         "outputs": ElementForm(("type",)),
         "performance": _PLAIN_FORM,
+        "operations": ElementForm(("response",)),
     },
+    # Written out by `expand_parameters`; the rest is data.
+    raw_keys=frozenset({"parameters"}),
 )
 _NODE_FORM = ElementForm(
     ("implements",),
@@ -74,7 +78,10 @@ _ROOT_FORM = ElementForm(
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
     },
-    part_forms={"review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"}))},
+    part_forms={
+        "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
+        "ros": ElementForm(raw_keys=frozenset({"parameters"})),
+    },
 )
 
 
@@ -85,12 +92,13 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     type_diagnostics = tuple(_fold_type_names(types)) if isinstance(types, MappingNode) else ()
     groups = document.root.get("groups")
     indicator_diagnostics = tuple(_collect_overall(groups)) if isinstance(groups, MappingNode) else ()
+    parameter_diagnostics = tuple(expand_parameters(document.root))
     _normalise_mapping(document.root, _ROOT_FORM)
     review = document.root.get("review")
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
-    return type_diagnostics + indicator_diagnostics
+    return type_diagnostics + indicator_diagnostics + parameter_diagnostics
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, get_args
 
 from archgen.link import mapping_values
+from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
@@ -91,6 +92,9 @@ class _GroupDeclarer:
             inputs_known=body.get("inputs") is not None,
             outputs=self.outline.outputs[component_id],
             outputs_known=body.get("outputs") is not None,
+            parameters=declare_parameters(body),
+            open=mapping_values.get_texts(body, "open"),
+            operations=declare_operations(body),
             timing=declare_timing(
                 entry,
                 PortResolver(self.resolver, component_id, (component_id,), self.outline.port_names),

@@ -1,0 +1,193 @@
+"""What a parameter file says to which node: files of ROS 2 by node names with wildcards, files of ROS 1 by nesting."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
+
+from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
+from archgen.link.parameter_flattening import flatten_parameters
+from archgen.model.node import Node
+from archgen.model.parameter import FileRemark, ParameterValue
+from archgen.syntax.yaml_parser import parse_yaml
+from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode
+
+_VALUE_KEY = "ros__parameters"
+_TRUE_WORDS = frozenset({"yes", "Yes", "YES", "on", "On", "ON"})
+_FALSE_WORDS = frozenset({"no", "No", "NO", "off", "Off", "OFF"})
+"""What ROS reads as booleans besides `true` and `false`, where it is not quoted (rcl's parser, and YAML 1.1 in ROS 1)."""
+_MAX_NAME_LENGTH = 255
+"""The longest name that ROS 2 gives a node, in characters: a longer key is no node's."""
+_ANY_PARTS = "**"
+_ANY_PART = "*"
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterSection:
+    """The values below one pattern of node names, such as `/**` or `/front/camera`."""
+
+    pattern: tuple[str, ...]
+    values: tuple[ParameterValue, ...]
+
+    @property
+    def name(self) -> str:
+        """The pattern as ROS writes it."""
+        return "/" + "/".join(self.pattern)
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterText:
+    """A parameter file. `sections` are those of ROS 2; `root` is the whole file where it has none.
+
+    `problem` says why the file cannot be read. The comments in `ignores` silence what is found in the file.
+    """
+
+    path: str
+    span: Span
+    sections: tuple[ParameterSection, ...] = ()
+    root: MappingNode | None = None
+    problem: str = ""
+    ignores: tuple[IgnoreComment, ...] = ()
+
+
+def read_parameter_text(path: str, text: str, packed_span: Span | None = None) -> ParameterText:
+    """Read a parameter file. Where a packed file holds its text, all that is in it stands at `packed_span`."""
+    document, diagnostics = parse_yaml(path, text)
+    span = packed_span or Span.of_file(path)
+    if document is None:
+        problem = next((diagnostic for diagnostic in diagnostics), None)
+        line = f" (line {problem.span.line})" if problem and problem.span.line else ""
+        return ParameterText(path, span, problem=f"{problem.message}{line}" if problem else "it is no mapping")
+    sections = tuple(_list_sections(document.root, packed_span))
+    return ParameterText(path, span, sections, document.root, ignores=_place_ignores(document.ignores, packed_span))
+
+
+def _place_ignores(ignores: tuple[IgnoreComment, ...], packed_span: Span | None) -> tuple[IgnoreComment, ...]:
+    if packed_span is None or not ignores:
+        return ignores
+    rules = tuple(dict.fromkeys(rule for ignore in ignores for rule in ignore.rules))
+    return (IgnoreComment(rules, "; ".join(ignore.why for ignore in ignores), packed_span),)
+
+
+def _list_sections(root: MappingNode, packed_span: Span | None) -> Iterator[ParameterSection]:
+    """Yield the sections of a file of ROS 2 in its order: mappings by namespaces and names, down to `ros__parameters`."""
+    pending: list[tuple[tuple[str, ...], MappingNode]] = [((), root)]
+    while pending:
+        pattern, mapping = pending.pop()
+        values = mapping.get(_VALUE_KEY)
+        if isinstance(values, MappingNode):
+            yield ParameterSection(_fold_pattern(pattern), tuple(_read_values(values, packed_span)))
+        else:
+            pending += [
+                ((*pattern, *_split_name(entry.key)), entry.value)
+                for entry in reversed(list(mapping))
+                if isinstance(entry.value, MappingNode) and len(entry.key) <= _MAX_NAME_LENGTH
+            ]
+
+
+def _read_values(mapping: MappingNode, packed_span: Span | None) -> Iterator[ParameterValue]:
+    for value in flatten_parameters(mapping, _read_file_scalar):
+        yield value if packed_span is None else replace(value, at=packed_span, name_at=packed_span)
+
+
+def _read_file_scalar(scalar: ScalarNode) -> object:
+    if scalar.is_plain and isinstance(scalar.value, str):
+        return True if scalar.text in _TRUE_WORDS else False if scalar.text in _FALSE_WORDS else scalar.value
+    return scalar.value
+
+
+def _split_name(name: str) -> tuple[str, ...]:
+    return tuple(part for part in name.split("/") if part)
+
+
+def _fold_pattern(pattern: Sequence[str]) -> tuple[str, ...]:
+    """Return a pattern without `**` that follows another one: they mean the same, and would multiply the work."""
+    return tuple(
+        part
+        for number, part in enumerate(pattern)
+        if part != _ANY_PARTS or number == 0 or pattern[number - 1] != _ANY_PARTS
+    )
+
+
+@lru_cache(50_000)
+def matches_node_name(pattern: tuple[str, ...], name: tuple[str, ...]) -> bool:
+    """Whether a pattern of names covers a node's full name: `*` is any one name, `**` any number of them, none too."""
+    if sum(part != _ANY_PARTS for part in pattern) > len(name):
+        return False
+    # The ends in `name` that the pattern read so far may have: a regular expression would backtrack.
+    ends = {0}
+    for part in pattern:
+        if part == _ANY_PARTS:
+            ends = set(range(min(ends), len(name) + 1)) if ends else ends
+        else:
+            ends = {end + 1 for end in ends if end < len(name) and part in (_ANY_PART, name[end])}
+        if not ends:
+            return False
+    return len(name) in ends
+
+
+def find_node_values(
+    parameter_text: ParameterText, node: Node, node_names: frozenset[str], *, ros_1: bool
+) -> tuple[tuple[ParameterValue, ...], FileRemark | None]:
+    """Return what a file says to a node, and what is odd where that is nothing.
+
+    `node_names` are the names and the namespaces of all nodes: they tell a file of ROS 1 that is nested by nodes from one
+    that holds the parameters of one node.
+    """
+    if parameter_text.problem:
+        return (), FileRemark(f"`{parameter_text.path}` cannot be read: {parameter_text.problem}", parameter_text.span)
+    name = _split_name(node.full_name)
+    if parameter_text.sections:
+        sections = [each for each in parameter_text.sections if matches_node_name(each.pattern, name)]
+        values = tuple(value for section in sections for value in section.values)
+        return values, None if sections else _remark_other_names(parameter_text, node)
+    root = parameter_text.root
+    if root is None or not root.entries:
+        return (), None
+    if not ros_1:
+        return (), FileRemark(
+            f"`{parameter_text.path}` has no `{_VALUE_KEY}`, so ROS 2 reads no parameter from it",
+            parameter_text.span,
+            f"write `{node.name}: {{{_VALUE_KEY}: {{...}}}}`",
+        )
+    return tuple(_find_nested_values(parameter_text, root, name, node_names)), None
+
+
+def _remark_other_names(parameter_text: ParameterText, node: Node) -> FileRemark:
+    names = list(dict.fromkeys(section.name for section in parameter_text.sections))
+    shown_names = ", ".join(f"`{name}`" for name in names[:3]) + (", ..." if len(names) > 3 else "")  # noqa: PLR2004
+    return FileRemark(
+        f"`{parameter_text.path}` sets nothing for `{node.full_name}`",
+        parameter_text.span,
+        f"it is for {shown_names}; `/**` is for every node",
+    )
+
+
+def _find_nested_values(
+    parameter_text: ParameterText, root: MappingNode, name: tuple[str, ...], node_names: frozenset[str]
+) -> Iterator[ParameterValue]:
+    """Yield what a file of ROS 1 says to a node: what is below its name; all, if the file names no node at all."""
+    own_mapping = _find_mapping(root, name)
+    names_others = any(
+        isinstance(entry.value, MappingNode) and not node_names.isdisjoint(_split_name(entry.key)[:1]) for entry in root
+    )
+    packed_span = parameter_text.span if parameter_text.span.file != parameter_text.path else None
+    if own_mapping is not None or not names_others:
+        for value in _read_values(own_mapping or root, packed_span):
+            yield replace(value, name=value.name.strip("~/").replace("/", "."))
+
+
+def _find_mapping(root: MappingNode, name: tuple[str, ...]) -> MappingNode | None:
+    """Return the mapping below a node's full name, whose parts are keys in one another or joined by `/`."""
+    pending = [(root, name)]
+    while pending:
+        mapping, parts = pending.pop()
+        for entry in mapping:
+            key_parts = _split_name(entry.key)
+            if isinstance(entry.value, MappingNode) and key_parts and key_parts == parts[: len(key_parts)]:
+                if len(key_parts) == len(parts):
+                    return entry.value
+                pending.append((entry.value, parts[len(key_parts) :]))
+    return None
