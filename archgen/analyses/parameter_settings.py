@@ -93,9 +93,7 @@ class _NodeJudge:
             return True
         name = canonical_name(written_name, ros_1=self._ros_1)
         return (
-            name in self._declarations
-            or is_ros_parameter(name, ros_1=self._ros_1)
-            or is_open(name, self._components)
+            name in self._declarations or is_ros_parameter(name, ros_1=self._ros_1) or is_open(name, self._components)
         )
 
     def report_unknown(self, value: ParameterValue) -> Diagnostic:
@@ -284,9 +282,7 @@ def unused_parameter_file(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in architecture.nodes.values():
         if node.file_remarks and any(each.parameters for each in list_components(architecture, node)):
             for remark in node.file_remarks:
-                yield Diagnostic(
-                    "unused-parameter-file", remark.message, remark.at, help=remark.help, element=node.id
-                )
+                yield Diagnostic("unused-parameter-file", remark.message, remark.at, help=remark.help, element=node.id)
 
 
 RULES = (

@@ -97,9 +97,7 @@ class _ParameterReader:
                 unread_files.append(scalar.text)
             else:
                 values += file_values
-        return replace(
-            node, file_values=tuple(values), unread_files=tuple(unread_files), file_remarks=tuple(remarks)
-        )
+        return replace(node, file_values=tuple(values), unread_files=tuple(unread_files), file_remarks=tuple(remarks))
 
     def _read_file(self, scalar: ScalarNode, node: Node) -> ParameterText | None:
         packed_names = (_name_for_node(scalar.text, node), scalar.text)
@@ -134,9 +132,7 @@ class _ParameterReader:
     def _report_excess(self, scalar: ScalarNode, message: str) -> None:
         if not self.diagnostics:
             help_line = "from this file on none is read"
-            self.diagnostics.append(
-                Diagnostic("too-large", message, scalar.span, Severity.WARNING, help=help_line)
-            )
+            self.diagnostics.append(Diagnostic("too-large", message, scalar.span, Severity.WARNING, help=help_line))
 
 
 def _name_for_node(written_path: str, node: Node) -> str:

@@ -169,25 +169,29 @@ def _find_nested_values(
     parameter_text: ParameterText, root: MappingNode, name: tuple[str, ...], node_names: frozenset[str]
 ) -> Iterator[ParameterValue]:
     """Yield what a file of ROS 1 says to a node: what is below its name; all, if the file names no node at all."""
-    own_mapping = _find_mapping(root, name)
+    own_mappings = _find_mappings(root, name)
     names_others = any(
         isinstance(entry.value, MappingNode) and not node_names.isdisjoint(_split_name(entry.key)[:1]) for entry in root
     )
     packed_span = parameter_text.span if parameter_text.span.file != parameter_text.path else None
-    if own_mapping is not None or not names_others:
-        for value in _read_values(own_mapping or root, packed_span):
-            yield replace(value, name=value.name.strip("~/").replace("/", "."))
+    for mapping in own_mappings or ([] if names_others else [root]):
+        yield from _read_values(mapping, packed_span)
 
 
-def _find_mapping(root: MappingNode, name: tuple[str, ...]) -> MappingNode | None:
-    """Return the mapping below a node's full name, whose parts are keys in one another or joined by `/`."""
+def _find_mappings(root: MappingNode, name: tuple[str, ...]) -> list[MappingNode]:
+    """Return the mappings below a node's full name, whose parts are keys in one another or joined by `/`."""
+    mappings: list[MappingNode] = []
     pending = [(root, name)]
     while pending:
         mapping, parts = pending.pop()
-        for entry in mapping:
-            key_parts = _split_name(entry.key)
-            if isinstance(entry.value, MappingNode) and key_parts and key_parts == parts[: len(key_parts)]:
-                if len(key_parts) == len(parts):
-                    return entry.value
-                pending.append((entry.value, parts[len(key_parts) :]))
-    return None
+        if not parts:
+            mappings.append(mapping)
+            continue
+        pending += [
+            (entry.value, parts[len(key_parts) :])
+            for entry in reversed(list(mapping))
+            if isinstance(entry.value, MappingNode)
+            and (key_parts := _split_name(entry.key))
+            and key_parts == parts[: len(key_parts)]
+        ]
+    return mappings

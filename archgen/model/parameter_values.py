@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Literal
+from typing import Literal, TypeGuard
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
@@ -29,6 +29,15 @@ _ROS_1_NAMES = re.compile(
 )
 """What roscpp, rospy, nodelets, diagnostics and image_transport read in ROS 1."""
 _SUBSTITUTION_MARK = "$("
+_TYPE_PHRASES = {
+    "boolean": "`true` or `false`",
+    "float": "number",
+    "string": "text",
+    "boolean[]": "list of `true` and `false`",
+    "float[]": "list of numbers",
+    "string[]": "list of texts",
+}
+"""What sentences call a type that nobody wrote."""
 _MAX_CHOICES = 8
 _MAX_SHOWN = 60
 
@@ -109,6 +118,8 @@ def _lay_over(
 ) -> None:
     name = canonical_name(value.name, ros_1=ros_1)
     earlier = result.get(name)
+    if earlier is not None and earlier.declaration is not None and value.value is None and origin != "command":
+        return  # `map_file: ` counts as not written
     result[name] = EffectiveParameter(name, value.value, origin, value.at, earlier.declaration if earlier else None)
 
 
@@ -128,9 +139,12 @@ def find_value_fault(parameter: Parameter, value: object) -> str | None:
     """
     if value is None or (isinstance(value, str) and _SUBSTITUTION_MARK in value):
         return None
-    expected_type = parameter.type or _infer_type(parameter)
-    if expected_type is not None and not _has_type(value, expected_type):
-        return f"{describe_value(value)} is no `{expected_type}`"
+    if parameter.type is not None and not _has_type(value, parameter.type):
+        return f"{describe_value(value)} is no `{parameter.type}`"
+    # Choices say by themselves what a value may be.
+    inferred_type = _infer_type(parameter.value) if parameter.type is None and parameter.choices is None else None
+    if inferred_type is not None and not _has_type(value, inferred_type):
+        return f"{describe_value(value)} is no {_TYPE_PHRASES[inferred_type]}"
     items = value if isinstance(value, list) else [value]
     if parameter.choices is not None and not _is_choice(value, parameter.choices):
         shown_choices = ", ".join(f"`{_shorten(choice)}`" for choice in parameter.choices[:_MAX_CHOICES])
@@ -156,9 +170,8 @@ def _shorten(value: object) -> str:
     return text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 1]}…"
 
 
-def _infer_type(parameter: Parameter) -> str | None:
+def _infer_type(value: object) -> str | None:
     """Return the type of a parameter that says none: that of its value. A whole number may stand for a float."""
-    value = parameter.value
     if isinstance(value, bool):
         return "boolean"
     if isinstance(value, int | float):
@@ -166,7 +179,7 @@ def _infer_type(parameter: Parameter) -> str | None:
     if isinstance(value, str) and _SUBSTITUTION_MARK not in value:
         return "string"
     if isinstance(value, list) and value:
-        types = {_infer_type(Parameter("", value=item)) for item in value}
+        types = {_infer_type(item) for item in value}
         return f"{next(iter(types))}[]" if len(types) == 1 and None not in types else None
     return None
 
@@ -184,7 +197,7 @@ def _has_type(value: object, type_name: str) -> bool:
     return _is_number(value) if type_name == "float" else isinstance(value, str)
 
 
-def _is_number(value: object) -> bool:
+def _is_number(value: object) -> TypeGuard[int | float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and not math.isnan(value)
 
 

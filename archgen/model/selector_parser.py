@@ -30,6 +30,7 @@ SELECTOR_KEYS = (
     "behaviour",
     "finding",
     "node",
+    "parameter",
 )
 ALL_STEPS = -1
 """Any number of steps."""

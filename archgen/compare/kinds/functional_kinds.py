@@ -26,7 +26,7 @@ from archgen.compare.kinds.shared_keys import (
     text_feature,
     timing_key,
 )
-from archgen.compare.normal_values import normalize_title
+from archgen.compare.normal_values import freeze_value, normalize_text, normalize_title, unordered_values
 from archgen.model.component import Component, Input, Output
 from archgen.model.path_resolver import title_from_id
 
@@ -82,6 +82,48 @@ def _read_timing(component: Component, context: ReadContext) -> Mapping[str, obj
     return key_values(TIMING_KEYS, timing, context) if timing else {}
 
 
+def _read_parameters(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the declared parameters: each value by the parameter's name, what else is declared by `name:key`."""
+    values: dict[str, object] = {}
+    for name, parameter in component.parameters.items():
+        # Without a value there is a parameter all the same.
+        values[name] = "no value" if parameter.value is None else freeze_value(parameter.value)
+        facets = {
+            "type": parameter.type,
+            "unit": parameter.unit,
+            "range": parameter.range and list(parameter.range),
+            "choices": parameter.choices and list(parameter.choices),
+            "description": normalize_text(parameter.description),
+            "read_only": parameter.read_only or None,
+            "visibility": parameter.visibility,
+            "from": parameter.handed_from,
+            "hints": parameter.hints or None,
+        }
+        values |= {f"{name}:{key}": freeze_value(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _read_operations(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the operations: whether there is one by its id, what is said of it by `id:key`."""
+    values: dict[str, object] = {}
+    for name, operation in component.operations.items():
+        values[name] = "there"
+        facets = {
+            "title": None if operation.title in {title_from_id(name), name} else operation.title,
+            "request": operation.request,
+            "response": operation.response,
+            "call": operation.call,
+            "visibility": operation.visibility,
+            "description": normalize_text(operation.description),
+        }
+        values |= {f"{name}:{key}": _describe_types(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _describe_types(value: str | Mapping[str, str]) -> str:
+    return value if isinstance(value, str) else ", ".join(f"{name}: {type_name}" for name, type_name in value.items())
+
+
 def _is_mapped(component: Component, context: ReadContext) -> bool | None:
     return any(node.written for node in context.nodes_by_component.get(component.id, ())) or None
 
@@ -132,6 +174,9 @@ COMPONENT = KindSpec(
         LAYOUT,
         KeySpec("inputs", lambda each, _: _describe_ports(is_known=each.inputs_known, ports=each.inputs)),
         KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
+        KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+        KeySpec("open", lambda component, _: unordered_values(component.open), Effect.SYSTEM, noun="open sets"),
+        KeySpec("operations.", _read_operations, Effect.SYSTEM),
         URLS,
         KeySpec("performance.", _read_performance, Effect.SYSTEM),
         timing_key(_read_timing),
