@@ -121,6 +121,8 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     # Physical ports count here: their types need no message, but they use the type.
     used_types = {port.type for port in _all_ports(architecture)}
+    for component in architecture.components.values():
+        used_types.update(name for operation in component.operations.values() for name in operation.type_names)
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
     # An unused mapping beside a used type without one is most likely a misspelt name.

@@ -87,10 +87,10 @@ class _ParameterReader:
             if parameter_text is None:
                 unread_files.append(scalar.text)
                 continue
-            file_values, remark = find_node_values(parameter_text, node, self._node_names, ros_1=self._ros_1)
+            file_values, remark = find_node_values(parameter_text, scalar, node, self._node_names, ros_1=self._ros_1)
             if remark is not None:
                 unread_files.append(scalar.text)
-                remarks.append(replace(remark, at=scalar.span))
+                remarks.append(remark)
             self._values += len(file_values)
             if self._values > MAX_VALUES:
                 self._report_excess(scalar, f"parameter files give more than {MAX_VALUES:,} values to nodes")

@@ -41,11 +41,11 @@ class ParameterSection:
 class ParameterText:
     """A parameter file. `sections` are those of ROS 2; `root` is the whole file where it has none.
 
-    `problem` says why the file cannot be read. The comments in `ignores` silence what is found in the file.
+    `problem` says why the file cannot be read. The comments in `ignores` silence what is found in the file. Where a packed
+    file holds the text, all that is in it stands at `packed_span`.
     """
 
-    path: str
-    span: Span
+    packed_span: Span | None = None
     sections: tuple[ParameterSection, ...] = ()
     root: MappingNode | None = None
     problem: str = ""
@@ -55,13 +55,12 @@ class ParameterText:
 def read_parameter_text(path: str, text: str, packed_span: Span | None = None) -> ParameterText:
     """Read a parameter file. Where a packed file holds its text, all that is in it stands at `packed_span`."""
     document, diagnostics = parse_yaml(path, text)
-    span = packed_span or Span.of_file(path)
     if document is None:
         problem = next((diagnostic for diagnostic in diagnostics), None)
         line = f" (line {problem.span.line})" if problem and problem.span.line else ""
-        return ParameterText(path, span, problem=f"{problem.message}{line}" if problem else "it is no mapping")
+        return ParameterText(packed_span, problem=f"{problem.message}{line}" if problem else "it is no mapping")
     sections = tuple(_list_sections(document.root, packed_span))
-    return ParameterText(path, span, sections, document.root, ignores=_place_ignores(document.ignores, packed_span))
+    return ParameterText(packed_span, sections, document.root, ignores=_place_ignores(document.ignores, packed_span))
 
 
 def _place_ignores(ignores: tuple[IgnoreComment, ...], packed_span: Span | None) -> tuple[IgnoreComment, ...]:
@@ -129,38 +128,38 @@ def matches_node_name(pattern: tuple[str, ...], name: tuple[str, ...]) -> bool:
 
 
 def find_node_values(
-    parameter_text: ParameterText, node: Node, node_names: frozenset[str], *, ros_1: bool
+    parameter_text: ParameterText, scalar: ScalarNode, node: Node, node_names: frozenset[str], *, ros_1: bool
 ) -> tuple[tuple[ParameterValue, ...], FileRemark | None]:
-    """Return what a file says to a node, and what is odd where that is nothing.
+    """Return what a file says to a node that names it in `scalar`, and what is odd where that is nothing.
 
     `node_names` are the names and the namespaces of all nodes: they tell a file of ROS 1 that is nested by nodes from one
     that holds the parameters of one node.
     """
     if parameter_text.problem:
-        return (), FileRemark(f"`{parameter_text.path}` cannot be read: {parameter_text.problem}", parameter_text.span)
+        return (), FileRemark(f"`{scalar.text}` cannot be read: {parameter_text.problem}", scalar.span)
     name = _split_name(node.full_name)
     if parameter_text.sections:
         sections = [each for each in parameter_text.sections if matches_node_name(each.pattern, name)]
         values = tuple(value for section in sections for value in section.values)
-        return values, None if sections else _remark_other_names(parameter_text, node)
+        return values, None if sections else _remark_other_names(parameter_text, scalar, node)
     root = parameter_text.root
     if root is None or not root.entries:
         return (), None
     if not ros_1:
         return (), FileRemark(
-            f"`{parameter_text.path}` has no `{_VALUE_KEY}`, so ROS 2 reads no parameter from it",
-            parameter_text.span,
+            f"`{scalar.text}` has no `{_VALUE_KEY}`, so ROS 2 reads no parameter from it",
+            scalar.span,
             f"write `{node.name}: {{{_VALUE_KEY}: {{...}}}}`",
         )
     return tuple(_find_nested_values(parameter_text, root, name, node_names)), None
 
 
-def _remark_other_names(parameter_text: ParameterText, node: Node) -> FileRemark:
+def _remark_other_names(parameter_text: ParameterText, scalar: ScalarNode, node: Node) -> FileRemark:
     names = list(dict.fromkeys(section.name for section in parameter_text.sections))
     shown_names = ", ".join(f"`{name}`" for name in names[:3]) + (", ..." if len(names) > 3 else "")  # noqa: PLR2004
     return FileRemark(
-        f"`{parameter_text.path}` sets nothing for `{node.full_name}`",
-        parameter_text.span,
+        f"`{scalar.text}` sets nothing for `{node.full_name}`",
+        scalar.span,
         f"it is for {shown_names}; `/**` is for every node",
     )
 
@@ -173,9 +172,8 @@ def _find_nested_values(
     names_others = any(
         isinstance(entry.value, MappingNode) and not node_names.isdisjoint(_split_name(entry.key)[:1]) for entry in root
     )
-    packed_span = parameter_text.span if parameter_text.span.file != parameter_text.path else None
     for mapping in own_mappings or ([] if names_others else [root]):
-        yield from _read_values(mapping, packed_span)
+        yield from _read_values(mapping, parameter_text.packed_span)
 
 
 def _find_mappings(root: MappingNode, name: tuple[str, ...]) -> list[MappingNode]:

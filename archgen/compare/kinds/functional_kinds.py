@@ -28,6 +28,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, normalize_title, unordered_values
 from archgen.model.component import Component, Input, Output
+from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
 
 GROUP = KindSpec(
@@ -87,20 +88,27 @@ def _read_parameters(component: Component, _context: ReadContext) -> Mapping[str
     values: dict[str, object] = {}
     for name, parameter in component.parameters.items():
         # Without a value there is a parameter all the same.
-        values[name] = "no value" if parameter.value is None else freeze_value(parameter.value)
+        values[name] = _freeze_parameter(parameter.value)
         facets = {
             "type": parameter.type,
             "unit": parameter.unit,
-            "range": parameter.range and list(parameter.range),
-            "choices": parameter.choices and list(parameter.choices),
+            "range": parameter.range and " to ".join(map(format_parameter, parameter.range)),
+            "choices": parameter.choices and ", ".join(map(format_parameter, parameter.choices)),
             "description": normalize_text(parameter.description),
             "read_only": parameter.read_only or None,
             "visibility": parameter.visibility,
             "from": parameter.handed_from,
-            "hints": parameter.hints or None,
+            "hints": format_parameter(parameter.hints) if parameter.hints else None,
         }
         values |= {f"{name}:{key}": freeze_value(value) for key, value in facets.items() if value is not None}
     return values
+
+
+def _freeze_parameter(value: object) -> object:
+    """Return a value for comparing; a list as a whole, since sentences would tell its items apart."""
+    if value is None:
+        return "no value"
+    return format_parameter(value) if isinstance(value, list) else freeze_value(value)
 
 
 def _read_operations(component: Component, _context: ReadContext) -> Mapping[str, object]:

@@ -14,7 +14,7 @@ from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.text_meaning import differs_in_meaning, differs_in_measures, quote_difference
 
-_MEASURE_PARAMETER = re.compile(r"^parameters\.(?:(?:.*[._])?(?:frame|frame_id|units?)|.+:unit)$")
+_MEASURE_PARAMETER = re.compile(r"^parameters\.(?:.*[._])?(?:frame|frame_id|units?)$")
 _COMPONENT_TEXTS = ("functionality", "description")
 
 
@@ -52,7 +52,7 @@ def _find_rewritten_components(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 
 def _find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find parameters that name a frame or a unit and have another value, and those whose unit is another one."""
+    """Find parameters of nodes and components that name a frame or a unit, and have another value."""
     changes = [
         (index, change)
         for index, change in enumerate(context.changes)
@@ -67,8 +67,7 @@ def _find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:
         for component in element.component_refs if element else ():
             for partner, inputs in inputs_by_component.get(component, {}).items():
                 readers[partner] += inputs
-        parameter, _, part = (change.key or "").removeprefix("parameters.").partition(":")
-        name = f"the {part} of {tick_name(parameter)}" if part else tick_name(parameter)
+        name = tick_name((change.key or "").removeprefix("parameters."))
         values = f"{format_value(change.after) if change.after is not None else 'nothing'} instead of {format_value(change.before)}"
         reason_text = f"sets {name} of {tick_name(change.element_id)} to {values}; {{}} what it sends"
         yield from context.shared_losses([index], readers, reason_text, "reads", "meaning")
