@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from archgen.model.node import Node
     from archgen.model.parameter import Parameter, ParameterValue
 
+_GUESS_BUDGET = 1_000_000
+"""Names that unknown ones are compared with, in all: 20,000 unknown ones among 50,000 would take minutes."""
 _MAX_SHOWN = 6
 """Parameters that one finding names."""
 
@@ -68,13 +70,12 @@ def unknown_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
                 known_values.add(key)
             else:
                 unknown_values.setdefault(key, (judge, value))
-    for judge in judges:
-        for value in judge.node.own_values:
-            if not judge.may_know(value.name):
-                yield judge.report_unknown(value)
-    for key, (judge, value) in unknown_values.items():
-        if key not in known_values:
-            yield judge.report_unknown(value)
+    findings = [(judge, value) for judge in judges for value in judge.node.own_values if not judge.may_know(value.name)]
+    findings += [finding for key, finding in unknown_values.items() if key not in known_values]
+    guess_count = 0
+    for judge, value in findings:
+        guess_count += judge.declaration_count
+        yield judge.report_unknown(value, may_guess=guess_count <= _GUESS_BUDGET)
 
 
 class _NodeJudge:
@@ -87,6 +88,11 @@ class _NodeJudge:
         self._declarations = find_declarations(architecture, node)
         self._is_judged = bool(self._components) and all(component.parameters for component in self._components)
 
+    @property
+    def declaration_count(self) -> int:
+        """How many names a guess is made among."""
+        return len(self._declarations)
+
     def may_know(self, written_name: str) -> bool:
         """Whether a parameter is declared, open or ROS's own, or a component declares none at all."""
         if not self._is_judged:
@@ -96,7 +102,7 @@ class _NodeJudge:
             name in self._declarations or is_ros_parameter(name, ros_1=self._ros_1) or is_open(name, self._components)
         )
 
-    def report_unknown(self, value: ParameterValue) -> Diagnostic:
+    def report_unknown(self, value: ParameterValue, *, may_guess: bool) -> Diagnostic:
         name = canonical_name(value.name, ros_1=self._ros_1)
         names = [f"`{component.id}`" for component in self._components[:_MAX_SHOWN]]
         whose = f"{names[0]} does not declare" if len(names) == 1 else f"none of {join_words(names)} declares"
@@ -105,7 +111,7 @@ class _NodeJudge:
             f"`{self.node.id}` is given the parameter `{name}`, which {whose}",
             value.name_at,
             labels=(Label(self._components[0].at, "the component"),),
-            help=did_you_mean(name, self._declarations)
+            help=(did_you_mean(name, self._declarations) if may_guess else None)
             or "declare it at the component, or write the name of its set into `open`",
             element=self.node.id,
         )
@@ -207,15 +213,20 @@ def unset_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
           localisation: {implements: localisation, parameters: {map_file: maps/home.yaml}}
     """
     for node in architecture.nodes.values():
-        if node.unread_files or not any(each.parameters for each in list_components(architecture, node)):
+        if node.unread_files or not any(map(_needs_value, find_declarations(architecture, node).values())):
             continue
         unset_names = [
             name
             for name, each in find_effective_parameters(architecture, node).items()
-            if each.origin == "none" and each.declaration is not None and each.declaration.handed_from is None
+            if each.origin == "none" and each.declaration is not None and _needs_value(each.declaration)
         ]
         if unset_names:
             yield _report_unset(architecture, node, unset_names)
+
+
+def _needs_value(parameter: Parameter) -> bool:
+    """Whether a node has to give the value: the component neither has one nor is handed one."""
+    return parameter.value is None and parameter.handed_from is None
 
 
 def _report_unset(architecture: Architecture, node: Node, names: list[str]) -> Diagnostic:

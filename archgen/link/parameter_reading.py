@@ -70,7 +70,7 @@ class _ParameterReader:
             for part in (node.name, node.namespace.strip("/").partition("/")[0])
             if part
         )
-        self._characters = self._values = 0
+        self._characters = self._values = self._looked_at = 0
         self.texts: dict[str, str] = {}
         self.packed_texts: dict[str, str] = {}
         self.parsed_texts: dict[str, ParameterText] = {}
@@ -83,8 +83,8 @@ class _ParameterReader:
         remarks: list[FileRemark] = []
         body = self._bodies.get(node.id)
         for scalar in mapping_values.get_scalars(body, "parameter_files") if isinstance(body, MappingNode) else ():
-            parameter_text = self._read_file(scalar, node)
-            if parameter_text is None:
+            parameter_text = None if self.diagnostics else self._read_file(scalar, node)
+            if parameter_text is None or self._is_too_much(parameter_text, scalar):
                 unread_files.append(scalar.text)
                 continue
             file_values, remark = find_node_values(parameter_text, scalar, node, self._node_names, ros_1=self._ros_1)
@@ -92,12 +92,18 @@ class _ParameterReader:
                 unread_files.append(scalar.text)
                 remarks.append(remark)
             self._values += len(file_values)
-            if self._values > MAX_VALUES:
-                self._report_excess(scalar, f"parameter files give more than {MAX_VALUES:,} values to nodes")
-                unread_files.append(scalar.text)
-            else:
-                values += file_values
+            values += file_values
         return replace(node, file_values=tuple(values), unread_files=tuple(unread_files), file_remarks=tuple(remarks))
+
+    def _is_too_much(self, parameter_text: ParameterText, scalar: ScalarNode) -> bool:
+        """Whether what a file may say to one more node is more than is read."""
+        # A file of ROS 1 is searched through for each node; of one of ROS 2 its patterns with wildcards are tried.
+        is_ros_2 = bool(parameter_text.sections)
+        self._looked_at += len(parameter_text.positions.get("", ())) if is_ros_2 else parameter_text.value_count
+        if self._values + parameter_text.value_count > MAX_VALUES or self._looked_at > MAX_VALUES:
+            self._report_excess(scalar, f"parameter files give more than {MAX_VALUES:,} values to nodes")
+            return True
+        return False
 
     def _read_file(self, scalar: ScalarNode, node: Node) -> ParameterText | None:
         packed_names = (_name_for_node(scalar.text, node), scalar.text)
@@ -130,9 +136,8 @@ class _ParameterReader:
         return self.parsed_texts[path]
 
     def _report_excess(self, scalar: ScalarNode, message: str) -> None:
-        if not self.diagnostics:
-            help_line = "from this file on none is read"
-            self.diagnostics.append(Diagnostic("too-large", message, scalar.span, Severity.WARNING, help=help_line))
+        help_line = "from this file on none is read"
+        self.diagnostics.append(Diagnostic("too-large", message, scalar.span, Severity.WARNING, help=help_line))
 
 
 def _name_for_node(written_path: str, node: Node) -> str:

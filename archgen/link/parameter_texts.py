@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from functools import lru_cache
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
@@ -20,6 +19,7 @@ _FALSE_WORDS = frozenset({"no", "No", "NO", "off", "Off", "OFF"})
 """What ROS reads as booleans besides `true` and `false`, where it is not quoted (rcl's parser, and YAML 1.1 in ROS 1)."""
 _MAX_NAME_LENGTH = 255
 """The longest name that ROS 2 gives a node, in characters: a longer key is no node's."""
+_MAX_SHOWN = 3
 _ANY_PARTS = "**"
 _ANY_PART = "*"
 
@@ -50,6 +50,15 @@ class ParameterText:
     root: MappingNode | None = None
     problem: str = ""
     ignores: tuple[IgnoreComment, ...] = ()
+    value_count: int = 0
+    """How many values it holds for all nodes."""
+    positions: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """The positions of the sections by the last part of their patterns; of those that end in a wildcard by ""."""
+
+    def list_candidates(self, name: str) -> list[ParameterSection]:
+        """Return the sections that may be for a node of a name, in the order of the file."""
+        positions = sorted((*self.positions.get(name, ()), *self.positions.get("", ())))
+        return [self.sections[position] for position in positions]
 
 
 def read_parameter_text(path: str, text: str, packed_span: Span | None = None) -> ParameterText:
@@ -60,7 +69,18 @@ def read_parameter_text(path: str, text: str, packed_span: Span | None = None) -
         line = f" (line {problem.span.line})" if problem and problem.span.line else ""
         return ParameterText(packed_span, problem=f"{problem.message}{line}" if problem else "it is no mapping")
     sections = tuple(_list_sections(document.root, packed_span))
-    return ParameterText(packed_span, sections, document.root, ignores=_place_ignores(document.ignores, packed_span))
+    positions: dict[str, list[int]] = {}
+    for position, section in enumerate(sections):
+        last_part = section.pattern[-1] if section.pattern else _ANY_PART
+        positions.setdefault("" if last_part in {_ANY_PART, _ANY_PARTS} else last_part, []).append(position)
+    return ParameterText(
+        packed_span,
+        sections,
+        document.root,
+        ignores=_place_ignores(document.ignores, packed_span),
+        value_count=sum(len(each.values) for each in sections) or sum(1 for _ in flatten_parameters(document.root)),
+        positions={name: tuple(numbers) for name, numbers in positions.items()},
+    )
 
 
 def _place_ignores(ignores: tuple[IgnoreComment, ...], packed_span: Span | None) -> tuple[IgnoreComment, ...]:
@@ -110,7 +130,6 @@ def _fold_pattern(pattern: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-@lru_cache(50_000)
 def matches_node_name(pattern: tuple[str, ...], name: tuple[str, ...]) -> bool:
     """Whether a pattern of names covers a node's full name: `*` is any one name, `**` any number of them, none too."""
     if sum(part != _ANY_PARTS for part in pattern) > len(name):
@@ -139,7 +158,8 @@ def find_node_values(
         return (), FileRemark(f"`{scalar.text}` cannot be read: {parameter_text.problem}", scalar.span)
     name = _split_name(node.full_name)
     if parameter_text.sections:
-        sections = [each for each in parameter_text.sections if matches_node_name(each.pattern, name)]
+        candidates = parameter_text.list_candidates(name[-1] if name else "")
+        sections = [each for each in candidates if matches_node_name(each.pattern, name)]
         values = tuple(value for section in sections for value in section.values)
         return values, None if sections else _remark_other_names(parameter_text, scalar, node)
     root = parameter_text.root
@@ -155,8 +175,8 @@ def find_node_values(
 
 
 def _remark_other_names(parameter_text: ParameterText, scalar: ScalarNode, node: Node) -> FileRemark:
-    names = list(dict.fromkeys(section.name for section in parameter_text.sections))
-    shown_names = ", ".join(f"`{name}`" for name in names[:3]) + (", ..." if len(names) > 3 else "")  # noqa: PLR2004
+    names = [f"`{section.name}`" for section in parameter_text.sections[:_MAX_SHOWN]]
+    shown_names = ", ".join([*names, *(["..."] if len(parameter_text.sections) > _MAX_SHOWN else [])])
     return FileRemark(
         f"`{scalar.text}` sets nothing for `{node.full_name}`",
         scalar.span,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from typing import Literal, TypeGuard
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -81,11 +82,14 @@ def list_components(architecture: Architecture, node: Node) -> tuple[Component, 
     return tuple(architecture.components[name] for name in node.implements if name in architecture.components)
 
 
-def find_declarations(architecture: Architecture, node: Node) -> dict[str, Parameter]:
+def find_declarations(architecture: Architecture, node: Node) -> Mapping[str, Parameter]:
     """Return the parameters that the components of a node declare; of those with one name the first component's."""
     ros_1 = is_ros_1(architecture.distro)
+    components = list_components(architecture, node)
+    if len(components) == 1 and not ros_1:
+        return components[0].parameters  # of nearly all nodes: rules ask for them again and again
     declarations: dict[str, Parameter] = {}
-    for component in list_components(architecture, node):
+    for component in components:
         for name, parameter in component.parameters.items():
             declarations.setdefault(canonical_name(name, ros_1=ros_1), parameter)
     return declarations

@@ -38,9 +38,7 @@ def _list_setting_nodes(architecture: Architecture, component_id: str, name: str
             yield node
 
 
-def _describe_loss(
-    architecture: Architecture, change: Change, name: str, part: str, setting_nodes: list[Node]
-) -> str:
+def _describe_loss(architecture: Architecture, change: Change, name: str, part: str, setting_nodes: list[Node]) -> str:
     component = architecture.components.get(change.element_id)
     parameter = component.parameters.get(name) if component else None
     place = f"the parameter {tick_name(name)} of {tick_name(change.element_id)}"
