@@ -11,6 +11,7 @@ from archgen.compare.losses.loss_wording import tick_name
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.parameter_values import canonical_name, find_value_fault
+from archgen.model.review_settings import BreakCategory
 from archgen.model.ros_distro import is_ros_1
 
 _SECTION = "parameters."
@@ -27,7 +28,7 @@ def find_changed_parameters(context: ChangeContext) -> Iterator[PartnerLoss]:
         phrase = _describe_loss(context.after, change, name, part, setting_nodes) if setting_nodes else ""
         if phrase:
             partners = dict.fromkeys(owner for node in setting_nodes for owner in node.owners)
-            category = "meaning" if part == "unit" else "wire"
+            category: BreakCategory = "meaning" if part == "unit" else "wire"
             yield from context.losses_of_users([index], partners, f"{phrase}; {{}} it", "sets", category)
 
 

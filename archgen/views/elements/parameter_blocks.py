@@ -102,13 +102,16 @@ def _to_text(text: str | None) -> Inlines:
 def make_effective_table(lookup: Lookup, node: Node) -> Table | None:
     """List the parameters of a node with the values that count; where they come from, if not all are the node's own."""
     parameters = find_effective_parameters(lookup.architecture, node)
+    shows_origin = any(each.origin != "node" for each in parameters.values())
     rows = tuple(
-        (_to_code(each.name), inline_text.to_inlines(_value_run(lookup, node, each)), _to_text(_origin_text(each)))
+        (
+            _to_code(each.name),
+            inline_text.to_inlines(_value_run(lookup, node, each)),
+            *((_to_text(_origin_text(each)),) if shows_origin else ()),
+        )
         for each in parameters.values()
     )
-    columns = (Column("Parameter"), Column("Value"), Column("From"))
-    if all(each.origin == "node" for each in parameters.values()):
-        columns, rows = columns[:2], tuple(row[:2] for row in rows)
+    columns = (Column("Parameter"), Column("Value"), *((Column("From"),) if shows_origin else ()))
     return Table(f"table:parameters/{node.id}", f"{node.id}: parameters", columns, rows) if rows else None
 
 
@@ -130,7 +133,7 @@ def _value_text(node: Node, parameter: EffectiveParameter) -> str:
 
 def _origin_text(parameter: EffectiveParameter) -> str:
     words = {"ros": "all nodes", "component": "component", "command": "output of a command", "node": "node", "none": ""}
-    return words.get(parameter.origin) or parameter.at.file
+    return parameter.at.file if parameter.origin == "file" else words[parameter.origin]
 
 
 def list_parameter_lines(component: Component) -> Iterator[str]:
