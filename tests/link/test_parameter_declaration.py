@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.link.declare.parameter_declaration import hand_in_value
+import pytest
+
+from archgen.link.declare.parameter_declaration import fill_in_text, hand_in_value
 from archgen.model.parameter import Operation, Parameter, ParameterValue
 from archgen.pipeline import CheckedProject, check_project
 
@@ -102,3 +104,23 @@ def test_a_value_is_handed_in_by_the_component_around() -> None:
     assert (handed.name, handed.value, handed.type) == ("arm_side", "left", "string")
     assert hand_in_value(inner, {}) is None
     assert hand_in_value(Parameter("x", value=1), {}) == Parameter("x", value=1)
+
+
+@pytest.mark.parametrize(
+    ("text", "filled_in"),
+    [
+        ("$(self.prefix)base_link", ("left_base_link", ())),
+        ("$(self.count)", (3, ())),
+        ("n$(self.count)", ("n3", ())),
+        ("$(self.flag)", (True, ())),
+        ("$(self.nix)/x/$(self.set.a)", ("$(self.nix)/x/1.5", ("nix",))),
+        ("$$(self.count)", ("$(self.count)", ())),
+        ("$(find-pkg-share x)", ("$(find-pkg-share x)", ())),
+        ("$(self.unset)", ("$(self.unset)", ())),
+        ("$(self.", ("$(self.", ())),
+    ],
+)
+def test_references_in_text_are_filled_in(text: str, filled_in: tuple[object, tuple[str, ...]]) -> None:
+    values = {"prefix": "left_", "count": 3, "flag": True, "set.a": 1.5, "unset": None}
+    outer = {name: Parameter(name, value=value) for name, value in values.items()}
+    assert fill_in_text(text, outer) == filled_in

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import cast, get_args
 
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link import mapping_values
-from archgen.model.parameter import CallMode, Operation, Parameter, Visibility
+from archgen.model.parameter import CallMode, Operation, Parameter, Visibility, format_parameter
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, node_to_data
 
 _VISIBILITIES = frozenset(get_args(Visibility))
 _CALL_MODES = frozenset(get_args(CallMode))
 _HANDED_PREFIX = "self."
+_OPENING = "$("
+_REFERENCE_PATTERN = re.compile(r"\$\$\(|\$\(self\.(?P<name>[^\s()]{1,200})\)")
 
 
 def declare_parameters(body: MappingNode) -> dict[str, Parameter]:
@@ -62,6 +65,28 @@ def hand_in_value(parameter: Parameter, outer_parameters: Mapping[str, Parameter
     if source is None:
         return None
     return replace(parameter, value=source.value, value_at=source.value_at, type=parameter.type or source.type)
+
+
+def fill_in_text(text: str, outer_parameters: Mapping[str, Parameter]) -> tuple[object, tuple[str, ...]]:
+    """Return a text with the values that `$(self.NAME)` stands for, and the names that the component around lacks.
+
+    `outer_parameters` are those of the component around it. Alone it keeps the value's type; `$$(` stands for `$(`. A name
+    without a value stays as it is written.
+    """
+    whole = _REFERENCE_PATTERN.fullmatch(text)
+    if whole is not None and whole["name"] and (source := outer_parameters.get(whole["name"])) is not None:
+        return (text if source.value is None else source.value), ()
+    missing_names: list[str] = []
+
+    def replace_reference(match: re.Match[str]) -> str:
+        if not match["name"]:
+            return _OPENING
+        parameter = outer_parameters.get(match["name"])
+        if parameter is None:
+            missing_names.append(match["name"])
+        return match[0] if parameter is None or parameter.value is None else format_parameter(parameter.value)
+
+    return _REFERENCE_PATTERN.sub(replace_reference, text), tuple(missing_names)
 
 
 def declare_operations(body: MappingNode) -> dict[str, Operation]:
