@@ -31,10 +31,10 @@ _ROS_1_NAMES = re.compile(
 """What roscpp, rospy, nodelets, diagnostics and image_transport read in ROS 1."""
 _SUBSTITUTION_MARK = "$("
 _TYPE_PHRASES = {
-    "boolean": "`true` or `false`",
+    "boolean": "boolean",
     "float": "number",
     "string": "text",
-    "boolean[]": "list of `true` and `false`",
+    "boolean[]": "list of booleans",
     "float[]": "list of numbers",
     "string[]": "list of texts",
 }

@@ -28,7 +28,7 @@ from archgen.model.parameter_values import canonical_name, find_value_fault, is_
         (Parameter("p", value="$(find x)"), 1, None),
         (Parameter("p", value=[1, "a"]), [True], None),
         (Parameter("p", value=[]), "a", None),
-        (Parameter("p", value=[True]), ["a"], "`[a]` is no list of `true` and `false`"),
+        (Parameter("p", value=[True]), ["a"], "`[a]` is no list of booleans"),
         (Parameter("p", value="a", choices=("a", 3)), 3, None),
         (Parameter("p", choices=(1, 0)), True, "`true` is none of its choices: `1`, `0`"),
         (Parameter("p", choices=tuple("abcdefghij")), "x", "`x` is none of its choices: `a`, `b`, `c`, `d`, `e`, `f`, `g`, `h`, ..."),

@@ -12,7 +12,9 @@ from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.parameter_record import record_effective, record_parameter
+from archgen.views.report.condensed_blocks import condense_component
 from archgen.views.shapes import Inlines, Table
+from archgen.views.tables.element_rows import list_element_rows
 
 ROBOT = """\
 archgen: 1
@@ -73,6 +75,12 @@ def test_a_component_shows_what_it_declares(tmp_path: Path) -> None:
     assert tables(blocks, "table:operations/") == [
         [["Operation", "Request", "Response", "Remarks"], ["get", "", "Pose", ""], ["set", "gain: float64", "", "asynchronous"]]
     ]  # fmt: skip
+    # On paper they stay tables, behind that of the ports.
+    condensed = condense_component(blocks, "C", "g.c")
+    assert [block.anchor for block in condensed if isinstance(block, Table)] == [
+        "table:set/g.c",
+        "table:operations/g.c",
+    ]
     assert make_parameter_blocks(lookup.architecture.components["g.plain"]) == []
     card = format_card(make_card(lookup, "component", "g.c"))
     for line in (
@@ -109,3 +117,22 @@ def test_a_node_shows_what_counts_and_where_it_comes_from(tmp_path: Path) -> Non
     assert record_effective(lookup.architecture, node)["map"] == {"origin": "none"}
     assert record_effective(lookup.architecture, node)["speed"] == {"origin": "file", "value": 1}
     assert record_parameter(lookup.architecture.components["g.c"].parameters["side"]) == {"from": "self.side"}
+
+
+def test_lists_have_a_row_for_each_parameter_of_a_node_and_each_operation(tmp_path: Path) -> None:
+    lookup = look(tmp_path)
+    columns, rows = list_element_rows(lookup, "parameters")
+    assert columns == ("parameter", "node", "components", "type", "value", "unit", "may_be", "from", "place")
+    assert rows[:3] == [
+        ("speed", "n", "g.c", "float", "1", "m/s", "0 to 1.5", "a.yaml", "a.yaml:1:30"),
+        ("mode", "n", "g.c", "", "fast", "", "fast, slow", "node", "archgen.yaml:18:68"),
+        ("map", "n", "g.c", "string", "", "", "", "", "archgen.yaml:11:11"),
+    ]
+    assert rows[-2:] == [
+        ("use_sim_time", "own", "g.plain", "", "true", "", "", "all nodes", "archgen.yaml:2:34"),
+        ("x.y", "own", "g.plain", "", "1", "", "", "node", "archgen.yaml:19:46"),
+    ]
+    assert list_element_rows(lookup, "operations")[1] == [
+        ("get", "g.c", "", "Pose", "", "", "archgen.yaml:15:22"),
+        ("set", "g.c", "gain: float64", "", "asynchronous", "", "archgen.yaml:15:33"),
+    ]

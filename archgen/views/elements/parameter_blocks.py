@@ -107,7 +107,7 @@ def make_effective_table(lookup: Lookup, node: Node) -> Table | None:
         (
             _to_code(each.name),
             inline_text.to_inlines(_value_run(lookup, node, each)),
-            *((_to_text(_origin_text(each)),) if shows_origin else ()),
+            *((_to_text(name_origin(each)),) if shows_origin else ()),
         )
         for each in parameters.values()
     )
@@ -117,13 +117,14 @@ def make_effective_table(lookup: Lookup, node: Node) -> Table | None:
 
 def _value_run(lookup: Lookup, node: Node, parameter: EffectiveParameter) -> Text:
     """Return a parameter's value, as a link where it is the name of a topic, service or action."""
-    text = _value_text(node, parameter)
+    text = describe_value_text(node, parameter)
     if parameter.origin == "none":
         return Text(text, muted=True)
     return inline_text.topic_link(text) if text in lookup.architecture.topics else Text(text, code=True)
 
 
-def _value_text(node: Node, parameter: EffectiveParameter) -> str:
+def describe_value_text(node: Node, parameter: EffectiveParameter) -> str:
+    """Return the value that counts as text, a command by its words; where nobody gives one, where it is to come from."""
     if parameter.origin == "none":
         return describe_missing(parameter.declaration) if parameter.declaration else ""
     if parameter.origin == "command":
@@ -131,7 +132,8 @@ def _value_text(node: Node, parameter: EffectiveParameter) -> str:
     return format_parameter(parameter.value)
 
 
-def _origin_text(parameter: EffectiveParameter) -> str:
+def name_origin(parameter: EffectiveParameter) -> str:
+    """Return where a value comes from, in a word; a file by its path."""
     words = {"ros": "all nodes", "component": "component", "command": "output of a command", "node": "node", "none": ""}
     return parameter.at.file if parameter.origin == "file" else words[parameter.origin]
 
@@ -162,4 +164,4 @@ def list_effective_lines(lookup: Lookup, node: Node) -> Iterator[str]:
         if each.origin == "none":
             yield f"{each.name} = ? ({describe_missing(each.declaration) if each.declaration else '?'})"
         else:
-            yield f"{each.name} = {_value_text(node, each)} <- {describe_origin(each)}"
+            yield f"{each.name} = {describe_value_text(node, each)} <- {describe_origin(each)}"
