@@ -117,12 +117,6 @@ class _NodeJudge:
         )
 
 
-def _list_given_values(node: Node) -> Iterator[ParameterValue]:
-    """Yield what a node and its files set; of a name that one place sets several times, each."""
-    yield from node.file_values
-    yield from node.own_values
-
-
 def wrong_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
     """A parameter is given a value that it cannot have: of another type, outside of its range, or none of its choices.
 
@@ -160,7 +154,7 @@ def wrong_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
         declarations = find_declarations(architecture, node)
         if not declarations:
             continue
-        for value in (*architecture.ros_parameters, *_list_given_values(node)):
+        for value in (*architecture.ros_parameters, *node.file_values, *node.own_values):
             name = canonical_name(value.name, ros_1=ros_1)
             if name not in declarations or (name, value.at) in seen_places:
                 continue

@@ -130,7 +130,7 @@ def test_lists_have_a_row_for_each_parameter_of_a_node_and_each_operation(tmp_pa
     ]
     assert rows[-2:] == [
         ("use_sim_time", "own", "g.plain", "", "true", "", "", "all nodes", "archgen.yaml:2:34"),
-        ("x.y", "own", "g.plain", "", "1", "", "", "node", "archgen.yaml:19:46"),
+        ("x.y", "own", "g.plain", "", "1", "", "", "node", "archgen.yaml:19:48"),
     ]
     assert list_element_rows(lookup, "operations")[1] == [
         ("get", "g.c", "", "Pose", "", "", "archgen.yaml:15:22"),
