@@ -70,7 +70,7 @@ def test_values_are_declarations_and_sets_dotted_names(parameters: str, normal_f
         ),
         (
             "{x: {type: flaot, unit: m}}",
-            ["11 wrong-value: `type` cannot be `flaot` | a parameter's type is `boolean`, `integer`, `float` or `string`, or a list of these, such as `float[]`"],
+            ["11 wrong-value: `type` cannot be `flaot` | did you mean `float`?"],
         ),
         (
             "{a..b: 1}",
