@@ -20,6 +20,7 @@ _FALSE_WORDS = frozenset({"no", "No", "NO", "off", "Off", "OFF"})
 _MAX_NAME_LENGTH = 255
 """The longest name that ROS 2 gives a node, in characters: a longer key is no node's."""
 _MAX_SHOWN = 3
+_NESTED_HELP = "its first keys are the names of other nodes"
 _ANY_PARTS = "**"
 _ANY_PART = "*"
 
@@ -171,7 +172,10 @@ def find_node_values(
             scalar.span,
             f"write `{node.name}: {{{_VALUE_KEY}: {{...}}}}`",
         )
-    return tuple(_find_nested_values(parameter_text, root, name, node_names)), None
+    mappings = _find_mappings(root, name) or ([] if _names_other_nodes(root, node_names) else [root])
+    if not mappings:
+        return (), FileRemark(f"`{scalar.text}` sets nothing for `{node.full_name}`", scalar.span, _NESTED_HELP)
+    return tuple(value for mapping in mappings for value in _read_values(mapping, parameter_text.packed_span)), None
 
 
 def _remark_other_names(parameter_text: ParameterText, scalar: ScalarNode, node: Node) -> FileRemark:
@@ -184,16 +188,11 @@ def _remark_other_names(parameter_text: ParameterText, scalar: ScalarNode, node:
     )
 
 
-def _find_nested_values(
-    parameter_text: ParameterText, root: MappingNode, name: tuple[str, ...], node_names: frozenset[str]
-) -> Iterator[ParameterValue]:
-    """Yield what a file of ROS 1 says to a node: what is below its name; all, if the file names no node at all."""
-    own_mappings = _find_mappings(root, name)
-    names_others = any(
+def _names_other_nodes(root: MappingNode, node_names: frozenset[str]) -> bool:
+    """Whether a file of ROS 1 is nested by nodes; else all of it is for the node that names it."""
+    return any(
         isinstance(entry.value, MappingNode) and not node_names.isdisjoint(_split_name(entry.key)[:1]) for entry in root
     )
-    for mapping in own_mappings or ([] if names_others else [root]):
-        yield from _read_values(mapping, parameter_text.packed_span)
 
 
 def _find_mappings(root: MappingNode, name: tuple[str, ...]) -> list[MappingNode]:

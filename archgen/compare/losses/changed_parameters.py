@@ -35,7 +35,8 @@ def find_changed_parameters(context: ChangeContext) -> Iterator[PartnerLoss]:
 def _list_setting_nodes(architecture: Architecture, component_id: str, name: str) -> Iterator[Node]:
     ros_1 = is_ros_1(architecture.distro)
     for node in architecture.nodes_implementing(component_id):
-        if any(canonical_name(value.name, ros_1=ros_1) == name for value in (*node.file_values, *node.own_values)):
+        names = (canonical_name(value.name, ros_1=ros_1) for value in (*node.file_values, *node.own_values))
+        if canonical_name(name, ros_1=ros_1) in names:
             yield node
 
 
@@ -49,7 +50,12 @@ def _describe_loss(architecture: Architecture, change: Change, name: str, part: 
         after = format_value(change.after) if change.after is not None else "none"
         return f"gives {place} in {after} instead of {format_value(change.before)}"
     if part in _LIMITING_PARTS:
+        ros_1 = is_ros_1(architecture.distro)
         values = [value for node in setting_nodes for value in (*node.file_values, *node.own_values)]
-        faults = (find_value_fault(parameter, value.value) for value in values if value.name == name)
+        faults = (
+            find_value_fault(parameter, value.value)
+            for value in values
+            if canonical_name(value.name, ros_1=ros_1) == canonical_name(name, ros_1=ros_1)
+        )
         return next((f"no longer takes a value of {place} ({fault})" for fault in faults if fault), "")
     return ""
