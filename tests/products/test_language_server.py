@@ -71,6 +71,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanguageServer]
         (COMPONENT + "        parameters:\n          gain:\n            type: |", "boolean integer float string boolean[] integer[] float[] string[]"),
         (COMPONENT + "        parameters:\n          a:\n            b: {t|}", "type value unit range choices description read_only visibility from hints"),
         (COMPONENT + "        operations:\n          a:\n            call: |", "synchronous asynchronous"),
+        (COMPONENT + "        operations:\n          a: |", "Force"),
+        (COMPONENT + "        operations:\n          a:\n            request: |", "Force"),
         (NODE + "    implements: |", "touch.skin skin motion.brake brake"),
         ("nodes:\n  n: |", "touch.skin skin motion.brake brake"),
         (NODE + "    host: |", "arm_pc"),
