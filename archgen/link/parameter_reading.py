@@ -49,7 +49,7 @@ def read_node_parameters(root: MappingNode, architecture: Architecture, files: P
     return ReadParameters(
         replace(architecture, nodes=nodes),
         reader.texts,
-        reader.packed_texts,
+        reader.list_packed_texts(),
         tuple(ignore for text in reader.parsed_texts.values() for ignore in text.ignores),
         tuple(reader.diagnostics),
     )
@@ -72,7 +72,8 @@ class _ParameterReader:
         )
         self._characters = self._values = self._looked_at = 0
         self.texts: dict[str, str] = {}
-        self.packed_texts: dict[str, str] = {}
+        self._texts_by_node: dict[str, dict[str, str | None]] = {}
+        """The texts by the path as nodes write it, and by node; None where it leads nowhere."""
         self.parsed_texts: dict[str, ParameterText] = {}
         self.diagnostics: list[Diagnostic] = []
 
@@ -106,13 +107,19 @@ class _ParameterReader:
         return False
 
     def _read_file(self, scalar: ScalarNode, node: Node) -> ParameterText | None:
-        packed_names = (_name_for_node(scalar.text, node), scalar.text)
+        packed_names = (f"{scalar.text} of {node.id}", scalar.text)
         for name, packed in zip(packed_names, map(self._packed.get, packed_names), strict=True):
             if isinstance(packed, ScalarNode) and packed.value is not None:
-                self.packed_texts[name] = packed.text
                 return self._parse(f"{packed.span.file}:{name}", packed.text, scalar, packed.span)
+        path = self._find_file(scalar, node)
+        text = None if path is None else self.texts[path]
+        self._texts_by_node.setdefault(scalar.text, {})[node.id] = text
+        return None if path is None or text is None else self._parse(path, text, scalar)
+
+    def _find_file(self, scalar: ScalarNode, node: Node) -> str | None:
+        """Return the path of a file that can be read, and keep its text."""
         path = self._search.find_file(scalar, node.package) if self._search else None
-        # A link leads to what another checkout may not have: as everywhere, none is followed.
+        # A link leads to what another checkout may not have: none is followed.
         if path is None or self._files is None or self._files.is_behind_link(path):
             return None
         if path not in self.texts:
@@ -121,10 +128,17 @@ class _ParameterReader:
             if file_text.problem is not None:
                 return None
             self.texts[path] = file_text.text
-        text = self.texts[path]
-        if self.packed_texts.setdefault(scalar.text, text) != text:
-            self.packed_texts[_name_for_node(scalar.text, node)] = text
-        return self._parse(path, text, scalar)
+        return path
+
+    def list_packed_texts(self) -> dict[str, str]:
+        """Return the texts as a packed file holds them: by the path that nodes write, where it is one file for all of them."""
+        packed_texts = {e.key: e.value.text for e in self._packed if isinstance(e.value, ScalarNode)}
+        for written_path, texts in self._texts_by_node.items():
+            is_shared = len(set(texts.values())) == 1
+            for node, text in texts.items():
+                if text is not None:
+                    packed_texts[written_path if is_shared else f"{written_path} of {node}"] = text
+        return packed_texts
 
     def _parse(self, path: str, text: str, scalar: ScalarNode, packed_span: Span | None = None) -> ParameterText | None:
         if path not in self.parsed_texts:
@@ -138,7 +152,3 @@ class _ParameterReader:
     def _report_excess(self, scalar: ScalarNode, message: str) -> None:
         help_line = "from this file on none is read"
         self.diagnostics.append(Diagnostic("too-large", message, scalar.span, Severity.WARNING, help=help_line))
-
-
-def _name_for_node(written_path: str, node: Node) -> str:
-    return f"{written_path} of {node.id}"

@@ -11,14 +11,14 @@ from archgen.link.parameter_flattening import flatten_parameters
 from archgen.model.node import Node
 from archgen.model.parameter import FileRemark, ParameterValue
 from archgen.syntax.yaml_parser import parse_yaml
-from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, YamlNode
 
 _VALUE_KEY = "ros__parameters"
 _TRUE_WORDS = frozenset({"yes", "Yes", "YES", "on", "On", "ON"})
 _FALSE_WORDS = frozenset({"no", "No", "NO", "off", "Off", "OFF"})
 """What ROS reads as booleans besides `true` and `false`, where it is not quoted (rcl's parser, and YAML 1.1 in ROS 1)."""
 _MAX_NAME_LENGTH = 255
-"""The longest name that ROS 2 gives a node, in characters: a longer key is no node's."""
+"""The longest name that ROS 2 gives a node, in characters: longer keys are no node's."""
 _MAX_SHOWN = 3
 _NESTED_HELP = "its first keys are the names of other nodes"
 _ANY_PARTS = "**"
@@ -93,18 +93,18 @@ def _place_ignores(ignores: tuple[IgnoreComment, ...], packed_span: Span | None)
 
 def _list_sections(root: MappingNode, packed_span: Span | None) -> Iterator[ParameterSection]:
     """Yield the sections of a file of ROS 2 in its order: mappings by namespaces and names, down to `ros__parameters`."""
-    pending: list[tuple[tuple[str, ...], MappingNode]] = [((), root)]
+    # The keys wait with the pattern above them, which they share: a file may hold a million of them.
+    pending: list[tuple[tuple[str, ...], str, YamlNode]] = [((), "", root)]
     while pending:
-        pattern, mapping = pending.pop()
+        outer_pattern, key, mapping = pending.pop()
+        pattern = (*outer_pattern, *_split_name(key))
+        if not isinstance(mapping, MappingNode) or sum(map(len, pattern)) > _MAX_NAME_LENGTH:
+            continue
         values = mapping.get(_VALUE_KEY)
         if isinstance(values, MappingNode):
             yield ParameterSection(_fold_pattern(pattern), tuple(_read_values(values, packed_span)))
         else:
-            pending += [
-                ((*pattern, *_split_name(entry.key)), entry.value)
-                for entry in reversed(list(mapping))
-                if isinstance(entry.value, MappingNode) and len(entry.key) <= _MAX_NAME_LENGTH
-            ]
+            pending += [(pattern, entry.key, entry.value) for entry in reversed(list(mapping))]
 
 
 def _read_values(mapping: MappingNode, packed_span: Span | None) -> Iterator[ParameterValue]:

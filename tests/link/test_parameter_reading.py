@@ -95,8 +95,12 @@ def test_a_packed_file_means_what_the_folder_means(tmp_path: Path) -> None:
     checked = check(
         tmp_path,
         {
-            "archgen.yaml": PROJECT.replace("nodes: {", "nodes: {m: {implements: c, parameter_files: [a.yaml]}, "),
-            "part/nodes.yaml": "nodes: {o: {implements: c, parameter_files: [a.yaml]}}",
+            "archgen.yaml": PROJECT.replace(
+                "nodes: {", "nodes: {m: {implements: c, parameter_files: [a.yaml, b.yaml]}, "
+            ),
+            # Paths are meant from the file that names them, too: the same words are another file, or none.
+            "part/nodes.yaml": "nodes: {o: {implements: c, parameter_files: [a.yaml, b.yaml]}}",
+            "part/b.yaml": "/**: {ros__parameters: {gain: 3.0}}",
             "a.yaml": "/**: {ros__parameters: {gain: 1.0}}",
             "part/a.yaml": "/**: {ros__parameters: {gain: 2.0}}",
             "config/a.yaml": "/**: {ros__parameters: {gain: high}}",
