@@ -56,6 +56,8 @@ def test_a_value_is_of_its_type_in_its_range_and_among_its_choices(
         ("qos_overridesx", False, False),
         ("start_type_description_service", False, True),
         ("start_type_description_service", True, False),
+        (".image_raw.compressed.jpeg_quality", False, True),
+        ("camera.image_raw.enable_pub_plugins", False, True),
         ("tf_prefix", True, True),
         ("image.compressed.jpeg_quality", True, True),
         ("gain", False, False),
