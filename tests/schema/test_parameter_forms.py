@@ -89,3 +89,24 @@ def test_a_name_is_bounded() -> None:
     assert [finding.partition(" ")[2] for finding in findings] == [
         f"wrong-value: the name of a parameter has more than {MAX_NAME_LENGTH} characters | use shorter names, or fewer sets in one another"
     ]
+
+
+def test_types_and_components_inside_others_are_brought_into_it_too() -> None:
+    text = """\
+groups: {g: {components: {shell: {components: {leaf: {parameters: {a: {b: 1}}}}}}}}
+component_types: {arm: {parameters: {gain: 2}, components: {motor: {parameters: {c: {d: 3}, c.d: 4}}}}}
+"""
+    document, _ = parse_yaml("f", text)
+    assert document is not None
+    assert [f"{d.span.line} {d.element}: {d.message}" for d in expand_parameters(document.root)] == [
+        "2 arm.motor: the parameter `c.d` is written twice"
+    ]
+    assert node_to_data(document.root) == {
+        "groups": {"g": {"components": {"shell": {"components": {"leaf": {"parameters": {"a.b": {"value": 1}}}}}}}},
+        "component_types": {
+            "arm": {
+                "parameters": {"gain": {"value": 2}},
+                "components": {"motor": {"parameters": {"c.d": {"value": 3}}}},
+            }
+        },
+    }
