@@ -30,6 +30,7 @@ from archgen.link import (
     element_outline,
     interface_sources,
     parameter_files,
+    parameter_reading,
     report_chapters,
     shipped_types,
     slice_merging,
@@ -81,6 +82,10 @@ class CheckedProject:
     """The options of rules that the project sets, by rule."""
     waiting_rules: frozenset[str] = frozenset()
     """The rules that wait until errors of reading and linking are mended."""
+    parameter_texts: Mapping[str, str] = field(default_factory=dict)
+    """The texts of the parameter files that nodes name and the project holds, by path."""
+    packed_parameters: Mapping[str, str] = field(default_factory=dict)
+    """The same by the name under which a packed file holds them."""
 
     @property
     def root(self) -> Path:
@@ -104,8 +109,9 @@ class CheckedProject:
 
     @property
     def input_files(self) -> tuple[str, ...]:
-        """The paths of all files that outputs depend on: YAML, interface definitions, chapters."""
-        return (*self.yaml_files, *self.loaded_project.interface_files, *self.chapters.texts)
+        """The paths of all files that outputs depend on: YAML, interface definitions, chapters, parameter files."""
+        interface_paths = self.loaded_project.interface_files
+        return (*self.yaml_files, *interface_paths, *self.chapters.texts, *self.parameter_texts)
 
     @property
     def has_errors(self) -> bool:
@@ -129,6 +135,7 @@ class CheckedProject:
             {name: text for file, text in texts.items() if (name := interface_sources.interface_name_of(file))},
             {path: chapter.text for path, chapter in self.chapters.texts.items()},
             self.chapters.read_pictures(),
+            self.packed_parameters,
         )
         ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
         return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
@@ -233,11 +240,16 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         damaged_elements=damaged_elements,
         is_partial=loaded_project.partial,
     )
-    architecture = transform.transform_architecture(linked_architecture)
-    analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
-    project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     # A project of one file is a whole: like its `sources`, what it names lies elsewhere.
     is_folder = loaded_project.first_file == project.PROJECT_FILE
+    read_parameters = parameter_reading.read_node_parameters(
+        merged_table, linked_architecture, loaded_project.files if is_folder else None
+    )
+    for path, text in read_parameters.texts.items():
+        loaded_project.sources.add_text(path, text)
+    architecture = transform.transform_architecture(read_parameters.architecture)
+    analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
+    project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     missing_files = (
         tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
     )
@@ -254,6 +266,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *interface_findings,
         *chapter_findings,
         *missing_files,
+        *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules
         ),
@@ -264,6 +277,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         all_diagnostics, architecture, _list_type_spans(merged_table)
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
+    ignores += read_parameters.ignores
     # Only projects that ignore something pay for this.
     first_lines = ignore_comments.find_first_lines(architecture) if ignores else {}
     settled_findings = settle_diagnostics(
@@ -289,6 +303,8 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         analysis,
         rule_options,
         waiting_rules,
+        read_parameters.texts,
+        read_parameters.packed_texts,
     )
 
 

@@ -25,12 +25,12 @@ groups:
       executor: {inputs: {ask: solver.solve}, outputs: {command: T}, requirements: [R-2, "R-2 in the dark"]}
   driving:
     components:
-      base: {role: sink, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
+      base: {role: sink, parameters: {speed.max: 1.5}, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
       camera: {title: Rear Camera}
       odd: {inputs: {x: stub}}
       stub:
 nodes:
-  cam: {implements: sensing.camera, package: usb_cam, host: board, status: existing}
+  cam: {implements: sensing.camera, package: usb_cam, host: board, status: existing, parameters: {image: {fps: 30}}}
   eyes: {implements: [detector, fusion], package: our_vision, host: pc, tags: [certified], owner: certh, publishes: {world: }}
   eyes_too: {implements: fusion, subscribes: {any_of: }}
   relay: {package: topic_tools}
@@ -87,6 +87,8 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ("behaviour:event", "detector fusion"),
     ("finding:unread-output", "detector fusion d.base"),
     ("node:eyes", "detector fusion"),
+    ("parameter:speed.*", "d.base"),
+    ("parameter:image.fps", "camera"),  # of a node
     ("node:eyes*", "detector fusion"),
     ("+role:sink -sensing", "detector fusion solver executor d.base"),
     ("host:pc..base", "detector fusion solver executor d.base"),

@@ -129,6 +129,8 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     # Physical ports count here: their types need no message, but they use the type.
     used_types = {port.type for port in _all_ports(architecture)}
+    for component in architecture.components.values():
+        used_types.update(name for operation in component.operations.values() for name in operation.type_names)
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
         used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)

@@ -26,6 +26,8 @@ LISTABLE_KINDS = (
     "types",
     "requirements",
     "chains",
+    "parameters",
+    "operations",
     "hosts",
     "backends",
 )

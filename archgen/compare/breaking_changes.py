@@ -13,6 +13,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
 from archgen.compare.losses.changed_distro import find_changed_distro
 from archgen.compare.losses.changed_meanings import find_changed_meanings
+from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
@@ -40,6 +41,7 @@ _LOSS_FINDERS = (
     find_weakened_sizes,
     find_unserved_requirements,
     find_changed_meanings,
+    find_changed_parameters,
     find_renamed_sources,
 )
 

@@ -14,6 +14,8 @@ from archgen.diagnostics.common_wording import join_words
 _MAX_LENGTH = 80
 _NAMED_SECTIONS = {
     "parameters": "parameter",
+    "parameter_commands": "command for the parameter",
+    "operations": "operation",
     "constants": "constant",
     "fields": "field",
     "defaults": "default of",
@@ -22,6 +24,13 @@ _NAMED_SECTIONS = {
     "scheduling": "order on core",
 }
 """What sentences call the keys of a section, by the section."""
+_PARTS_OF: Mapping[str, frozenset[str]] = {
+    "parameters": frozenset(
+        {"type", "unit", "range", "choices", "description", "read_only", "visibility", "from", "hints"}
+    ),
+    "operations": frozenset({"title", "request", "response", "call", "visibility", "description"}),
+}
+"""Sections whose keys may be parts of what they name, behind a colon."""
 _ACCEPTED_PREFIX = "review.accepted."
 _TIMING_SECTIONS = {"calls": "calls of", "uses": "use of"}
 """What sentences call the keys below a key of `timing`, by that key."""
@@ -88,6 +97,9 @@ def _key_noun(key: str) -> str:
         if timing_key in _TIMING_SECTIONS and part:
             return f"{_TIMING_SECTIONS[timing_key]} `{shorten_text(part)}`"
     section, _, name = key.partition(".")
+    if section in _PARTS_OF and name.rpartition(":")[2] in _PARTS_OF[section]:
+        element_name, _, part = name.rpartition(":")
+        return f"{_spell_out(part)} of the {_NAMED_SECTIONS[section]} `{shorten_text(element_name)}`"
     if section in _NAMED_SECTIONS and name:
         return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"
     return _spell_out(key.removeprefix("timing.").replace(".", " "))

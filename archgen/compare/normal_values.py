@@ -58,14 +58,15 @@ def parameter_leaves(prefix: str, value: object) -> Iterator[tuple[str, object]]
         # An empty mapping is a leaf: it differs from no parameter at all.
         yield prefix, "{}"
     else:
-        yield prefix, _freeze_value(value)
+        yield prefix, freeze_value(value)
 
 
-def _freeze_value(value: object) -> object:
+def freeze_value(value: object) -> object:
+    """Return the value of a parameter so that equal ones compare equal, and true differs from 1."""
     if isinstance(value, list):
-        return tuple(_freeze_value(item) for item in value) or "[]"
+        return tuple(freeze_value(item) for item in value) or "[]"
     if isinstance(value, Mapping):
-        return tuple((key, _freeze_value(item)) for key, item in value.items())
+        return tuple((key, freeze_value(item)) for key, item in value.items())
     if isinstance(value, bool):
         return BooleanValue(value)
     return "null" if value is None else value

@@ -35,6 +35,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "unmapped-component",
         "unpublished-output",
         "unread-output",
+        "unset-parameter",
         "unsubscribed-input",
         "unused-type",
     }
@@ -65,6 +66,7 @@ _FILE_RULES = frozenset(
         "unaccounted-topic",
         "unchecked-message",
         "unjustified-node",
+        "unknown-parameter",
         "unmapped-type",
         "unnamed-source",
         "wrong-section",

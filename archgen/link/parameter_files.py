@@ -14,11 +14,12 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 MISSING_PARAMETER_FILE = Rule(
     "missing-parameter-file",
-    Severity.WARNING,
+    Severity.OFF,
     """\
 A parameter file that a node names is not there.
 
-Why: The node would not start, or run with its defaults. A path is looked for below the project's folder, beside the file that
+Why: The node would not start, or run with its defaults. The rule is off unless the project asks for it, since many files are
+written or installed only on the robot. A path is looked for below the project's folder, beside the file that
 names it, and in the folder of the node's `package`. Where the project holds neither that package nor the path's first folder,
 the file is the package's affair, and nobody looks. What begins with `/`, `~`, `..`, `$(...)` or `package://` is not looked
 for, nor is what a project of one file names.
@@ -27,6 +28,7 @@ Bad:
 
     # file: archgen.yaml
     archgen: 1
+    rules: {missing-parameter-file: warning}
     groups:
       sensing:
         components:
@@ -40,6 +42,7 @@ Good:
 
     # file: archgen.yaml
     archgen: 1
+    rules: {missing-parameter-file: warning}
     groups:
       sensing:
         components:
@@ -59,7 +62,7 @@ _SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "archge
 
 def find_missing_parameter_files(root: MappingNode, files: ProjectFiles) -> Iterator[Diagnostic]:
     """Report the parameter files of the merged project that should be in it, and are not."""
-    search = _FileSearch(files)
+    search = ParameterFileSearch(files)
     for node_id, _, body in mapping_values.iterate_elements(root, "nodes"):
         for scalar in mapping_values.get_scalars(body, "parameter_files"):
             if search.is_missing(scalar, mapping_values.get_text(body, "package")):
@@ -73,31 +76,45 @@ def find_missing_parameter_files(root: MappingNode, files: ProjectFiles) -> Iter
                 )
 
 
-class _FileSearch:
+def _list_tops(scalar: ScalarNode) -> list[str]:
+    """Return the folders from which a path is meant: the project's, and that of the file that names it."""
+    return list(dict.fromkeys(["", posixpath.dirname(scalar.span.file)]))
+
+
+class ParameterFileSearch:
     """Looks for files in a project; its folders are listed once, and only if a file is not where it should be."""
 
     def __init__(self, files: ProjectFiles) -> None:
         self._files = files
         self._parents_by_name: dict[str, list[str]] | None = None
+        self._present_paths: dict[str, bool] = {}
 
     def is_missing(self, scalar: ScalarNode, package: str | None) -> bool:
         """Whether a file that a node of a package names should be in the project, and is not."""
-        if _ELSEWHERE.match(scalar.text):
+        if _ELSEWHERE.match(scalar.text) or self.find_file(scalar, package) is not None:
             return False
-        naming_folder = posixpath.dirname(scalar.span.file)
-        tops = list(dict.fromkeys(["", naming_folder]))
-        if self._is_below(tops, scalar.text):
-            return False
+        tops = _list_tops(scalar)
         package_folders = self._find_folders(package) if package else []
-        if self._is_below(package_folders, scalar.text):
-            return False
         first_part = posixpath.normpath(scalar.text).partition("/")[0]
         return not package or bool(package_folders) or not set(tops).isdisjoint(self._find_parents(first_part))
 
-    def _is_below(self, folders: list[str], path: str) -> bool:
+    def find_file(self, scalar: ScalarNode, package: str | None) -> str | None:
+        """Return the path in the project of a file that a node of a package names; None where it lies elsewhere."""
+        if _ELSEWHERE.match(scalar.text):
+            return None
+        path = self._find_below(_list_tops(scalar), scalar.text)
+        return path or (self._find_below(self._find_folders(package), scalar.text) if package else None)
+
+    def _find_below(self, folders: list[str], path: str) -> str | None:
         paths = [posixpath.normpath(posixpath.join(folder, path)) for folder in folders]
         # Nothing outside is looked at, not even whether it exists: `a/../../x` leads there, too.
-        return any(not path.startswith("../") and read_binary_file(self._files, path) is not None for path in paths)
+        return next((path for path in paths if not path.startswith("../") and self._is_present(path)), None)
+
+    def _is_present(self, path: str) -> bool:
+        # A thousand nodes may name one file.
+        if path not in self._present_paths:
+            self._present_paths[path] = read_binary_file(self._files, path) is not None
+        return self._present_paths[path]
 
     def _find_folders(self, name: str) -> list[str]:
         return [posixpath.join(parent, name) for parent in self._find_parents(name)]

@@ -14,6 +14,7 @@ from archgen.link.declare.node_declaration import NodeContext, declare_nodes, re
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
+from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
@@ -68,6 +69,7 @@ def link_project(  # noqa: PLR0913 - all by name
         distro=mapping_values.get_text(ros_section, "distro"),
         distro_at=mapping_values.get_span(ros_section, "distro"),
         shared_topics=mapping_values.get_texts(ros_section, "shared_topics"),
+        ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
         layout=mapping_values.get_layout(root),
         partners=section_declaration.declare_partners(root),
         use_cases=section_declaration.declare_use_cases(root),

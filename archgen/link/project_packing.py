@@ -40,14 +40,16 @@ class PackedProject:
 
 @dataclass(frozen=True, slots=True)
 class PackedAttachments:
-    """The contents of files other than YAML.
+    """The contents of files other than slices.
 
-    The project's own interfaces by full name, its chapters by path, and the pictures in the chapters by path.
+    The project's own interfaces by full name, its chapters by path, the pictures in the chapters by path, and the
+    parameter files of its nodes by name.
     """
 
     definitions: Mapping[str, str] = field(default_factory=dict)
     texts: Mapping[str, str] = field(default_factory=dict)
     pictures: Mapping[str, bytes] = field(default_factory=dict)
+    parameter_texts: Mapping[str, str] = field(default_factory=dict)
 
 
 class _CommentPlacer:
@@ -112,6 +114,8 @@ def pack_project(
     ros = {key: value for key, value in _copy_dict(project_data.get("ros")).items() if key != "interfaces"}
     if attachments.definitions:
         ros["definitions"] = {**_copy_dict(ros.get("definitions")), **attachments.definitions}
+    if attachments.parameter_texts:
+        ros["parameter_texts"] = dict(attachments.parameter_texts)
     report = _copy_dict(project_data.get("report"))
     if attachments.texts:
         report["texts"] = dict(attachments.texts)

@@ -80,13 +80,16 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
 
 
 def _is_parameter(path: KeyPath) -> bool:
-    # nodes, id, parameters, name: a parameter is one value even if it is a mapping, and is never merged.
-    return len(path) == 4 and path[0] == "nodes" and path[2] == "parameters"  # noqa: PLR2004
+    # `nodes, id, parameters, name` or `ros, parameters, name`: a parameter is one value even if it is a mapping, and is
+    # never merged. At components it is a declaration, which several files may complete.
+    return path[-2:-1] == ("parameters",) and (path[:1], len(path)) in {(("nodes",), 4), (("ros",), 3)}
 
 
 def _diagnose_conflict(entry: MappingEntry, first_entry: MappingEntry, path: KeyPath) -> Diagnostic:
     owner = element_of_path(path[:-1])
     owner_phrase = f" of `{owner}`" if owner else ""
+    if path[0] == "groups" and path[-3:-2] == ("parameters",):
+        owner_phrase = f" of the parameter `{path[-2]}`{owner_phrase}"
     message = f"`{path[-1]}`{owner_phrase} is written in two places"
     help_line = "a value is written once in the whole project, even where both are equal: keep one of them"
     return diagnose_repetition(

@@ -13,7 +13,7 @@ from archgen.merge.sequence_merge import MergedRun, merge_sequences
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
 _GATHERING_KEYS = frozenset(
-    {"backends", "interfaces", "requirements", "reviewers", "shared_topics", "sources", "tags", "use_cases"}
+    {"backends", "interfaces", "open", "requirements", "reviewers", "shared_topics", "sources", "tags", "use_cases"}
 )
 """Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""
 UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "owner"}

@@ -13,6 +13,7 @@ from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
+from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
@@ -144,6 +145,8 @@ class Architecture:
     distro: str | None = None
     distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()
+    ros_parameters: tuple[ParameterValue, ...] = field(default=())
+    """What `ros.parameters` says to every node."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
     partners: Mapping[str, Partner] = field(default_factory=dict)
     use_cases: Mapping[str, UseCase] = field(default_factory=dict)

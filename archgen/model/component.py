@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import Timing
+from archgen.model.parameter import Operation, Parameter
 from archgen.model.quantity import Quantity
 
 ComponentRole = Literal["source", "filter", "sink", "reactive"]
@@ -131,6 +132,11 @@ class Component:
     inputs_known: bool = False
     outputs: Mapping[str, Output] = field(default_factory=dict)
     outputs_known: bool = False
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+    """What it can be set to, by dotted name."""
+    open: tuple[str, ...] = ()
+    """Names of sets of parameters below which any name is accepted."""
+    operations: Mapping[str, Operation] = field(default_factory=dict)
     timing: Timing | None = None
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)

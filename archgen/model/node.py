@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import SchedulingOrder, Timing
+from archgen.model.parameter import FileRemark, ParameterValue
 from archgen.model.quantity import Quantity
 
 NodeKind = Literal["node", "lifecycle", "composable", "driver", "nodelet"]
@@ -96,6 +97,8 @@ class Node:
     """By component id (one entry for each activity), or by "" for a node that implements no component."""
     parameters: Mapping[str, object] = field(default_factory=dict)
     parameter_files: tuple[str, ...] = ()
+    parameter_commands: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """The words of the commands whose output is the value of a parameter, by its name."""
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
     written: bool = True
@@ -106,6 +109,14 @@ class Node:
     container_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     executor_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """The spans of `threads`, `scheduling`, `callback_groups` and `reentrant`, where they are written."""
+    own_values: tuple[ParameterValue, ...] = field(default=(), compare=False, repr=False)
+    """What `parameters` and `parameter_commands` say, each with its place; of a command the value is None."""
+    file_values: tuple[ParameterValue, ...] = field(default=(), compare=False, repr=False)
+    """What its parameter files say to it, as far as they lie in the project; of one name the last one counts."""
+    unread_files: tuple[str, ...] = field(default=(), compare=False, repr=False)
+    """The parameter files that could not be read: whatever they set is unknown."""
+    file_remarks: tuple[FileRemark, ...] = field(default=(), compare=False, repr=False)
+    """What is odd about its parameter files."""
 
     @property
     def full_name(self) -> str:

@@ -8,6 +8,7 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.node import Node
+from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
 
 
@@ -59,6 +60,8 @@ def find_by_key(
         return SelectorHit(frozenset(instances), frozenset())
     if key == "tag":
         return _find_tagged(architecture, value)
+    if key == "parameter":
+        return _find_by_parameter(architecture, value)
     if key == "finding":
         return _hit_of_findings(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
@@ -132,6 +135,17 @@ def _find_by_type(architecture: Architecture, pattern: str) -> Iterable[str]:
     yield from (output.component for output in architecture.outputs.values() if output.id in sent_outputs)
     yield from (port.component for port in architecture.inputs.values() if port.type in names)
     yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sent_outputs)
+
+
+def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
+    """Find the components that declare a parameter, and the nodes that have it, whoever gives it to them."""
+    components = (c.id for c in architecture.components.values() if _matches_any(pattern, c.parameters))
+    nodes = (
+        node.id
+        for node in architecture.nodes.values()
+        if _matches_any(pattern, find_effective_parameters(architecture, node))
+    )
+    return SelectorHit(frozenset(components), frozenset(nodes))
 
 
 def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:

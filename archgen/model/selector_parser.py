@@ -31,6 +31,7 @@ SELECTOR_KEYS = (
     "finding",
     "node",
     "is",
+    "parameter",
 )
 ALL_STEPS = -1
 """Any number of steps."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 from dataclasses import dataclass, field
 from itertools import islice
@@ -159,9 +160,30 @@ def _read_all_slices(state: ReadingState) -> None:
             ignored_files.append(
                 (file, next(filter(None, (find_closest(key, known_sections) for key in parsed_slice.sections)), None))
             )
+    named_paths = set(_list_parameter_paths(state))
+    ignored_files = [
+        (file, guess) for file, guess in ignored_files if named_paths.isdisjoint(_list_endings(file, named_paths))
+    ]
     # With a broken archgen.yaml it is unknown whether it has `sources`: the note could be wrong.
     if ignored_files and PROJECT_FILE not in state.broken_files:
         state.diagnostics.append(_diagnose_ignored_files(ignored_files))
+
+
+def _list_parameter_paths(state: ReadingState) -> Iterator[str]:
+    """Yield the paths of the parameter files that nodes name: these are read, as what they are."""
+    for document in state.documents:
+        nodes = document.root.get("nodes")
+        for entry in nodes if isinstance(nodes, MappingNode) else ():
+            files = entry.value.get("parameter_files") if isinstance(entry.value, MappingNode) else None
+            for item in files.items if isinstance(files, SequenceNode) else ():
+                if isinstance(item, ScalarNode):
+                    yield posixpath.normpath(item.text)
+
+
+def _list_endings(path: str, named_paths: set[str]) -> Iterator[str]:
+    """Yield the path and what is left of it without its first folders: a node may name it from its package's folder."""
+    parts = path.split("/") if named_paths else []
+    return ("/".join(parts[start:]) for start in range(len(parts)))
 
 
 def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:

@@ -14,6 +14,7 @@ import jsonschema_rs
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.schema import exchanged_ports, schema_wording, swallowed_components
 from archgen.schema.language_schema import load_schema
+from archgen.schema.parameter_forms import DECLARATION_KEYS
 from archgen.schema.schema_wording import ErrorPlace
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
@@ -190,10 +191,15 @@ def _prune_node(place: ErrorPlace, key: str | None) -> None:
         if _is_kept_list(place.path):
             place.entry.value = SequenceNode([], schema_wording.NO_DOCUMENT_SPAN)
         # An empty value below an id declares the element, as in `rgbd:`; normalising turns it into `{}`.
-        elif len(place.path) > 1 and place.path[-2] in _KEYS_OF_IDS:
+        elif len(place.path) > 1 and (place.path[-2] in _KEYS_OF_IDS or _is_part_of_declaration(place.path)):
             place.entry.value = ScalarNode(None, "", place.node.span)
         else:
             place.parent.entries.pop(place.entry.key, None)
+
+
+def _is_part_of_declaration(path: tuple[str | int, ...]) -> bool:
+    """Whether a path leads to a key of a parameter's declaration: without it the rest would be a set of parameters."""
+    return path[-1] in DECLARATION_KEYS and "parameters" in path[:-1] and path[0] != "nodes"
 
 
 def _is_kept_list(path: tuple[str | int, ...]) -> bool:

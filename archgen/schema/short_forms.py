@@ -14,6 +14,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
 from archgen.model.generic_names import write_generic_name
 from archgen.schema import component_sugar
+from archgen.schema.parameter_forms import expand_parameters
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
@@ -53,15 +54,22 @@ _COMPONENT_PARTS = {
     "outputs": ElementForm(("type",), frozenset({"from"})),
     "performance": _PLAIN_FORM,
     "containers": _CONTAINER_FORM,
+    "operations": ElementForm(("response",)),
 }
 _COMPONENT_FORM = ElementForm(
-    ("title",), frozenset({"from"}), keyed_forms=_COMPONENT_PARTS, part_forms={"node": _COMPONENT_NODE_FORM}
+    ("title",),
+    frozenset({"from"}),
+    keyed_forms=_COMPONENT_PARTS,
+    part_forms={"node": _COMPONENT_NODE_FORM},
+    # Written out by `expand_parameters`; the rest is data.
+    raw_keys=frozenset({"parameters"}),
 )
 _COMPONENT_PARTS["components"] = _COMPONENT_FORM  # components hold components, to any depth
 _COMPONENT_TYPE_FORM = ElementForm(
     ("title",),
     keyed_forms={**_COMPONENT_PARTS, "inputs": ElementForm(("type",))},
     part_forms={"node": _COMPONENT_NODE_FORM},
+    raw_keys=frozenset({"parameters"}),
 )
 _NODE_FORM = ElementForm(
     ("implements",),
@@ -97,7 +105,10 @@ _ROOT_FORM = ElementForm(
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
     },
-    part_forms={"review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"}))},
+    part_forms={
+        "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
+        "ros": ElementForm(raw_keys=frozenset({"parameters"})),
+    },
 )
 
 
@@ -112,12 +123,13 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
         for component in component_sugar.list_components(document.root)
         for diagnostic in _collect_overall(component)
     )
+    parameter_diagnostics = tuple(expand_parameters(document.root))
     _normalise_mapping(document.root, _ROOT_FORM)
     review = document.root.get("review")
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
-    return type_diagnostics + sugar_diagnostics + indicator_diagnostics
+    return type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:

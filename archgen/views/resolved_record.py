@@ -13,6 +13,7 @@ from archgen.model.component import Component, ComponentType, Group, Input, Outp
 from archgen.model.deployment import Host, Link
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.views.lookup import Lookup
+from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
 from archgen.views.shapes import Record
 from archgen.views.timing_record import record_timing
@@ -28,7 +29,7 @@ def make_record(lookup: Lookup) -> Record:
     return {
         "archgen_resolved": RECORD_VERSION,
         "project": pick_fields(architecture.project, "id", "title", "version", "description")
-        | drop_unknown({"distro": architecture.distro}),
+        | drop_unknown({"distro": architecture.distro, "parameters": record_values(architecture.ros_parameters)}),
         # Groups, components, connections, edges, nodes and topics are cut to the scope; all else is given in full.
         "partners": {
             p.id: pick_fields(p, "title", "description", "contact", "reviewers") for p in architecture.partners.values()
@@ -162,6 +163,9 @@ def _record_component(lookup: Lookup, component: Component) -> dict[str, object]
             },
             "inputs": {port.name: _record_input(port) for port in component.inputs.values()},
             "outputs": {port.name: _record_output(lookup, port) for port in component.outputs.values()},
+            "parameters": {name: record_parameter(each) for name, each in component.parameters.items()},
+            "open": list(component.open),
+            "operations": {name: record_operation(each) for name, each in component.operations.items()},
             "nodes": [node.id for node in lookup.nodes_of.get(component.id, ())],
             "timing": record_timing(component.timing),
             "tags": list(component.tags),
@@ -238,6 +242,8 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             ),
             "parameters": to_plain(node.parameters),
             "parameter_files": list(node.parameter_files),
+            "parameter_commands": {name: list(words) for name, words in node.parameter_commands.items()},
+            "effective_parameters": record_effective(lookup.architecture, node),
             "tags": list(node.tags),
             "urls": dict(node.urls),
         }

@@ -13,6 +13,7 @@ groups:
     owner: certh
     components:
       a: {outputs: {x: T}, timing: {rate: 10 Hz, wcet: 2 ms}}
+      p: {title: P, parameters: {gain: {value: 1, range: [0, 2]}}, open: [x], operations: {get: T}}
       b: {inputs: {x: a.x}, functionality: Does it., performance: {speed: {accuracy: 90 %}}}
 types: {T: {message: sensor_msgs/msg/Image, size: 1 kB}}
 hosts: {pc: {cores: 4}, arm: }
@@ -51,6 +52,14 @@ project: {id: robot, title: Robot}
         ("on: true", "on: false", "node na", "parameters.deep.on", True, False, "node `na`: parameter `deep.on` true → false"),
         ("level: 1", 'level: "1"', "node na", "parameters.deep.level", 1, "1", None),
         ("level: 1", "level: true", "node na", "parameters.deep.level", 1, True, None),
+        ("pc: {cores: 4}, arm: }", "pc: {cores: 4}, arm: }\nros: {parameters: {use_sim_time: true}}", "project robot", "parameters.use_sim_time", None, True, "the project: parameter `use_sim_time` set to true"),
+        ("gain: {value: 1", "gain: {value: 2", "component g.p", "parameters.gain", 1, 2, "`g.p`: parameter `gain` 1 → 2"),
+        ("gain: {value: 1", "gain: {value: [1, 2]", "component g.p", "parameters.gain", 1, "[1, 2]", "`g.p`: parameter `gain` 1 → `[1, 2]`"),
+        ("range: [0, 2]", "range: [0, 3]", "component g.p", "parameters.gain:range", "0 to 2", "0 to 3", "`g.p`: range of the parameter `gain` `0 to 2` → `0 to 3`"),
+        ("range: [0, 2]", "range: [0, 2], read_only: true", "component g.p", "parameters.gain:read_only", None, True, "`g.p`: read only of the parameter `gain` set to true"),
+        ("get: T", "get: {response: T, call: synchronous}", "component g.p", "operations.get:call", None, "synchronous", "`g.p`: call of the operation `get` set to `synchronous`"),
+        ("open: [x]", "open: [x, y]", "component g.p", "open", ["x"], ["x", "y"], "`g.p`: open sets `y` added"),
+        ("{deep: {on: true, level: 1}}", "{deep: {on: true, level: 1}}\n    parameter_commands: {d: [cat, x]}", "node na", "parameter_commands.d", None, "cat x", "node `na`: command for the parameter `d` set to `cat x`"),
         ("title: Robot", "title: Car", "project robot", "title", "Robot", "Car", "the project: title `Robot` → `Car`"),
         ("inputs: {x: a.x}", "inputs: {x: {from: a.x, optional: true}}", "input g.b.x", "optional", None, True, "`g.b.x` is optional now"),
         ("partners: {certh: CERTH", "rules: {unread-output: off}\npartners: {certh: CERTH", "project robot", "rules.unread-output", None, "off", "the project: severity of the rule `unread-output` set to `off`"),

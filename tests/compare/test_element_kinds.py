@@ -107,6 +107,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     "component mapped": "follows from the nodes",
     "project distro": "below `ros`",
     "project shared_topics": "below `ros`",
+    "project parameters": "below `ros`",
     "project layout": "a section of its own",
     "project chapters": "below `report`",
     "project review": "a section of its own",
@@ -153,7 +154,7 @@ TABLE_ONLY_FOR_MODEL = {
     "component mapped": "follows from the nodes",
     **{
         f"project {key}": "a field of the architecture or of the version"
-        for key in ("distro", "shared_topics", "layout", "chapters", "review", "rules", "site")
+        for key in ("distro", "shared_topics", "parameters", "layout", "chapters", "review", "rules", "site")
     },
 }
 RECORD_ONLY = {
@@ -170,6 +171,7 @@ RECORD_ONLY = {
     "output message": "that of the type",
     "node full_name": "made of name and namespace",
     "node endpoints": "the kind `port`",
+    "node effective_parameters": "made of the keys `parameters`",
     **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
 }
 NOT_IN_RECORD = {
@@ -197,7 +199,7 @@ CARD_ONLY = {
 ROBOT = """\
 archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D}
-ros: {distro: jazzy}
+ros: {distro: jazzy, parameters: {use_sim_time: true}}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c"}, sssa: S}
 use_cases: {UC-1: {title: U, description: D}}
 requirements: {R-1: {title: R, description: D, use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
@@ -221,6 +223,9 @@ groups:
         timing: {rate: 10 Hz, wcet: {max: 8 ms, p50: 2 ms, measured: true}, uses: {gpu: {max: 2 ms, min: 1 ms}}, deadline: 9 ms, cores: [1, 2]}
         tags: [t]
         urls: {a: "https://a.eu"}
+        parameters: {gain: {type: float, value: 1, unit: m, range: [0, 2], choices: [1, 2], description: D, read_only: true, visibility: public, hints: {a: {b: 1}}}, side: {from: self.side}}
+        open: [plugins]
+        operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, description: D}}
         outputs: {o: {type: T, external: the world, description: D}}
       b:
@@ -258,7 +263,8 @@ nodes:
     callback_groups: {fast: [a]}
     reentrant: true
     status: planned
-    parameters: {x: 1}
+    parameters: {plugins.x: 1}
+    parameter_commands: {plugins.y: [cat, z]}
     parameter_files: [p.yaml]
     tags: [t]
     urls: {a: "https://a.eu"}
@@ -425,7 +431,8 @@ def test_no_key_is_listed_twice() -> None:
             (
                 "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, component performance.p.accuracy, "
                 "component requirements, chain requirements, node package, node executable, node plugin, node status, "
-                "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
+                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, project parameters.x, "
+                "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99"

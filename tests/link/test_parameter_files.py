@@ -14,7 +14,8 @@ def findings_of(folder: Path, node: str, files: tuple[str, ...], project_file: s
     for name in files:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text("p: 1\n", encoding="utf-8")
-    text = f"archgen: 1\ngroups: {{g: {{components: {{c: C}}}}}}\nnodes: {{n: {{implements: c, {node}}}}}\n"
+    # The rule is off where nobody asks for it.
+    text = f"archgen: 1\nrules: {{missing-parameter-file: warning}}\ngroups: {{g: {{components: {{c: C}}}}}}\nnodes: {{n: {{implements: c, {node}}}}}\n"
     (folder / project_file).write_text(text, encoding="utf-8")
     path = folder if project_file == "archgen.yaml" else folder / project_file
     found = check_project(path).findings
@@ -51,7 +52,7 @@ def test_what_is_there_or_may_lie_elsewhere_is_not_missed(tmp_path: Path, node: 
 def test_what_the_project_should_hold_is_missed(tmp_path: Path, node: str, files: tuple[str, ...]) -> None:
     name = "config/nix.yaml" if "nix" in node else "config"
     column = len("nodes: {n: {implements: c, ") + node.index("[") + 2
-    assert findings_of(tmp_path, node, files) == [f"3:{column} there is no file `{name}`"]
+    assert findings_of(tmp_path, node, files) == [f"4:{column} there is no file `{name}`"]
 
 
 def test_nothing_outside_is_looked_at(tmp_path: Path) -> None:

@@ -26,8 +26,9 @@ from archgen.compare.kinds.shared_keys import (
     text_feature,
     timing_key,
 )
-from archgen.compare.normal_values import normalize_title
+from archgen.compare.normal_values import freeze_value, normalize_text, normalize_title, unordered_values
 from archgen.model.component import Component, Input, Output
+from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
 
 GROUP = KindSpec(
@@ -80,6 +81,55 @@ def _read_timing(component: Component, context: ReadContext) -> Mapping[str, obj
     )
     timing = component_nodes[0].timing.get(component.id) if has_one_node else component.timing
     return key_values(TIMING_KEYS, timing, context) if timing else {}
+
+
+def _read_parameters(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the declared parameters: each value by the parameter's name, what else is declared by `name:key`."""
+    values: dict[str, object] = {}
+    for name, parameter in component.parameters.items():
+        # Without a value there is a parameter all the same.
+        values[name] = _freeze_parameter(parameter.value)
+        facets = {
+            "type": parameter.type,
+            "unit": parameter.unit,
+            "range": parameter.range and " to ".join(map(format_parameter, parameter.range)),
+            "choices": parameter.choices and ", ".join(map(format_parameter, parameter.choices)),
+            "description": normalize_text(parameter.description),
+            "read_only": parameter.read_only or None,
+            "visibility": parameter.visibility,
+            "from": parameter.handed_from,
+            "hints": format_parameter(parameter.hints) if parameter.hints else None,
+        }
+        values |= {f"{name}:{key}": freeze_value(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _freeze_parameter(value: object) -> object:
+    """Return a value for comparing; a list as a whole, since sentences would tell its items apart."""
+    if value is None:
+        return "no value"
+    return format_parameter(value) if isinstance(value, list) else freeze_value(value)
+
+
+def _read_operations(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the operations: whether there is one by its id, what is said of it by `id:key`."""
+    values: dict[str, object] = {}
+    for name, operation in component.operations.items():
+        values[name] = "there"
+        facets = {
+            "title": None if operation.title in {title_from_id(name), name} else operation.title,
+            "request": operation.request,
+            "response": operation.response,
+            "call": operation.call,
+            "visibility": operation.visibility,
+            "description": normalize_text(operation.description),
+        }
+        values |= {f"{name}:{key}": _describe_types(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _describe_types(value: str | Mapping[str, str]) -> str:
+    return value if isinstance(value, str) else ", ".join(f"{name}: {type_name}" for name, type_name in value.items())
 
 
 def _is_mapped(component: Component, context: ReadContext) -> bool | None:
@@ -181,6 +231,9 @@ COMPONENT = KindSpec(
         LAYOUT,
         KeySpec("inputs", lambda each, _: _describe_ports(is_known=each.inputs_known, ports=each.inputs)),
         KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
+        KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+        KeySpec("open", lambda component, _: unordered_values(component.open), Effect.SYSTEM, noun="open sets"),
+        KeySpec("operations.", _read_operations, Effect.SYSTEM),
         URLS,
         KeySpec("performance.", _read_performance, Effect.SYSTEM),
         timing_key(_read_timing),

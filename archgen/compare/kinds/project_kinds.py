@@ -15,7 +15,7 @@ from archgen.compare.kinds.shared_keys import (
     URLS,
     text_feature,
 )
-from archgen.compare.normal_values import normalize_text, unordered_values
+from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
 from archgen.model.review_settings import ReviewSettings
 
@@ -28,6 +28,10 @@ def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, ob
         "backends": unordered_values(review.backends),
         **{f"accepted.{name}": "; ".join(texts) for name, texts in _group_accepted(review).items()},
     }
+
+
+def _read_parameters(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    return {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters}
 
 
 def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
@@ -66,6 +70,7 @@ PROJECT = KindSpec(
         DESCRIPTION,
         KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
         KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
+        KeySpec("parameters.", _read_parameters),
         KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),
         KeySpec("chapters", lambda _, context: context.version.chapter_order),
         KeySpec("review.", _read_review),

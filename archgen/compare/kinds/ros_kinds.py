@@ -24,7 +24,7 @@ from archgen.compare.kinds.shared_keys import (
     timing_key,
 )
 from archgen.compare.kinds.type_kind import TYPE
-from archgen.compare.normal_values import parameter_leaves, unordered_values
+from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
 from archgen.model.node import Node, PortUse, Qos
 from archgen.transform import ros_names
 
@@ -60,9 +60,15 @@ def _read_callback_groups(node: Node, context: ReadContext) -> Mapping[str, obje
 
 
 def _read_parameters(node: Node, _context: ReadContext) -> Mapping[str, object]:
-    return {
+    """Return what a node and its files set; that it stands in the one or the other is no difference."""
+    values = {value.name: freeze_value(value.value) for value in node.file_values}
+    return values | {
         key: value for name, parameter in node.parameters.items() for key, value in parameter_leaves(name, parameter)
     }
+
+
+def _read_commands(node: Node, _context: ReadContext) -> Mapping[str, object]:
+    return {name: " ".join(words) for name, words in node.parameter_commands.items()}
 
 
 def _read_timing(node: Node, context: ReadContext) -> Mapping[str, object]:
@@ -129,6 +135,7 @@ NODE = KindSpec(
         TAGS,
         URLS,
         KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+        KeySpec("parameter_commands.", _read_commands, Effect.SYSTEM),
         timing_key(_read_timing),
     ),
     elements=lambda version: {name: node for name, node in version.architecture.nodes.items() if node.written},

@@ -52,11 +52,13 @@ def _find_rewritten_components(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 
 def _find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find parameters of nodes that name a frame or a unit, and have another value."""
+    """Find parameters of nodes and components that name a frame or a unit, and have another value."""
     changes = [
         (index, change)
         for index, change in enumerate(context.changes)
-        if change.element_kind == "node" and change.before is not None and _MEASURE_PARAMETER.search(change.key or "")
+        if change.element_kind in {"node", "component"}
+        and change.before is not None
+        and _MEASURE_PARAMETER.search(change.key or "")
     ]
     inputs_by_component = _inputs_by_component(context) if changes else {}
     for index, change in changes:

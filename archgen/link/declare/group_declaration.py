@@ -9,6 +9,8 @@ from typing import NamedTuple, get_args
 from archgen.compose.project_expansion import ComponentShell
 from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
+from archgen.link.declare.handed_parameters import HandedParameters
+from archgen.link.declare.parameter_declaration import declare_operations
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
@@ -65,7 +67,11 @@ def declare_groups(
         join_ports(outline, sources, resolver)
     wiring = InputWiring(outline, resolver, types, sources)
     group_declarer = _GroupDeclarer(
-        outline, resolver, wiring, outside_readers=sources.list_given_outside() if sources else {}
+        outline,
+        resolver,
+        wiring,
+        HandedParameters(outline, resolver.diagnostics),
+        outside_readers=sources.list_given_outside() if sources else {},
     )
     open_shells = OpenShells(outline, sources) if sources else None
     groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
@@ -88,6 +94,7 @@ class _GroupDeclarer:
     outline: ElementOutline
     resolver: ReferenceResolver
     wiring: InputWiring
+    parameters: HandedParameters
     owners: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """The owners of groups and composed components, by complete id."""
     outside_readers: Mapping[str, MappingNode] = field(default_factory=dict)
@@ -208,6 +215,9 @@ class _GroupDeclarer:
             inputs_known=body.get("inputs") is not None,
             outputs=outputs,
             outputs_known=body.get("outputs") is not None,
+            parameters=self.parameters.find_parameters(component_id),
+            open=mapping_values.get_texts(body, "open"),
+            operations=declare_operations(body),
             timing=declare_timing(
                 entry,
                 PortResolver(self.resolver, component_id, (component_id,), self.outline.port_names),

@@ -14,11 +14,13 @@ from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger
+from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.port_resolution import PortResolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import Component
 from archgen.model.deployment import Container
 from archgen.model.node import Node, NodeKind, NodeStatus, PortUse, Qos, UseKind
+from archgen.model.parameter import ParameterValue
 from archgen.model.qos_profiles import qos_profile
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
 
@@ -109,6 +111,8 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         ),
         parameters=_read_parameters(body),
         parameter_files=mapping_values.get_texts(body, "parameter_files"),
+        parameter_commands=_read_commands(body),
+        own_values=tuple(_list_own_values(body)),
         tags=mapping_values.get_texts(body, "tags"),
         urls=mapping_values.get_text_mapping(body, "urls"),
         written=node_id not in implemented.planned_ids,
@@ -146,6 +150,17 @@ def _read_parameters(body: MappingNode) -> Mapping[str, object]:
     # The only part of the language where values keep the type that YAML gives them.
     parameters = node_to_data(mapping_values.get_mapping(body, "parameters"))
     return parameters if isinstance(parameters, dict) else {}
+
+
+def _read_commands(body: MappingNode) -> Mapping[str, tuple[str, ...]]:
+    commands = mapping_values.get_mapping(body, "parameter_commands")
+    return {entry.key: mapping_values.get_texts(commands, entry.key) for entry in commands}
+
+
+def _list_own_values(body: MappingNode) -> Iterator[ParameterValue]:
+    for entry in mapping_values.get_mapping(body, "parameter_commands"):
+        yield ParameterValue(entry.key, None, entry.key_span, entry.key_span)
+    yield from flatten_parameters(mapping_values.get_mapping(body, "parameters"))
 
 
 def _make_port_resolver(

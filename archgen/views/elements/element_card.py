@@ -11,6 +11,11 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.node import Node, Topic
 from archgen.views import inline_text
+from archgen.views.elements.parameter_blocks import (
+    list_effective_lines,
+    list_operation_lines,
+    list_parameter_lines,
+)
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state, name_chain
 from archgen.views.tables.type_fields import list_field_lines
@@ -143,6 +148,10 @@ def _component_card(lookup: Lookup, component: Component) -> ElementCard:
     lists = (
         ("inputs", inputs),
         ("outputs", outputs),
+        *_drop_empty_lists(
+            ("parameters", tuple(list_parameter_lines(component))),
+            ("operations", tuple(list_operation_lines(component))),
+        ),
         ("nodes", nodes),
         ("findings", tuple(_format_findings(lookup, component.id))),
     )
@@ -208,6 +217,11 @@ def _component_type_card(lookup: Lookup, component_type: ComponentType) -> Eleme
     return ElementCard(
         "component type", component_type.id, component_type.title, component_type.at, _known_facts(facts), lists
     )
+
+
+def _drop_empty_lists(*lists: tuple[str, tuple[str, ...]]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the lists that hold something: of most elements these say nothing, and that is no news."""
+    return (each for each in lists if each[1])
 
 
 def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:
@@ -282,7 +296,11 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {endpoint.name} ({endpoint.message or '?'})"
         for endpoint in lookup.endpoints_of.get(node.id, ())
     )
-    lists = (("topics, services and actions", lines), ("findings", tuple(_format_findings(lookup, node.id))))
+    lists = (
+        ("topics, services and actions", lines),
+        *_drop_empty_lists(("parameters", tuple(list_effective_lines(lookup, node)))),
+        ("findings", tuple(_format_findings(lookup, node.id))),
+    )
     return ElementCard("node", node.id, node.title, node.at, _known_facts(facts), lists)
 
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from archgen.model.component import Component, Group, Input, Output
 from archgen.views import inline_text
+from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
     Block,
@@ -85,7 +86,7 @@ def first_sentence(markdown: str | None) -> str | None:
 
 
 def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
-    """Describe a component: facts, functionality, picture, requirements, performance, inputs and outputs."""
+    """Describe a component: facts, functionality, picture, requirements, performance, ports, parameters, operations."""
     blocks: list[Block] = [
         Facts(tuple(_component_facts(lookup, component))),
         Markdown(component.functionality)
@@ -106,6 +107,7 @@ def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, 
     blocks += _performance_blocks(component)
     blocks += _input_blocks(lookup, component)
     blocks += _output_blocks(lookup, component)
+    blocks += make_parameter_blocks(component)
     return tuple(blocks)
 
 

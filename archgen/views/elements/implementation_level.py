@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from archgen.model.node import Endpoint, Node
 from archgen.views import element_references, inline_text
+from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
 from archgen.views.timing import element_timing
@@ -44,8 +45,8 @@ def make_node_blocks(lookup: Lookup, node: Node) -> tuple[Block, ...]:
         blocks.append(_endpoint_table(node, endpoints))
     else:
         blocks.append(Paragraph(inline_text.to_inlines(Text("It uses no topic, service or action.", muted=True))))
-    if node.parameters:
-        blocks.append(_parameter_table(lookup, node))
+    if table := make_effective_table(lookup, node):
+        blocks.append(table)
     return tuple(blocks)
 
 
@@ -126,41 +127,3 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
 
 def _internal_mark(endpoint: Endpoint) -> Inlines:
     return (Text(" internal", muted=True),) if endpoint.internal else ()
-
-
-def _parameter_table(lookup: Lookup, node: Node) -> Table:
-    rows = tuple(
-        (inline_text.to_inlines(Text(name, code=True)), inline_text.to_inlines(_parameter_run(lookup, value)))
-        for name, value in _flatten_parameters(node)
-    )
-    columns = (Column("Parameter"), Column("Value"))
-    return Table(f"table:parameters/{node.id}", f"{node.id}: parameters", columns, rows)
-
-
-def _parameter_run(lookup: Lookup, value: str) -> Text:
-    """Return a parameter's value, as a link where it is the name of a topic, service or action."""
-    return inline_text.topic_link(value) if value in lookup.architecture.topics else Text(value, code=True)
-
-
-def _flatten_parameters(node: Node) -> list[tuple[str, str]]:
-    """Return nested parameters as (dotted name, text) pairs, as `ros2 param list` shows them."""
-    rows: list[tuple[str, str]] = []
-    # A stack taken from its end: it is filled in reverse, so that parameters keep the order of the file.
-    pending: list[tuple[str, object]] = list(node.parameters.items())[::-1]
-    while pending:
-        name, value = pending.pop()
-        # An empty mapping has no leaf to show, so it is written as a value.
-        if isinstance(value, dict) and value:
-            pending += [(f"{name}.{key}", item) for key, item in reversed(list(value.items()))]
-        else:
-            rows.append((name, _format_parameter(value)))
-    return rows
-
-
-def _format_parameter(value: object) -> str:
-    """Format a parameter in YAML's spelling."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, list):
-        return f"[{', '.join(_format_parameter(item) for item in value)}]"
-    return "" if value is None else str(value)

@@ -13,6 +13,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
+from archgen.model.parameter_values import find_effective_parameters
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -37,6 +38,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *_list_behaviours((component.timing,)),
                     *(("finding", rule) for rule in rules[component.id]),
                     *(("is", name) for name in architecture.list_types_of(component)),
+                    *(("parameter", name) for name in component.parameters),
                 )
             )
         )
@@ -57,6 +59,7 @@ def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
                 *((key, value) for key, value in single_values if value is not None),
                 *_list_behaviours(node.timing.values()),
                 *(("finding", rule) for rule in rules),
+                *(("parameter", name) for name in find_effective_parameters(lookup.architecture, node)),
             )
         )
     )

@@ -21,11 +21,12 @@ _PORT_COLUMNS = (
 
 
 def condense_component(blocks: Iterable[Block], title: str, component_id: str) -> tuple[Block, ...]:
-    """Put the blocks of a component together: text, facts, picture, one table of ports."""
+    """Put the blocks of a component together: text, facts, picture, one table of ports, what can be set and called."""
     texts: list[Block] = []
     figures: list[Block] = []
     rows: list[FactRow] = []
     port_tables: list[tuple[str, Table]] = []
+    set_tables: list[Table] = []
     pending_title = ""
     for block in blocks:
         match block:
@@ -35,6 +36,8 @@ def condense_component(blocks: Iterable[Block], title: str, component_id: str) -
                 figures.append(block)
             case Table() if block.anchor.startswith(("table:inputs/", "table:outputs/")):
                 port_tables.append(("in" if block.anchor.startswith("table:inputs/") else "out", block))
+            case Table() if block.anchor.startswith(("table:set/", "table:operations/")):
+                set_tables.append(block)
             case Table():
                 rows.append(("Performance", inline_text.join_lines(_phrase_row(block, row) for row in block.rows)))
             case Bullets():
@@ -47,7 +50,7 @@ def condense_component(blocks: Iterable[Block], title: str, component_id: str) -
                 texts.append(block)
     facts = Facts(tuple(_order_component_facts(rows)))
     ports = [_join_ports(port_tables, f"table:ports/{component_id}", f"Ports of {title}")] if port_tables else []
-    return (*texts, *([facts] if facts.rows else []), *figures, *ports)
+    return (*texts, *([facts] if facts.rows else []), *figures, *ports, *set_tables)
 
 
 def _is_title(paragraph: Paragraph) -> bool:

@@ -10,7 +10,7 @@ from archgen.views import inline_text
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.report.condensed_blocks import FactRow, drop_repeated_columns
-from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Paragraph, Table, Text
+from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Paragraph, Table, Text, drop_empty_columns
 
 _USE_WORDS = {"subscribes": "sub", "publishes": "pub", "serves": "serves", "calls": "calls"}
 _USE_ORDER = tuple(_USE_WORDS)
@@ -174,6 +174,9 @@ def make_parameter_table(lookup: Lookup) -> Table | None:
         tables = [block for block in make_node_blocks(lookup, node) if isinstance(block, Table)]
         for table in tables:
             if table.anchor.startswith("table:parameters/"):
-                rows += [((Text(node.id, ref=f"node:{node.id}", code=True),), *row) for row in table.rows]
-    columns = (Column("Node"), Column("Parameter"), Column("Value"))
-    return Table("table:parameters", "Parameters of the nodes", columns, tuple(rows)) if rows else None
+                name: Inlines = (Text(node.id, ref=f"node:{node.id}", code=True),)
+                rows += [(name, *row, *(((),) if len(row) == 2 else ())) for row in table.rows]  # noqa: PLR2004
+    columns = (Column("Node"), Column("Parameter"), Column("Value"), Column("From"))
+    if not rows:
+        return None
+    return drop_empty_columns(Table("table:parameters", "Parameters of the nodes", columns, tuple(rows)))

@@ -45,7 +45,7 @@ def make_component_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             join_words(group.title, list_owner_titles(lookup, component.owners)),
             (f"component:{component.id}",),
             (component.id, *make_owner_keys(component.owners, tags)),
-            to_plain_text(component.functionality, component.description),
+            to_plain_text(component.functionality, component.description, *component.parameters, *component.operations),
         )
 
 

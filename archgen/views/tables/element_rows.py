@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from archgen.model.parameter_values import find_effective_parameters
+from archgen.views.elements import parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables
 
@@ -121,6 +123,33 @@ def _host_rows(lookup: Lookup) -> Iterator[TextRow]:
         yield (host.id, host.title, str(host.cores or ""), nodes, str(host.at))
 
 
+def _parameter_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for node in lookup.shown_nodes():
+        for name, each in find_effective_parameters(lookup.architecture, node).items():
+            declaration = each.declaration
+            yield (
+                name,
+                node.id,
+                ", ".join(node.implements),
+                (declaration.type or "") if declaration else "",
+                "" if each.origin == "none" else parameter_blocks.describe_value_text(node, each),
+                (declaration.unit or "") if declaration else "",
+                parameter_blocks.describe_limits(declaration) if declaration else "",
+                parameter_blocks.name_origin(each),
+                str(each.at) if each.at.file else "",
+            )
+
+
+def _operation_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for group in lookup.shown_groups():
+        for component in lookup.shown_components(group):
+            for each in component.operations.values():
+                request, response = (
+                    parameter_blocks.describe_types(types or "") for types in (each.request, each.response)
+                )
+                yield (each.id, component.id, request, response, each.call or "", each.visibility or "", str(each.at))
+
+
 # The column names are the header of what `archgen list` writes, so they are visible to users.
 _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
@@ -135,5 +164,10 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     "types": (("type", "message", "size", "remarks"), _type_rows),
     "requirements": (("id", "title", "use_cases", "served_by", "place"), _requirement_rows),
     "chains": (("id", "title", "through", "deadline", "place"), _chain_rows),
+    "parameters": (
+        ("parameter", "node", "components", "type", "value", "unit", "may_be", "from", "place"),
+        _parameter_rows,
+    ),
+    "operations": (("id", "component", "request", "response", "call", "visibility", "place"), _operation_rows),
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
 }

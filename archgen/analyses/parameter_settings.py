@@ -1,0 +1,298 @@
+"""Are the parameters that nodes are given those that their components declare, and has each one a value?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.parameter_values import (
+    canonical_name,
+    find_declarations,
+    find_effective_parameters,
+    find_value_fault,
+    is_open,
+    is_ros_parameter,
+    list_components,
+)
+from archgen.model.ros_distro import is_ros_1
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Node
+    from archgen.model.parameter import Parameter, ParameterValue
+
+_GUESS_BUDGET = 1_000_000
+"""Names that unknown ones are compared with, in all: 20,000 unknown ones among 50,000 would take minutes."""
+_MAX_SHOWN = 6
+"""Parameters that one finding names."""
+
+
+def unknown_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A node is given a parameter that none of its components declares.
+
+    Why: A node of ROS ignores what it does not know, without a word: the value that somebody tuned has no effect. It is judged
+    where all components of the node declare `parameters`. What ROS itself declares (`use_sim_time`, `qos_overrides`, ...) is
+    known, and below the names in `open` everything is.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              planner:
+                functionality: Plans the way.
+                parameters: {max_speed: {type: float, value: 0.8, unit: m/s}}
+        nodes:
+          planner: {implements: planner, parameters: {maxspeed: 0.5}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              planner:
+                functionality: Plans the way.
+                parameters: {max_speed: {type: float, value: 0.8, unit: m/s}}
+        nodes:
+          planner: {implements: planner, parameters: {max_speed: 0.5}}
+    """
+    judges = [_NodeJudge(architecture, node) for node in architecture.nodes.values()]
+    known_values: set[tuple[str, Span]] = set()
+    unknown_values: dict[tuple[str, Span], tuple[_NodeJudge, ParameterValue]] = {}
+    for judge in judges:
+        # A file may give to many nodes what only one of them knows.
+        for value in judge.node.file_values:
+            key = (value.name, value.name_at)
+            if judge.may_know(value.name):
+                known_values.add(key)
+            else:
+                unknown_values.setdefault(key, (judge, value))
+    findings = [(judge, value) for judge in judges for value in judge.node.own_values if not judge.may_know(value.name)]
+    findings += [finding for key, finding in unknown_values.items() if key not in known_values]
+    guess_count = 0
+    for judge, value in findings:
+        guess_count += judge.declaration_count
+        yield judge.report_unknown(value, may_guess=guess_count <= _GUESS_BUDGET)
+
+
+class _NodeJudge:
+    """What the components of one node declare."""
+
+    def __init__(self, architecture: Architecture, node: Node) -> None:
+        self.node = node
+        self._ros_1 = is_ros_1(architecture.distro)
+        self._components = list_components(architecture, node)
+        self._declarations = find_declarations(architecture, node)
+        self._is_judged = bool(self._components) and all(component.parameters for component in self._components)
+
+    @property
+    def declaration_count(self) -> int:
+        """How many names a guess is made among."""
+        return len(self._declarations)
+
+    def may_know(self, written_name: str) -> bool:
+        """Whether a parameter is declared, open or ROS's own, or a component declares none at all."""
+        if not self._is_judged:
+            return True
+        name = canonical_name(written_name, ros_1=self._ros_1)
+        return (
+            name in self._declarations or is_ros_parameter(name, ros_1=self._ros_1) or is_open(name, self._components)
+        )
+
+    def report_unknown(self, value: ParameterValue, *, may_guess: bool) -> Diagnostic:
+        name = canonical_name(value.name, ros_1=self._ros_1)
+        names = [f"`{component.id}`" for component in self._components[:_MAX_SHOWN]]
+        whose = f"{names[0]} does not declare" if len(names) == 1 else f"none of {join_words(names)} declares"
+        return Diagnostic(
+            "unknown-parameter",
+            f"`{self.node.id}` is given the parameter `{name}`, which {whose}",
+            value.name_at,
+            labels=(Label(self._components[0].at, "the component"),),
+            help=(did_you_mean(name, self._declarations) if may_guess else None)
+            or "declare it at the component, or write the name of its set into `open`",
+            element=self.node.id,
+        )
+
+
+def wrong_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A parameter is given a value that it cannot have: of another type, outside of its range, or none of its choices.
+
+    Why: A node of ROS 2 stops at its start with an exception; one of ROS 1 goes on with something else. A whole number is a
+    float where a float is wanted. A parameter without `type` has that of its value; what a launch file fills in (`$(...)`) is
+    not judged.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              planner:
+                functionality: Plans the way.
+                parameters: {max_speed: {type: float, value: 0.8, range: [0, 1.5]}}
+        nodes:
+          planner: {implements: planner, parameters: {max_speed: 8}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              planner:
+                functionality: Plans the way.
+                parameters: {max_speed: {type: float, value: 0.8, range: [0, 1.5]}}
+        nodes:
+          planner: {implements: planner, parameters: {max_speed: 1}}
+    """
+    for component in architecture.components.values():
+        for parameter in component.parameters.values():
+            yield from _judge_value(parameter, parameter.value, parameter.value_at, component.id)
+    # What every node is given is one slip, whoever declares it.
+    seen_places: set[tuple[str, Span]] = set()
+    ros_1 = is_ros_1(architecture.distro)
+    for node in architecture.nodes.values():
+        declarations = find_declarations(architecture, node)
+        if not declarations:
+            continue
+        for value in (*architecture.ros_parameters, *node.file_values, *node.own_values):
+            name = canonical_name(value.name, ros_1=ros_1)
+            if name not in declarations or (name, value.at) in seen_places:
+                continue
+            for finding in _judge_value(declarations[name], value.value, value.at, node.id):
+                seen_places.add((name, value.at))
+                yield finding
+
+
+def _judge_value(parameter: Parameter, value: object, span: Span, element: str) -> Iterator[Diagnostic]:
+    fault = find_value_fault(parameter, value)
+    if fault is None:
+        return
+    labels = () if span == parameter.value_at else (Label(parameter.at, "declared here"),)
+    is_inferred = parameter.type is None and " is no " in fault
+    help_line = "write `type` at its declaration, if that of its value is not meant" if is_inferred else None
+    yield Diagnostic(
+        "wrong-parameter",
+        f"the parameter `{parameter.name}` of `{element}` cannot have this value: {fault}",
+        span,
+        labels=labels,
+        help=help_line,
+        element=element,
+    )
+
+
+def unset_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A parameter has no value: neither its component nor a node gives it one.
+
+    Why: The node would stop at its start, or go on with a value that the architecture does not say. A node one of whose
+    parameter files archgen cannot read is not judged: the value may be there.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              localisation:
+                functionality: Says where the robot is.
+                parameters: {map_file: {type: string}}
+        nodes:
+          localisation: {implements: localisation}
+
+    Good:
+        groups:
+          driving:
+            components:
+              localisation:
+                functionality: Says where the robot is.
+                parameters: {map_file: {type: string}}
+        nodes:
+          localisation: {implements: localisation, parameters: {map_file: maps/home.yaml}}
+    """
+    for node in architecture.nodes.values():
+        if node.unread_files or not any(map(_needs_value, find_declarations(architecture, node).values())):
+            continue
+        unset_names = [
+            name
+            for name, each in find_effective_parameters(architecture, node).items()
+            if each.origin == "none" and each.declaration is not None and _needs_value(each.declaration)
+        ]
+        if unset_names:
+            yield _report_unset(architecture, node, unset_names)
+
+
+def _needs_value(parameter: Parameter) -> bool:
+    """Whether a node has to give the value: the component neither has one nor is handed one."""
+    return parameter.value is None and parameter.handed_from is None
+
+
+def _report_unset(architecture: Architecture, node: Node, names: list[str]) -> Diagnostic:
+    declarations = find_declarations(architecture, node)
+    shown_names = [f"`{name}`" for name in names[:_MAX_SHOWN]]
+    if len(names) > _MAX_SHOWN:
+        shown_names.append(f"{len(names) - _MAX_SHOWN} more")
+    words = f"the parameter{'s' if len(names) > 1 else ''} {join_words(shown_names)}"
+    if not node.written:
+        # Nobody has decided yet which node it is: one may give the value.
+        component = node.implements[0]
+        return Diagnostic(
+            "unset-parameter",
+            f"nobody gives a value to {words} of `{component}`",
+            declarations[names[0]].at,
+            Severity.NOTE,
+            help=f"write it at the declaration, or at a node: `parameters: {{{names[0]}: ...}}`",
+            element=component,
+        )
+    return Diagnostic(
+        "unset-parameter",
+        f"nobody gives a value to {words} of the node `{node.id}`",
+        node.at,
+        labels=(Label(declarations[names[0]].at, "declared here"),),
+        help=f"write it at the node: `parameters: {{{names[0]}: ...}}`",
+        element=node.id,
+    )
+
+
+def unused_parameter_file(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A parameter file that a node names says nothing to it, or cannot be read.
+
+    Why: ROS 2 reads a file by the full names of nodes, namespace included; a section for another name is ignored without a
+    word. It is judged where a component of the node declares `parameters`.
+
+    Bad:
+        # file: archgen.yaml
+        archgen: 1
+        groups:
+          sensing:
+            components:
+              camera:
+                outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}
+                parameters: {exposure: 20}
+        nodes:
+          camera: {implements: camera, namespace: /front, parameter_files: [config/camera.yaml]}
+        # file: config/camera.yaml
+        camera: {ros__parameters: {exposure: 30}}
+
+    Good:
+        # file: archgen.yaml
+        archgen: 1
+        groups:
+          sensing:
+            components:
+              camera:
+                outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}
+                parameters: {exposure: 20}
+        nodes:
+          camera: {implements: camera, namespace: /front, parameter_files: [config/camera.yaml]}
+        # file: config/camera.yaml
+        /front/camera: {ros__parameters: {exposure: 30}}
+    """
+    for node in architecture.nodes.values():
+        if node.file_remarks and any(each.parameters for each in list_components(architecture, node)):
+            for remark in node.file_remarks:
+                yield Diagnostic("unused-parameter-file", remark.message, remark.at, help=remark.help, element=node.id)
+
+
+RULES = (
+    (unknown_parameter, Severity.WARNING),
+    (wrong_parameter, Severity.ERROR),
+    (unset_parameter, Severity.WARNING),
+    (unused_parameter_file, Severity.NOTE),
+)

@@ -1,0 +1,64 @@
+"""Hand parameters in from the component around: `from: self.side`, and `$(self.frame_prefix)` in texts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.link import mapping_values
+from archgen.link.declare.parameter_declaration import declare_parameters, fill_in_text, hand_in_value
+from archgen.link.element_outline import ElementOutline
+from archgen.model.parameter import Parameter
+
+
+class HandedParameters:
+    """The parameters of components, with what the components around them hand in."""
+
+    def __init__(self, outline: ElementOutline, diagnostics: list[Diagnostic]) -> None:
+        """Take what the project declares; what the component around lacks goes to `diagnostics`."""
+        self._outline = outline
+        self._diagnostics = diagnostics
+        self._parameters: dict[str, dict[str, Parameter]] = {}
+
+    def find_parameters(self, component_id: str) -> dict[str, Parameter]:
+        """Return the parameters of a component, composed or not, by dotted name."""
+        if component_id not in self._parameters:
+            shell = self._outline.shells.get(component_id)
+            entry = shell.entry if shell else self._outline.components[component_id]
+            written = declare_parameters(mapping_values.get_body(entry))
+            self._parameters[component_id] = self._hand_in(component_id, written) if written else written
+        return self._parameters[component_id]
+
+    def _hand_in(self, component_id: str, written: Mapping[str, Parameter]) -> dict[str, Parameter]:
+        parent = self._outline.expansion.parents.get(component_id) if self._outline.expansion else None
+        around = self.find_parameters(parent) if parent else {}
+        return {name: self._fill_in(component_id, each, around, parent) for name, each in written.items()}
+
+    def _fill_in(
+        self, component_id: str, parameter: Parameter, around: Mapping[str, Parameter], parent: str | None
+    ) -> Parameter:
+        handed = hand_in_value(parameter, around)
+        if handed is None:
+            self._report_missing(component_id, parameter.handed_from or "", parameter.at, around, parent)
+            return parameter
+        if not isinstance(handed.value, str) or "$" not in handed.value:
+            return handed
+        value, missing_names = fill_in_text(handed.value, around)
+        for name in missing_names:
+            self._report_missing(component_id, f"self.{name}", handed.value_at, around, parent)
+        return replace(handed, value=value)
+
+    def _report_missing(
+        self, component_id: str, reference: str, place: Span, around: Mapping[str, Parameter], parent: str | None
+    ) -> None:
+        name = reference.removeprefix("self.")
+        if parent is None:
+            message = f"`{reference}` names a parameter of the component around `{component_id}`, but there is none"
+            help_line = "write the value, or put the component into another one"
+        else:
+            message = f"`{parent}` has no parameter `{name}` to hand in"
+            help_line = did_you_mean(name, around) or f"declare `{name}` among the parameters of `{parent}`"
+        self._diagnostics.append(Diagnostic("unknown-reference", message, place, help=help_line, element=component_id))

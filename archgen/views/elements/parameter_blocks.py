@@ -1,0 +1,167 @@
+"""Parameters and operations in documents and on cards: what a component declares, and what counts at a node."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from archgen.model.component import Component
+from archgen.model.node import Node
+from archgen.model.parameter import Operation, Parameter, format_parameter
+from archgen.model.parameter_values import EffectiveParameter, describe_origin, find_effective_parameters
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns
+
+
+def make_parameter_blocks(component: Component) -> list[Block]:
+    """Return the tables of a component's parameters and of its operations, without those that would be empty."""
+    return [table for table in (_make_parameter_table(component), _make_operation_table(component)) if table]
+
+
+def _make_parameter_table(component: Component) -> Table | None:
+    rows = tuple(
+        (
+            _to_code(each.name),
+            _to_code(each.type),
+            _to_code(format_parameter(each.value)) if each.value is not None else _to_text(describe_missing(each)),
+            _to_text(each.unit),
+            _to_text(describe_limits(each)),
+            _to_text(_describe_remarks(each)),
+        )
+        for each in component.parameters.values()
+    )
+    rows += tuple((_to_code(f"{name}.*"), (), (), (), _to_text("any"), _to_text("open set")) for name in component.open)
+    columns = (
+        Column("Parameter", 1.3),
+        Column("Type", 0.7),
+        Column("Value"),
+        Column("Unit", 0.5),
+        Column("May be"),
+        Column("Remarks", 1.6),
+    )
+    caption = f"{component.title}: parameters"
+    return drop_empty_columns(Table(f"table:set/{component.id}", caption, columns, rows)) if rows else None
+
+
+def _make_operation_table(component: Component) -> Table | None:
+    rows = tuple(
+        (
+            _to_code(name),
+            _type_cell(each.request),
+            _type_cell(each.response),
+            _to_text("; ".join(filter(None, (each.call, each.visibility, _on_one_line(each.description))))),
+        )
+        for name, each in component.operations.items()
+    )
+    columns = (Column("Operation"), Column("Request", 1.2), Column("Response", 1.2), Column("Remarks", 1.6))
+    table = Table(f"table:operations/{component.id}", f"{component.title}: operations", columns, rows) if rows else None
+    return drop_empty_columns(table) if table else None
+
+
+def _type_cell(types: str | Mapping[str, str] | None) -> Inlines:
+    return () if types is None else inline_text.to_inlines(describe_types(types))
+
+
+def describe_types(types: str | Mapping[str, str]) -> str:
+    """Return a type, or types with the names of their fields, on one line."""
+    return types if isinstance(types, str) else ", ".join(f"{name}: {type_name}" for name, type_name in types.items())
+
+
+def describe_missing(parameter: Parameter) -> str:
+    """Say where the value of a parameter without one comes from."""
+    return f"from {parameter.handed_from}" if parameter.handed_from else "still to be given"
+
+
+def describe_limits(parameter: Parameter) -> str:
+    """Say what values a parameter may have."""
+    parts = []
+    if parameter.range is not None:
+        parts.append(f"{format_parameter(parameter.range[0])} to {format_parameter(parameter.range[1])}")
+    if parameter.choices is not None:
+        parts.append(", ".join(map(format_parameter, parameter.choices)))
+    return "; ".join(parts)
+
+
+def _describe_remarks(parameter: Parameter) -> str:
+    read_only = "read-only" if parameter.read_only else ""
+    return "; ".join(filter(None, (read_only, parameter.visibility, _on_one_line(parameter.description))))
+
+
+def _on_one_line(text: str | None) -> str:
+    return " ".join((text or "").split())
+
+
+def _to_code(text: str | None) -> Inlines:
+    return inline_text.to_inlines(Text(text, code=True)) if text else ()
+
+
+def _to_text(text: str | None) -> Inlines:
+    return inline_text.to_inlines(text) if text else ()
+
+
+def make_effective_table(lookup: Lookup, node: Node) -> Table | None:
+    """List the parameters of a node with the values that count; where they come from, if not all are the node's own."""
+    parameters = find_effective_parameters(lookup.architecture, node)
+    shows_origin = any(each.origin != "node" for each in parameters.values())
+    rows = tuple(
+        (
+            _to_code(each.name),
+            inline_text.to_inlines(_value_run(lookup, node, each)),
+            *((_to_text(name_origin(each)),) if shows_origin else ()),
+        )
+        for each in parameters.values()
+    )
+    columns = (Column("Parameter"), Column("Value"), *((Column("From"),) if shows_origin else ()))
+    return Table(f"table:parameters/{node.id}", f"{node.id}: parameters", columns, rows) if rows else None
+
+
+def _value_run(lookup: Lookup, node: Node, parameter: EffectiveParameter) -> Text:
+    """Return a parameter's value, as a link where it is the name of a topic, service or action."""
+    text = describe_value_text(node, parameter)
+    if parameter.origin == "none":
+        return Text(text, muted=True)
+    return inline_text.topic_link(text) if text in lookup.architecture.topics else Text(text, code=True)
+
+
+def describe_value_text(node: Node, parameter: EffectiveParameter) -> str:
+    """Return the value that counts as text, a command by its words; where nobody gives one, where it is to come from."""
+    if parameter.origin == "none":
+        return describe_missing(parameter.declaration) if parameter.declaration else ""
+    if parameter.origin == "command":
+        return " ".join(node.parameter_commands.get(parameter.name, ()))
+    return format_parameter(parameter.value)
+
+
+def name_origin(parameter: EffectiveParameter) -> str:
+    """Return where a value comes from, in a word; a file by its path."""
+    words = {"ros": "all nodes", "component": "component", "command": "output of a command", "node": "node", "none": ""}
+    return parameter.at.file if parameter.origin == "file" else words[parameter.origin]
+
+
+def list_parameter_lines(component: Component) -> Iterator[str]:
+    """Yield what a component declares, one line a parameter, for its card."""
+    for each in component.parameters.values():
+        value = format_parameter(each.value) if each.value is not None else f"? ({describe_missing(each)})"
+        details = ", ".join(filter(None, (each.type, describe_limits(each), "read-only" if each.read_only else "")))
+        yield " ".join(filter(None, (f"{each.name} = {value}", each.unit, f"({details})" if details else "")))
+    yield from (f"{name}.*: anything" for name in component.open)
+
+
+def list_operation_lines(component: Component) -> Iterator[str]:
+    """Yield the operations of a component, one a line, for its card."""
+    return (_describe_operation(each) for each in component.operations.values())
+
+
+def _describe_operation(operation: Operation) -> str:
+    request = describe_types(operation.request) if operation.request else ""
+    response = f" -> {describe_types(operation.response)}" if operation.response else ""
+    return f"{operation.id}({request}){response}" + (f", {operation.call}" if operation.call else "")
+
+
+def list_effective_lines(lookup: Lookup, node: Node) -> Iterator[str]:
+    """Yield the values that count at a node, each with its place, for its card."""
+    for each in find_effective_parameters(lookup.architecture, node).values():
+        if each.origin == "none":
+            yield f"{each.name} = ? ({describe_missing(each.declaration) if each.declaration else '?'})"
+        else:
+            yield f"{each.name} = {describe_value_text(node, each)} <- {describe_origin(each)}"

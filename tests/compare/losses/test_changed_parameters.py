@@ -1,0 +1,64 @@
+"""Whom a changed declaration breaks: the partner whose node sets the parameter."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.compare.conftest import Compared
+
+ROBOT = """\
+project: {id: robot}
+partners: {vega: Vega, kite: Kite}
+groups:
+  sense:
+    owner: vega
+    components:
+      eye:
+        title: Eye
+        parameters:
+          gain: {type: float, value: 0.5, unit: m, range: [0, 2], choices: [0.5, 1.5]}
+          other: 1
+nodes: {eye: {implements: eye, owner: kite, parameters: {gain: 1.5}}}
+"""
+PLACE = "the parameter `gain` of `sense.eye`"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "breaks"),
+    [
+        ("unit: m", "unit: mm", [f"meaning kite: gives {PLACE} in `mm` instead of `m`; Kite sets it"]),
+        ("unit: m, ", "", [f"meaning kite: gives {PLACE} in none instead of `m`; Kite sets it"]),
+        ("gain: {type", "gian: {type", [f"wire kite: takes away {PLACE}; Kite sets it"]),
+        (
+            "range: [0, 2]",
+            "range: [0, 1]",
+            [
+                f"wire kite: no longer takes a value of {PLACE} (`1.5` is outside of its range, `0` to `1`); Kite sets it"
+            ],
+        ),
+        (
+            "type: float",
+            "type: integer",
+            [f"wire kite: no longer takes a value of {PLACE} (`1.5` is no `integer`); Kite sets it"],
+        ),
+        (
+            "[0.5, 1.5]",
+            "[0.5, 2]",
+            [f"wire kite: no longer takes a value of {PLACE} (`1.5` is none of its choices: `0.5`, `2`); Kite sets it"],
+        ),
+        ("range: [0, 2]", "range: [0, 3]", []),
+        ("value: 0.5", "value: 1.5", []),
+        ("other: 1", "other: 2", []),
+        ("          other: 1\n", "", []),
+        ("unit: m, range", "unit: m, description: Words, range", []),
+    ],
+)
+def test_who_sets_a_parameter_is_told(compared: Compared, old: str, new: str, breaks: list[str]) -> None:
+    assert old in ROBOT
+    changes = compared(ROBOT, ROBOT.replace(old, new)).changes
+    assert [f"{b.category} {b.partner}: {b.reason}" for change in changes for b in change.breaks] == breaks
+
+
+def test_the_owner_of_the_component_is_not_told(compared: Compared) -> None:
+    own = ROBOT.replace("owner: kite, ", "")
+    assert [b for change in compared(own, own.replace("unit: m", "unit: mm")).changes for b in change.breaks] == []
