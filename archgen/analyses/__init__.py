@@ -12,6 +12,7 @@ from archgen.analyses import (
     completeness,
     component_roles,
     connectivity,
+    frame_tree,
     half_written,
     host_links,
     ineffective_timing,
@@ -80,6 +81,7 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *process_settings.RULES,
     *policy_violations.RULES,
     *selector_checks.RULES,
+    *frame_tree.RULES,
     *completeness.RULES,
 )
 

@@ -53,6 +53,7 @@ _LACK_RULES = frozenset(
         "unjustified-node",
         "unknown-message",
         "unmapped-type",
+        "unpublished-frame",
     }
 )
 """Rules that report what an element lacks (or that depend on a default or a `status: planned`): they wait for an element
@@ -61,12 +62,14 @@ in which something could not be read.
 _FILE_RULES = frozenset(
     {
         "incompatible-qos",
+        "misplaced-frame",
         "role-mismatch",
         "unaccounted-topic",
         "unchecked-message",
         "unjustified-node",
         "unmapped-type",
         "unnamed-source",
+        "unpublished-frame",
         "wrong-section",
     }
 )

@@ -8,6 +8,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.declare import deployment_declaration, section_declaration
+from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import declare_types
@@ -55,6 +56,7 @@ def link_project(  # noqa: PLR0913 - all by name
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements)
+    frames = declare_frames(root, element_outline.components, resolver)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference
@@ -78,6 +80,7 @@ def link_project(  # noqa: PLR0913 - all by name
         containers=containers,
         resources=resources,
         links=links,
+        frames=frames,
         chains=chains,
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),

@@ -26,10 +26,13 @@ class ConceptualType:
     request: str | None = None
     response: str | None = None
     feedback: str | None = None
+    frame: str | None = None
+    """The coordinate frame in which such data is given, as written."""
     origin: Literal["project", "shipped", "message"] = "project"
     """What maps it: the project, the type mapper that ships with archgen, or its own name, which is a message."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 def full_message_name(text: str) -> str | None:

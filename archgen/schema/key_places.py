@@ -30,6 +30,7 @@ _HOMES = {
     "link": "`links: {{LINK: {{{key}: ...}}}}`",
     "chain": "`chains: {{CHAIN: {{{key}: ...}}}}`",
     "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
+    "frame": "`frames: {{FRAME: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
 _READER_KEYS = frozenset({"freshness", "optional"})
@@ -51,6 +52,7 @@ _ELEMENT_SECTIONS = {
     "policies": "policy",
     "partners": "partner",
     "requirements": "requirement",
+    "frames": "frame",
 }
 
 

@@ -41,12 +41,14 @@ _TITLED_FORM = ElementForm(("title",))
 _TOPIC_FORM = ElementForm(("topic",), frozenset({"topic"}), part_forms={"qos": ElementForm(("profile",))})
 _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
+_FRAME_FORM = ElementForm(("parent",))
 _COMPONENT_FORM = ElementForm(
     ("title",),
     keyed_forms={
         "inputs": ElementForm(("from",), frozenset({"from"})),
         "outputs": ElementForm(("type",)),
         "performance": _PLAIN_FORM,
+        "frames": _FRAME_FORM,
     },
 )
 _NODE_FORM = ElementForm(
@@ -70,6 +72,7 @@ _ROOT_FORM = ElementForm(
         "containers": ElementForm(("host",)),
         "resources": ElementForm(("host",)),
         "links": _LINK_FORM,
+        "frames": _FRAME_FORM,
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
