@@ -56,6 +56,7 @@ def make_record(lookup: Lookup) -> Record:
         },
         **_record_resources(architecture),
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
+        **_record_frames(architecture),
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
     }
 
@@ -76,7 +77,7 @@ def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:
 
 
 def _record_type(conceptual_type: ConceptualType) -> dict[str, object]:
-    keys = ("message", "comment", "status", "request", "response", "feedback")
+    keys = ("message", "comment", "status", "request", "response", "feedback", "frame")
     return pick_fields(conceptual_type, *keys) | drop_unknown({"size": record_quantity(conceptual_type.size, "B")})
 
 
@@ -93,6 +94,16 @@ def _record_resources(architecture: Architecture) -> dict[str, object]:
     return drop_unknown(
         {"resources": {each.id: pick_fields(each, "title", "host", "scheduling") for each in resources}}
     )
+
+
+def _record_frames(architecture: Architecture) -> dict[str, object]:
+    """Return the section of frames, empty in a project without any."""
+    frames = {
+        frame.id: pick_fields(frame, "title", "parent", "by")
+        | drop_unknown({"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None})
+        for frame in architecture.frames.values()
+    }
+    return drop_unknown({"frames": frames})
 
 
 def _record_link(link: Link) -> dict[str, object]:
@@ -144,6 +155,7 @@ def _record_port(port: Input | Output) -> dict[str, object]:
         "type": port.type,
         "medium": "physical" if port.physical else "digital",
         "external": port.external,
+        "frame": port.frame,
         "description": port.description,
     }
 

@@ -19,6 +19,7 @@ from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Eff
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
 from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
 from archgen.model.component import Component, Group, Input, Output
+from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
@@ -44,6 +45,7 @@ MODEL_CLASSES: Mapping[str, type] = {
     "container": Container,
     "resource": Resource,
     "link": Link,
+    "frame": Frame,
     "chain": Chain,
     "policy": Policy,
     "view": View,
@@ -62,6 +64,7 @@ SECTIONS = {
     "container": "containers",
     "resource": "resources",
     "link": "links",
+    "frame": "frames",
     "chain": "chains",
     "policy": "policies",
     "view": "views",
@@ -76,7 +79,7 @@ NOT_WRITTEN_KINDS = {
 }
 """Kinds that are no mapping of the schema."""
 SCHEMA_ONLY = {
-    "group components": "elements of their own",
+    **dict.fromkeys(("group components", "component frames"), "elements of their own"),
     "input from": "the kind `connection`",
     **dict.fromkeys(("node publishes", "node subscribes", "node serves", "node calls"), "the kind `port`"),
     "node internal": "the kind `port`",
@@ -112,6 +115,9 @@ MODEL_ONLY = {
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
     "chain unresolved": "only for rules",
     "link unresolved": "only for rules",
+    "frame by_kind": "what the key `by` names",
+    "frame component": "where it is written",
+    "frame by_written": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
     **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
@@ -184,13 +190,14 @@ groups:
         timing: {rate: 10 Hz, wcet: {max: 8 ms, p50: 2 ms, measured: true}, uses: {gpu: {max: 2 ms, min: 1 ms}}, deadline: 9 ms, cores: [1, 2]}
         tags: [t]
         urls: {a: "https://a.eu"}
-        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, description: D}}
-        outputs: {o: {type: T, external: the world, description: D}}
+        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D}}
+        outputs: {o: {type: T, external: the world, frame: base, description: D}}
+        frames: {base: {title: B, parent: map, rate: 10 Hz}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
         timing: {behaviour: event, trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, inputs: {k: {wcet: 1 ms, bcet: 0 ms}}}
-types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}, S: {request: T, response: T, feedback: T}}
+types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map}, S: {request: T, response: T, feedback: T}}
 nodes:
   n:
     implements: a
@@ -220,6 +227,7 @@ hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, ar
 containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo}}
 links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
+frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, layout: {direction: top-bottom}}}
 policies: {p: {title: P, forbid: {from: g, to: g}}}
@@ -331,7 +339,7 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
     for earlier, later in (
         *(("group", "component"), ("component", "output"), ("output", "input"), ("type", "message")),
         *(("component", "node"), ("node", "container"), ("node", "host"), ("container", "host"), ("host", "link")),
-        *(("node", "chain"), ("component", "requirement"), ("requirement", "use_case"), ("partner", "group")),
+        *(("node", "chain"), ("component", "frame"), ("component", "requirement"), ("requirement", "use_case"), ("partner", "group")),
     ):
         assert place(earlier) < place(later), (earlier, later)
 
@@ -339,10 +347,10 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
 def test_the_order_of_the_report() -> None:
     assert list(KIND_ORDER) == [
         *("project", "chapter", "partner", "use_case", "requirement", "group", "component", "output", "input"),
-        *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "chain", "policy"),
-        "view",
+        *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "frame", "chain"),
+        *("policy", "view"),
     ]
-    assert list(KIND_ORDER.values()) == list(range(21))
+    assert list(KIND_ORDER.values()) == list(range(22))
 
 
 def test_whatever_refers_to_a_kind_names_one() -> None:
@@ -366,7 +374,7 @@ def test_no_key_is_listed_twice() -> None:
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
                 "type comment, input external, output description, chapter text, "
                 "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
-                "project layout, partner description, host tags, node urls.x"
+                "project layout, partner description, host tags, node urls.x, frame title"
             ),
         ),
         (
@@ -377,7 +385,8 @@ def test_no_key_is_listed_twice() -> None:
                 "node name, node namespace, node parameter_files, node parameters.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
-                "component timing.wcet.measured, node timing.wcet.p99"
+                "component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
+                "output frame, input frame, type frame"
             ),
         ),
         (
@@ -402,7 +411,7 @@ def test_how_far_a_changed_key_reaches(effect: Effect, keys: str) -> None:
 def test_how_far_a_whole_element_reaches() -> None:
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.TEXT} == {"chapter", "view", "use_case"}
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.SYSTEM} == {
-        *("project", "partner", "requirement", "policy")
+        *("project", "partner", "requirement", "policy", "frame")
     }
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations
+from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.message_kind import MESSAGE
 from archgen.compare.kinds.shared_keys import (
@@ -77,6 +78,7 @@ TYPE = KindSpec(
         _inner_type_key("request"),
         _inner_type_key("response"),
         _inner_type_key("feedback"),
+        frame_reference("is given in"),
     ),
     elements=_list_types,
     features=(
