@@ -27,6 +27,7 @@ LISTABLE_KINDS = (
     "requirements",
     "chains",
     "hosts",
+    "frames",
     "backends",
 )
 

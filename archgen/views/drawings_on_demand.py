@@ -100,6 +100,8 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
                 return graphs.draw_ros_graph(lookup)
             case "hosts":
                 return graphs.draw_hosts(lookup) if architecture.hosts else None
+            case "frames":
+                return graphs.draw_frames(lookup) if architecture.frames else None
         return None
 
     def _draw_element(self, family: str, name: str) -> Graph | None:

@@ -55,6 +55,7 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             "containers",
             "resources",
             "links",
+            "frames",
             "chains",
             "views",
             "policies",

@@ -27,8 +27,12 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "container.host": ("hosts",),
     "forbid.from": ("selectors",),
     "forbid.to": ("selectors",),
+    "frame": ("frames",),
+    "frame.by": ("implemented",),
+    "frame.parent": ("frames",),
     "group_components": ("implemented",),
     "input": ("sources",),
+    "input.frame": ("frames",),
     "input.from": ("sources",),
     "link": ("hosts",),
     "link.connects": ("hosts",),
@@ -37,6 +41,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "node.host": ("hosts",),
     "node.implements": ("implemented",),
     "output": ("types",),
+    "output.frame": ("frames",),
     "owners": ("partners",),
     "port_list": ("inputs",),
     "resource": ("hosts",),
@@ -49,6 +54,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "topic_use.message": ("topic_messages",),
     "trigger": ("inputs",),
     "type": ("topic_messages", "call_messages"),
+    "type.frame": ("frames",),
     "type.message": ("topic_messages", "call_messages"),
     "type_name": ("types",),
     "view": ("selectors",),
@@ -61,7 +67,7 @@ _LISTED_KINDS = frozenset({"inputs", "waypoints"})
 
 _SECTIONS = (
     *("partners", "use_cases", "requirements", "groups", "nodes", "types", "hosts", "containers", "links", "chains"),
-    *("resources", "views", "policies"),
+    *("resources", "frames", "views", "policies"),
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 

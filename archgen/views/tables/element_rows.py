@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables
 
@@ -121,6 +122,14 @@ def _host_rows(lookup: Lookup) -> Iterator[TextRow]:
         yield (host.id, host.title, str(host.cores or ""), nodes, str(host.at))
 
 
+def _frame_rows(lookup: Lookup) -> Iterator[TextRow]:
+    ports_by_frame = index_frame_ports(lookup.architecture)
+    for frame in list_shown_frames(lookup):
+        rate = "static" if frame.static else str(frame.rate or "")
+        ports = ", ".join(ports_by_frame.get(frame.id, ()))
+        yield (frame.id, frame.title, frame.parent or "", frame.by or "", rate, ports, str(frame.at))
+
+
 # The column names are the header of what `archgen list` writes, so they are visible to users.
 _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
@@ -136,4 +145,5 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     "requirements": (("id", "title", "use_cases", "served_by", "place"), _requirement_rows),
     "chains": (("id", "title", "through", "deadline", "place"), _chain_rows),
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
+    "frames": (("id", "title", "parent", "by", "rate", "ports", "place"), _frame_rows),
 }
