@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import dropwhile, islice
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
@@ -68,7 +68,7 @@ def _list_named_frames(architecture: Architecture) -> Iterator[tuple[str, Span, 
     for frame in architecture.frames.values():
         if frame.parent is not None:
             yield frame.parent, frame.parent_at, frame.id
-    for port in (*architecture.inputs.values(), *architecture.outputs.values()):
+    for port in architecture.list_ports():
         if port.frame is not None:
             yield port.frame, port.frame_at, port.component
     for conceptual_type in architecture.types.values():
@@ -118,7 +118,8 @@ def circular_frames(architecture: Architecture) -> Iterator[Diagnostic]:
             way[frame.id] = frame
             frame = architecture.frames.get(frame.parent) if frame.parent is not None else None
         if frame and frame.id in way:
-            yield _diagnose_circle([*dropwhile(lambda each, first=frame: each is not first, way.values())])
+            circle = [*way.values()]
+            yield _diagnose_circle(circle[circle.index(frame) :])
         judged_names.update(way)
 
 

@@ -115,7 +115,7 @@ def _opposite_keys(
     change: Change, element: ComparedElement, elements: Mapping[ElementKey, ComparedElement], connections: ConnectionMap
 ) -> Iterator[ElementKey]:
     """Yield the keys of what is at the other end of a changed element."""
-    if change.element_kind in {"chain", "host", "container", "link"} and _is_textual(change):
+    if change.element_kind in {"chain", "host", "container", "link", "frame"} and _is_textual(change):
         return
     match change.element_kind:
         case "input" if change.key == "optional":
@@ -133,8 +133,6 @@ def _opposite_keys(
             yield from _chain_points(element)
         case "host" | "container" | "link":
             yield from _nodes_at_place(element, elements)
-        case "frame" if _is_textual(change):
-            return
         case "type" | "requirement" | "frame":
             yield from _users_and_readers(element, elements, connections)
         case "project" if change.key == "distro":

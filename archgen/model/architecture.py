@@ -186,6 +186,11 @@ class Architecture:
         mapped = self.types.get(port.type)
         return mapped.message if mapped else None
 
+    def list_ports(self) -> Iterator[Input | Output]:
+        """Yield all ports: outputs, then inputs."""
+        yield from self.outputs.values()
+        yield from self.inputs.values()
+
     def frame_of(self, port: Input | Output) -> str | None:
         """Return the coordinate frame of a port's data: the one it names, else that of its type; None if unknown."""
         carried_type = self.types.get(port.type or "")

@@ -57,9 +57,7 @@ def _derive_endpoints(architecture: Architecture, shared_topics: frozenset[str])
         all_endpoints += (complete_message(endpoint, writer_index) for endpoint in portless[node_id])
         if node_id in frames_by_node:
             own_endpoints = (*writing[node_id], *portless[node_id])
-            all_endpoints += derive_frame_endpoints(
-                architecture.nodes[node_id], frames_by_node[node_id], own_endpoints
-            )
+            all_endpoints += derive_frame_endpoints(architecture.nodes[node_id], frames_by_node[node_id], own_endpoints)
     return tuple(all_endpoints)
 
 

@@ -339,7 +339,13 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
     for earlier, later in (
         *(("group", "component"), ("component", "output"), ("output", "input"), ("type", "message")),
         *(("component", "node"), ("node", "container"), ("node", "host"), ("container", "host"), ("host", "link")),
-        *(("node", "chain"), ("component", "frame"), ("component", "requirement"), ("requirement", "use_case"), ("partner", "group")),
+        *(
+            ("node", "chain"),
+            ("component", "frame"),
+            ("component", "requirement"),
+            ("requirement", "use_case"),
+            ("partner", "group"),
+        ),
     ):
         assert place(earlier) < place(later), (earlier, later)
 

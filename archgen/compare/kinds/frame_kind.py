@@ -12,7 +12,9 @@ from archgen.model.coordinate_frames import Frame
 def _read_owner(frame: Frame, context: ReadContext) -> str | None:
     """Return the partner who owns what writes a frame, else what holds it."""
     architecture = context.architecture
-    component = architecture.components.get((frame.by if frame.by_kind == "component" else None) or frame.component or "")
+    component = architecture.components.get(
+        (frame.by if frame.by_kind == "component" else None) or frame.component or ""
+    )
     node = architecture.nodes.get(frame.by or "") if frame.by_kind == "node" else None
     writer = node or component
     return context.common_id("partner", writer.owner) if writer else None

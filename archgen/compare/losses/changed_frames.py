@@ -12,7 +12,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.model.architecture import Architecture
-from archgen.model.component import Input, Output
+from archgen.model.component import Output
 from archgen.model.coordinate_frames import list_children
 from archgen.model.graph_search import find_reachable
 from archgen.model.quantity import Quantity, parse_quantity
@@ -49,13 +49,14 @@ def _describe_loss(context: ChangeContext, change: Change) -> tuple[str, BreakCa
         return None
     after = format_value(change.after) if change.after is not None else ""
     instead = f"instead of {format_value(change.before)}"
-    if change.key == "parent":
-        return f"places the frame {name} in {after or 'nothing'} {instead}", "meaning", True
-    if change.key == "by":
-        return f"has the frame {name} written by {after or 'nobody'} {instead}", "promise", False
-    if change.key == "rate" and context.guards_margins and _is_rarer(change):
-        return f"writes the frame {name} {f'at {after}' if after else 'at no rate any more'} {instead}", "promise", False
-    return None
+    losses: dict[str, tuple[str, BreakCategory, bool]] = {
+        "parent": (f"places the frame {name} in {after or 'nothing'} {instead}", "meaning", True),
+        "by": (f"has the frame {name} written by {after or 'nobody'} {instead}", "promise", False),
+        "rate": (f"writes the frame {name} at {after or 'no rate any more'} {instead}", "promise", False),
+    }
+    # A lower rate takes from the margin alone: nobody has said how old a transform may be.
+    is_weakened = change.key != "rate" or (context.guards_margins and _is_rarer(change))
+    return losses.get(change.key or "") if is_weakened else None
 
 
 def _is_rarer(change: Change) -> bool:
@@ -119,12 +120,14 @@ def _find_turned_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
             for index in context.change_indices("type", name, "frame")
         ]
         given = f"in {tick_name(new_frame)}" if new_frame else "in no frame any more"
-        reason_text = f"gives {tick_name(context.old_id('output', output))} {given} instead of {tick_name(before)}; {{}} it"
+        reason_text = (
+            f"gives {tick_name(context.old_id('output', output))} {given} instead of {tick_name(before)}; {{}} it"
+        )
         causes = indices or find_output_causes(context, output)
         yield from context.shared_losses(causes, inputs_by_partner, reason_text, "reads", "meaning")
 
 
-def _find_frame(architecture: Architecture, port: Input | Output | None) -> str | None:
+def _find_frame(architecture: Architecture, port: Output | None) -> str | None:
     return architecture.frame_of(port) if port else None
 
 

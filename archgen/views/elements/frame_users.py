@@ -22,7 +22,7 @@ def list_frame_users(architecture: Architecture, frame: Frame) -> FrameUsers:
 def index_frame_ports(architecture: Architecture) -> Mapping[str, list[str]]:
     """Return the ids of the ports whose data is in each frame, by themselves or by their type: outputs, then inputs."""
     ports_by_frame: dict[str, dict[str, None]] = defaultdict(dict)
-    for port in (*architecture.outputs.values(), *architecture.inputs.values()):
+    for port in architecture.list_ports():
         frame_name = architecture.frame_of(port)
         if frame_name is not None:
             ports_by_frame[frame_name][port.id] = None
@@ -40,8 +40,8 @@ def list_shown_frames(lookup: Lookup) -> list[Frame]:
     frames, scope = lookup.architecture.frames, lookup.scope
     if scope.components is None:
         return list(frames.values())
-    ports = (*lookup.architecture.outputs.values(), *lookup.architecture.inputs.values())
-    names = {lookup.architecture.frame_of(port) for port in ports if scope.shows_component(port.component)}
+    ports = [port for port in lookup.architecture.list_ports() if scope.shows_component(port.component)]
+    names = {lookup.architecture.frame_of(port) for port in ports}
     names |= {frame.id for frame in frames.values() if frame.by and _shows_writer(lookup, frame, frame.by)}
     shown_names = {above for name in names if name for above in (name, *walk_ancestors(frames, name))}
     return [frame for frame in frames.values() if frame.id in shown_names]
