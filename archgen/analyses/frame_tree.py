@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -25,6 +25,15 @@ _MAX_DEPTH = 200
 """So far up the tree a frame is looked for."""
 _CHAIN = ("earth", "map", "odom", "base_link")
 """The frames of REP 105 (https://www.ros.org/reps/rep-0105.html), each placed in the one before it."""
+
+
+class _NamedFrame(NamedTuple):
+    """A name of a frame where it is written, and the element that names it; `own_name` is that of a frame."""
+
+    name: str
+    span: Span
+    element: str
+    own_name: str = ""
 
 
 def unknown_frame(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -55,37 +64,38 @@ def unknown_frame(architecture: Architecture) -> Iterator[Diagnostic]:
     if not architecture.frames or architecture.partial or "frames" in architecture.unread_keys:
         return
     comparisons_left = _MAX_COMPARISONS
-    for name, span, element in _list_named_frames(architecture):
+    for named_frame in _list_named_frames(architecture):
+        name = named_frame.name
         if name not in architecture.frames and name not in architecture.unread_keys:
             comparisons_left -= len(architecture.frames)
-            # Nobody stands in itself by a slip: `odm: odom` in place of `odom: odm`.
-            candidates = [each for each in architecture.frames if each != element] if comparisons_left > 0 else []
-            yield _diagnose_unknown(architecture.frames, name, span, element, find_closest(name, candidates))
+            # A frame that is nearly called so itself is not meant: nothing stands in itself.
+            frames = architecture.frames if comparisons_left > 0 else ()
+            guess = find_closest(name, (each for each in frames if each != named_frame.own_name))
+            yield _diagnose_unknown(architecture.frames, named_frame, guess)
 
 
-def _list_named_frames(architecture: Architecture) -> Iterator[tuple[str, Span, str]]:
-    """Yield each name of a frame, with its place and the element that names it."""
+def _list_named_frames(architecture: Architecture) -> Iterator[_NamedFrame]:
+    """Yield each name of a frame that is written somewhere."""
     for frame in architecture.frames.values():
         if frame.parent is not None:
-            yield frame.parent, frame.parent_at, frame.id
+            yield _NamedFrame(frame.parent, frame.parent_at, frame.answering_element, frame.id)
     for port in architecture.list_ports():
         if port.frame is not None:
-            yield port.frame, port.frame_at, port.component
+            yield _NamedFrame(port.frame, port.frame_at, port.component)
     for conceptual_type in architecture.types.values():
         if conceptual_type.frame is not None:
-            yield conceptual_type.frame, conceptual_type.frame_at, conceptual_type.name
+            yield _NamedFrame(conceptual_type.frame, conceptual_type.frame_at, conceptual_type.name)
 
 
-def _diagnose_unknown(
-    frames: Mapping[str, Frame], name: str, span: Span, element: str, guess: str | None
-) -> Diagnostic:
+def _diagnose_unknown(frames: Mapping[str, Frame], named_frame: _NamedFrame, guess: str | None) -> Diagnostic:
+    name = named_frame.name
     return Diagnostic(
         "unknown-frame",
         f"no frame named `{name}`",
-        span,
+        named_frame.span,
         labels=(Label(frames[guess].at, "declared here"),) if guess else (),
         help=f"did you mean `{guess}`?" if guess else f"declare it: `frames: {{{name}: {{parent: ...}}}}`",
-        element=element,
+        element=named_frame.element,
     )
 
 
@@ -139,7 +149,7 @@ def _diagnose_circle(circle: list[Frame]) -> Diagnostic:
             Label(frame.parent_at, f"`{frame.id}` stands in `{frame.parent}`") for frame in others[:_MAX_LISTED]
         ),
         help="take out the `parent` of the one that is the root, or name the right one",
-        element=first_frame.id,
+        element=first_frame.answering_element,
     )
 
 
@@ -176,7 +186,7 @@ def unpublished_frame(architecture: Architecture) -> Iterator[Diagnostic]:
                 # A model of the robot and a publisher of its state hold most static frames, seldom written here.
                 severity=Severity.NOTE if frame.static else None,
                 help="name the component in `by`, or write the frame below `frames` of that component",
-                element=frame.id,
+                element=frame.answering_element,
             )
 
 
@@ -216,7 +226,7 @@ def misplaced_frame(architecture: Architecture) -> Iterator[Diagnostic]:
                 frame.parent_at if frame.parent is not None else frame.at,
                 labels=(Label(frames[upper_name].at, f"`{upper_name}`"),),
                 help=f"make `{upper_name}` its parent, or call it by another name",
-                element=frame.id,
+                element=frame.answering_element,
             )
 
 

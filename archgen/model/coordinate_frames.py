@@ -33,6 +33,12 @@ class Frame:
     parent_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
+    def answering_element(self) -> str:
+        """The component that holds or writes it, else its own name: whom findings about it concern."""
+        # A node or a host may have the name of a frame: these would get the findings, too.
+        return self.component or (self.by if self.by_kind == "component" else None) or self.id
+
+    @property
     def topic(self) -> str:
         """The topic on which it is written."""
         return "/tf_static" if self.static else "/tf"

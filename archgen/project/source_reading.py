@@ -17,7 +17,7 @@ from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
 from archgen.syntax.project_files import ProjectFiles, read_text_file
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -32,6 +32,10 @@ _GUESS_BUDGET = 300_000
 """How many names of files are compared with patterns that match none, so that a million of them take no minutes."""
 _OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
+
+
+_UNMARKING_SECTIONS = frozenset({"frames"})
+"""Sections that other programs' files may have, too: one of these alone makes no slice of a file that nobody names."""
 
 
 @dataclass(slots=True)
@@ -127,9 +131,9 @@ def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> Non
 
 def _read_all_slices(state: ReadingState) -> None:
     """Read every *.yaml below that holds a section, and list those that do not in one note."""
-    from archgen.schema.key_places import is_meant_for_language
+    from archgen.schema.key_places import looks_like_frames
 
-    known_sections, ignored_files = list_sections(), list[tuple[str, str | None]]()
+    known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
     for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
         if file in state.seen_files:
             continue
@@ -148,12 +152,11 @@ def _read_all_slices(state: ReadingState) -> None:
             ignored_files.append((file, None))
         elif parsed_slice.document is None:
             _keep_slice(state, parsed_slice)
-        elif not known_sections.isdisjoint(parsed_slice.sections) or any(
-            # Then its slip is an error at its place. Other programs' files may have thousands of keys.
-            map(is_meant_for_language, islice(parsed_slice.document.root, _MAX_SECTIONS))
-        ):
+        elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
             if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
                 _keep_slice(state, parsed_slice)
+        elif "frames" in parsed_slice.sections and looks_like_frames(parsed_slice.document.root.entries["frames"]):
+            _leave_out_section(state, parsed_slice.document.root.entries["frames"])
         elif parsed_slice.sections:
             # With a guess from the first key that is nearly the name of a section, such as `group:`.
             ignored_files.append(
@@ -162,6 +165,26 @@ def _read_all_slices(state: ReadingState) -> None:
     # With a broken archgen.yaml it is unknown whether it has `sources`: the note could be wrong.
     if ignored_files and PROJECT_FILE not in state.broken_files:
         state.diagnostics.append(_diagnose_ignored_files(ignored_files))
+
+
+def _is_meant_as_slice(document: YamlDocument) -> bool:
+    """Whether a file without sections was meant to have one: then its slip is an error at its place."""
+    from archgen.schema.key_places import is_meant_for_language
+
+    # Other programs' files may have thousands of keys.
+    entries = islice(document.root, _MAX_SECTIONS)
+    return any(is_meant_for_language(entry) for entry in entries if entry.key not in _UNMARKING_SECTIONS)
+
+
+def _leave_out_section(state: ReadingState, entry: MappingEntry) -> None:
+    """Report a section that is meant for the language by its looks, in a file that nothing else makes a slice."""
+    message = f"`{entry.key}` alone makes no part of the project of a file: it is not read"
+    help_line = f"name the file in `sources` of {PROJECT_FILE}, or write it beside another section"
+    state.diagnostics.append(
+        Diagnostic("ignored-file", message, entry.key_span, severity=Severity.WARNING, help=help_line)
+    )
+    # What stands there is not unknown, only not read.
+    state.lost_keys.update(entry.value.entries if isinstance(entry.value, MappingNode) else ())
 
 
 def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:

@@ -56,7 +56,7 @@ def _declare_frame(written_frame: _WrittenFrame, resolver: ReferenceResolver) ->
         parent=mapping_values.get_text(body, "parent"),
         by=writer.id if writer else None,
         by_kind="node" if writer and writer.kind == "node" else "component",
-        rate=_read_rate(body, name, resolver, is_static=is_static),
+        rate=_read_rate(body, component_id or name, resolver, is_static=is_static),
         static=is_static,
         component=component_id,
         by_written=reference is not None,
@@ -75,14 +75,14 @@ def _resolve_writer(
     # A node often has the name of the component that it implements: both would be meant by one word.
     has_component = resolver.names.resolve_path(reference.text, ("component",), component_id=component_id).count > 0
     kinds = ("component",) if has_component else ("component", "node")
-    return resolver.resolve_reference(reference, kinds, name, component_id)
+    return resolver.resolve_reference(reference, kinds, component_id or name, component_id)
 
 
-def _read_rate(body: MappingNode, name: str, resolver: ReferenceResolver, *, is_static: bool) -> Quantity | None:
-    rate = sanity_checks.read_positive(body, "rate", "frequency", name, resolver.diagnostics)
+def _read_rate(body: MappingNode, element_id: str, resolver: ReferenceResolver, *, is_static: bool) -> Quantity | None:
+    rate = sanity_checks.read_positive(body, "rate", "frequency", element_id, resolver.diagnostics)
     if rate is None or not is_static:
         return rate
-    sanity_checks.report_rate_of_static(body, name, resolver.diagnostics)
+    sanity_checks.report_rate_of_static(body, element_id, resolver.diagnostics)
     return None
 
 
@@ -95,7 +95,7 @@ def _diagnose_duplicate(second_frame: Frame, first_frame: Frame) -> Diagnostic:
         second_frame.at,
         labels=(Label(first_frame.at, "first declared here"),),
         help="a frame has one parent and one writer: keep one of them, or give each robot's frames names of their own",
-        element=second_frame.id,
+        element=second_frame.answering_element,
     )
 
 
