@@ -17,7 +17,7 @@ from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
 from archgen.syntax.project_files import ProjectFiles, read_text_file
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -131,8 +131,6 @@ def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> Non
 
 def _read_all_slices(state: ReadingState) -> None:
     """Read every *.yaml below that holds a section, and list those that do not in one note."""
-    from archgen.schema.key_places import looks_like_frames
-
     known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
     for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
         if file in state.seen_files:
@@ -155,9 +153,7 @@ def _read_all_slices(state: ReadingState) -> None:
         elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
             if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
                 _keep_slice(state, parsed_slice)
-        elif "frames" in parsed_slice.sections and looks_like_frames(parsed_slice.document.root.entries["frames"]):
-            _leave_out_section(state, parsed_slice.document.root.entries["frames"])
-        elif parsed_slice.sections:
+        elif parsed_slice.sections and not _leave_out_frames(state, parsed_slice.document):
             # With a guess from the first key that is nearly the name of a section, such as `group:`.
             ignored_files.append(
                 (file, next(filter(None, (find_closest(key, known_sections) for key in parsed_slice.sections)), None))
@@ -176,15 +172,21 @@ def _is_meant_as_slice(document: YamlDocument) -> bool:
     return any(is_meant_for_language(entry) for entry in entries if entry.key not in _UNMARKING_SECTIONS)
 
 
-def _leave_out_section(state: ReadingState, entry: MappingEntry) -> None:
-    """Report a section that is meant for the language by its looks, in a file that nothing else makes a slice."""
-    message = f"`{entry.key}` alone makes no part of the project of a file: it is not read"
-    help_line = f"name the file in `sources` of {PROJECT_FILE}, or write it beside another section"
+def _leave_out_frames(state: ReadingState, document: YamlDocument) -> bool:
+    """Report frames in a file that nothing else makes a slice, if they are ours by their looks; whether they are."""
+    from archgen.schema.key_places import looks_like_frames
+
+    entry = document.root.entries.get("frames")
+    if entry is None or not isinstance(entry.value, MappingNode) or not looks_like_frames(entry.value):
+        return False
+    message = "`frames` alone makes no part of the project of a file: it is not read"
+    help_line = f"name the file in `sources` of {PROJECT_FILE}, or write them beside another section"
     state.diagnostics.append(
         Diagnostic("ignored-file", message, entry.key_span, severity=Severity.WARNING, help=help_line)
     )
     # What stands there is not unknown, only not read.
-    state.lost_keys.update(entry.value.entries if isinstance(entry.value, MappingNode) else ())
+    state.lost_keys.update(entry.value.entries)
+    return True
 
 
 def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:

@@ -141,14 +141,12 @@ def is_meant_for_language(entry: MappingEntry) -> bool:
     return section is not None and any(bodies) and all(_looks_like(body, _ELEMENT_SECTIONS[section]) for body in bodies)
 
 
-def looks_like_frames(entry: MappingEntry) -> bool:
-    """Whether a section of this name holds coordinate frames: nothing else's keys, and a frame that stands in another."""
-    if entry.key != "frames" or not isinstance(entry.value, MappingNode):
-        return False
-    values = [part.value for part in entry.value]
+def looks_like_frames(mapping: MappingNode) -> bool:
+    """Whether a mapping holds coordinate frames: nothing else's keys, and a frame that stands in another."""
+    values = [entry.value for entry in mapping]
     bodies = [value for value in values if isinstance(value, MappingNode)]
     parents = [body.get("parent") for body in bodies if "parent" in body.entries]
-    parents += [value for value in values if isinstance(value, ScalarNode) and value.text in entry.value.entries]
+    parents += [value for value in values if isinstance(value, ScalarNode) and value.text in mapping.entries]
     return bool(parents) and all(_list_keys("frame").issuperset(body.entries) for body in bodies)
 
 
