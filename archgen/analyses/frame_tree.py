@@ -25,6 +25,7 @@ _MAX_DEPTH = 200
 """So far up the tree a frame is looked for."""
 _CHAIN = ("earth", "map", "odom", "base_link")
 """The frames of REP 105 (https://www.ros.org/reps/rep-0105.html), each placed in the one before it."""
+_COMMON_WORDS = frozenset({"earth", "map"})
 
 
 class _NamedFrame(NamedTuple):
@@ -234,9 +235,10 @@ def _find_upper_name(frames: Mapping[str, Frame], name: str) -> str | None:
     """Return the frame that REP 105 wants above another: the nearest one that there is, None for any other name."""
     prefix, slash, own_word = name.rpartition("/")
     upper_words = _CHAIN[: _CHAIN.index(own_word)] if own_word in _CHAIN else ()
-    # One map may serve several robots, each with frames of its own below it.
-    candidates = (each for word in reversed(upper_words) for each in (f"{prefix}{slash}{word}", word))
-    return next((each for each in candidates if each in frames), None)
+    own_names = (f"{prefix}{slash}{word}" for word in reversed(upper_words))
+    # One map may serve several robots, each with an odometry of its own below it.
+    common_names = (word for word in reversed(upper_words) if word in _COMMON_WORDS)
+    return next((each for each in (*own_names, *common_names) if each in frames), None)
 
 
 RULES = (
