@@ -12,6 +12,7 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "unknown-reference": ("error", True),
         "ambiguous-reference": ("error", True),
         "hidden-reference": ("warning", False),
+        "duplicate-frame": ("error", True),
         "missing-chapter": ("error", True),
         "missing-parameter-file": ("warning", False),
     }
