@@ -73,7 +73,7 @@ def project(text: str) -> dict[str, Any]:
         "hosts": {"h": {}, "i": {}},
         "containers": {"c": {"host": "i"}},
         "links": {"l": {"connects": ["h", "i"]}},
-        "frames": {"map": {}, "".join(text.split())[:150]: {"parent": "map", "by": "a.x"}},
+        "frames": {"map": {}, "".join(text.replace("\ufeff", "").split())[:150]: {"parent": "map", "by": "a.x"}},
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
         "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},

@@ -35,14 +35,15 @@ def list_frame_owners(architecture: Architecture, frame: Frame) -> tuple[str, ..
 
 def _find_given_frames(architecture: Architecture, giver: str, taker: str) -> Iterator[SharedFrame]:
     ports_by_frame: dict[str | None, dict[str, None]] = {}
+    # Here and below: what belongs to both is theirs together.
     for port in architecture.list_ports():
         owners = architecture.components[port.component].owners
-        # What belongs to both is theirs together.
         if taker in owners and giver not in owners:
             ports_by_frame.setdefault(architecture.frame_of(port), {})[port.id] = None
     children = list_children(architecture.frames)
     for frame in architecture.frames.values():
-        if giver not in list_frame_owners(architecture, frame) or frame.parent is None:
+        writers = list_frame_owners(architecture, frame)
+        if giver not in writers or taker in writers or frame.parent is None:
             continue
         frames = tuple(
             child.id
