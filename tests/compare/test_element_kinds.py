@@ -359,6 +359,11 @@ def test_the_order_of_the_report() -> None:
     assert list(KIND_ORDER.values()) == list(range(22))
 
 
+def test_the_schema_of_comparisons_knows_every_kind() -> None:
+    schema = json.loads((ROOT / "schemas" / "diff.schema.json").read_text(encoding="utf-8"))
+    assert schema["$defs"]["change"]["properties"]["sort"]["enum"] == list(KIND_ORDER)
+
+
 def test_whatever_refers_to_a_kind_names_one() -> None:
     for kind in ELEMENT_KINDS.values():
         for key in kind.keys:
