@@ -138,7 +138,13 @@ def _keys_behind(element: ComparedElement, elements: Mapping[ElementKey, Compare
         yield from _keys_using(element, elements)
 
 
-_REFERRING_KEYS = {"type": "type", "requirement": "requirements", "host": "host", "container": "container", "frame": "frame"}
+_REFERRING_KEYS = {
+    "type": "type",
+    "requirement": "requirements",
+    "host": "host",
+    "container": "container",
+    "frame": "frame",
+}
 """For each kind, the key with which other elements name an element of it."""
 
 
