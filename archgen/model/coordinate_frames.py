@@ -34,9 +34,9 @@ class Frame:
 
     @property
     def answering_element(self) -> str:
-        """The component that holds or writes it, else its own name: whom findings about it concern."""
-        # A node or a host may have the name of a frame: these would get the findings, too.
-        return self.component or (self.by if self.by_kind == "component" else None) or self.id
+        """The component or node that holds or writes it, else its own name: whom findings about it concern."""
+        # Findings are filed by id: by its own name they would also be those of a node that is called so.
+        return self.component or self.by or self.id
 
     @property
     def topic(self) -> str:

@@ -18,6 +18,8 @@ def index_written_frames(architecture: Architecture) -> Mapping[str, tuple[Frame
 
     Of a component with several nodes nobody knows which one writes them: as with ports, each has to say what it carries.
     """
+    if not architecture.frames:
+        return {}
     writing_nodes: dict[tuple[str, str], list[str]] = {}
     for node in architecture.nodes.values():
         writing_nodes.setdefault(("node", node.id), []).append(node.id)

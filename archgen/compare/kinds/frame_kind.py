@@ -30,14 +30,12 @@ def _find_parent(frame: Frame, context: ReadContext) -> ElementKey | None:
 
 
 def _mark_children(relations: ElementRelations, frame: Frame) -> frozenset[str]:
-    return frozenset(each.id for each in relations.architecture.frames.values() if each.parent == frame.id)
+    return frozenset(relations.users_by_element[f"below:{frame.id}"])
 
 
 def _mark_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
-    architecture = relations.architecture
-    inputs = [port.id for port in architecture.inputs.values() if port.frame == frame.id]
-    outputs = [port.id for port in architecture.outputs.values() if port.frame == frame.id]
-    return relations.common_ids("input", inputs) | relations.common_ids("output", outputs)
+    ports = relations.users_by_element[f"frame:{frame.id}"]
+    return relations.common_ids("input", ports) | relations.common_ids("output", ports)
 
 
 def frame_reference(verb: str) -> KeySpec:

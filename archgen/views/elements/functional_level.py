@@ -6,7 +6,6 @@ import re
 from fractions import Fraction
 
 from archgen.model.component import Component, Group, Input, Output
-from archgen.model.coordinate_frames import Frame
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -130,18 +129,13 @@ def _component_facts(lookup: Lookup, component: Component) -> list[tuple[str, In
             inline_text.join_inlines((inline_text.node_link(node),) for node in nodes) or inline_text.UNKNOWN_INLINES,
         )
     )
-    written_frames = [frame for frame in architecture.frames.values() if _writes_frame(component, frame)]
-    if written_frames:
+    if written_frames := lookup.frames_of.get(component.id):
         rows.append(("Writes the frames", inline_text.join_inlines(_link_frame(frame.id) for frame in written_frames)))
     if component.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(component.tags))))
     if component.urls:
         rows.append(("Links", inline_text.link_urls(component.urls.items())))
     return rows
-
-
-def _writes_frame(component: Component, frame: Frame) -> bool:
-    return frame.parent is not None and (frame.by_kind, frame.by) == ("component", component.id)
 
 
 def _link_frame(name: str) -> Inlines:
