@@ -38,6 +38,7 @@ ELEMENTS = {
     "hosts": "host",
     "containers": "container",
     "links": "link",
+    "frames": "frame",
     "chains": "chain",
     "views": "view",
     "policies": "policy",
@@ -72,6 +73,7 @@ def project(text: str) -> dict[str, Any]:
         "hosts": {"h": {}, "i": {}},
         "containers": {"c": {"host": "i"}},
         "links": {"l": {"connects": ["h", "i"]}},
+        "frames": {"map": {}, "".join(text.replace("\ufeff", "").split())[:150]: {"parent": "map", "by": "a.x"}},
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
         "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},
@@ -89,7 +91,7 @@ def _component(inputs: dict[str, Any], kind: str) -> dict[str, Any]:
         "requirements": ["R-1", f"{kind} {kind}"],
         "performance": {"overall": {}},
         "inputs": {**inputs, "felt": {**outside}},
-        "outputs": {"out": {"type": kind}, "seen": {**outside, "type": kind}},
+        "outputs": {"out": {"type": kind, "frame": "map"}, "seen": {**outside, "type": kind}},
     }
 
 

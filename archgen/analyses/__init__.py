@@ -13,6 +13,7 @@ from archgen.analyses import (
     component_roles,
     composed_ports,
     connectivity,
+    frame_tree,
     half_written,
     host_links,
     ineffective_timing,
@@ -84,6 +85,7 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *parameter_settings.RULES,
     *policy_violations.RULES,
     *selector_checks.RULES,
+    *frame_tree.RULES,
     *completeness.RULES,
 )
 

@@ -29,6 +29,7 @@ LISTABLE_KINDS = (
     "parameters",
     "operations",
     "hosts",
+    "frames",
     "backends",
 )
 

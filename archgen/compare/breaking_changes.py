@@ -12,6 +12,7 @@ from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
 from archgen.compare.losses.changed_distro import find_changed_distro
+from archgen.compare.losses.changed_frames import find_changed_frames
 from archgen.compare.losses.changed_meanings import find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources
@@ -41,6 +42,7 @@ _LOSS_FINDERS = (
     find_weakened_sizes,
     find_unserved_requirements,
     find_changed_meanings,
+    find_changed_frames,
     find_changed_parameters,
     find_renamed_sources,
 )

@@ -115,7 +115,7 @@ def _opposite_keys(
     change: Change, element: ComparedElement, elements: Mapping[ElementKey, ComparedElement], connections: ConnectionMap
 ) -> Iterator[ElementKey]:
     """Yield the keys of what is at the other end of a changed element."""
-    if change.element_kind in {"chain", "host", "container", "link"} and _is_textual(change):
+    if change.element_kind in {"chain", "host", "container", "link", "frame"} and _is_textual(change):
         return
     match change.element_kind:
         case "input" if change.key == "optional":
@@ -133,7 +133,7 @@ def _opposite_keys(
             yield from _chain_points(element)
         case "host" | "container" | "link":
             yield from _nodes_at_place(element, elements)
-        case "type" | "requirement":
+        case "type" | "requirement" | "frame":
             yield from _users_and_readers(element, elements, connections)
         case "project" if change.key == "distro":
             # Everybody builds against it.
@@ -221,8 +221,10 @@ def _users_and_readers(
 
 
 def _users_of_element(element: ComparedElement, elements: Mapping[ElementKey, ComparedElement]) -> Iterator[ElementKey]:
-    """Yield the ports of a type, or the components that serve a requirement."""
+    """Yield the ports of a type, the components that serve a requirement, or what is given or placed in a frame."""
     for key, candidate in elements.items():
+        if element.kind == "frame" and element.id in {candidate.values.get("frame"), candidate.values.get("parent")}:
+            yield from (key, *_users_of_element(candidate, elements)) if key[0] == "type" else (key,)
         if element.kind == "type" and key[0] in {"output", "input"} and candidate.values.get("type") == element.id:
             yield key
         requirement_ids = (

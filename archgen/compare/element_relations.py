@@ -81,17 +81,23 @@ class ElementRelations:
 
     @cached_property
     def users_by_element(self) -> Mapping[str, list[str]]:
-        """Return the users of types (`type:ID`: ports), requirements (components) and use cases (requirements)."""
+        """Return the users of types (`type:ID`: ports), frames (ports), requirements (components) and use cases
+        (requirements), and the frames below others (`below:ID`).
+        """
         user_ids: dict[str, list[str]] = defaultdict(list)
         for component in self.architecture.components.values():
             for port in ports_of(component):
                 if port.type:
                     user_ids[f"type:{port.type}"].append(port.id)
+                if port.frame:
+                    user_ids[f"frame:{port.frame}"].append(port.id)
             for use in component.requirements:
                 user_ids[f"requirement:{use.text}"].append(component.id)
         for requirement in self.architecture.requirements.values():
             for case in requirement.use_cases:
                 user_ids[f"use_case:{case}"].append(requirement.id)
+        for frame in self.architecture.frames.values():
+            user_ids[f"below:{frame.parent}"].append(frame.id)
         return user_ids
 
     @cached_property

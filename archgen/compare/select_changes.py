@@ -138,7 +138,13 @@ def _keys_behind(element: ComparedElement, elements: Mapping[ElementKey, Compare
         yield from _keys_using(element, elements)
 
 
-_REFERRING_KEYS = {"type": "type", "requirement": "requirements", "host": "host", "container": "container"}
+_REFERRING_KEYS = {
+    "type": "type",
+    "requirement": "requirements",
+    "host": "host",
+    "container": "container",
+    "frame": "frame",
+}
 """For each kind, the key with which other elements name an element of it."""
 
 
@@ -147,6 +153,9 @@ def _keys_using(element: ComparedElement, elements: Mapping[ElementKey, Compared
     if element.kind == "chain" and isinstance(through := element.values.get("through"), tuple):
         for point in through:
             yield from (("component", point), ("component", point.rpartition(".")[0]), ("node", point))
+    if element.kind == "frame":
+        yield "node", str(element.values.get("by"))
+        yield from (("component", writer) for writer in element.component_refs)
     key = _REFERRING_KEYS.get(element.kind)
     for candidate in elements.values() if key or element.kind == "partner" else ():
         value = candidate.values.get(key) if key else candidate.owner

@@ -54,6 +54,7 @@ _LACK_RULES = frozenset(
         "unjustified-node",
         "unknown-message",
         "unmapped-type",
+        "unpublished-frame",
     }
 )
 """Rules that report what an element lacks (or that depend on a default or a `status: planned`): they wait for an element
@@ -62,6 +63,7 @@ in which something could not be read.
 _FILE_RULES = frozenset(
     {
         "incompatible-qos",
+        "misplaced-frame",
         "role-mismatch",
         "unaccounted-topic",
         "unchecked-message",
@@ -69,6 +71,7 @@ _FILE_RULES = frozenset(
         "unknown-parameter",
         "unmapped-type",
         "unnamed-source",
+        "unpublished-frame",
         "wrong-section",
     }
 )

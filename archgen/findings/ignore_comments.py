@@ -153,6 +153,7 @@ def find_first_lines(architecture: Architecture) -> Mapping[str, LineSet]:
             model.nodes,
         ),
         *(model.hosts, model.containers, model.resources, model.links, model.chains, model.views, model.policies),
+        model.frames,
     )
     for elements in element_maps:
         for key, element in elements.items():

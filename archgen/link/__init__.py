@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from archgen.link import composition_rules, reference_rules, slice_merging
 from archgen.link.data_types import type_rules
+from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
@@ -13,6 +14,7 @@ RULES = (
     *reference_rules.RULES,
     *composition_rules.RULES,
     *type_rules.RULES,
+    DUPLICATE_FRAME,
     MISSING_CHAPTER,
     MISSING_PARAMETER_FILE,
 )

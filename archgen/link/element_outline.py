@@ -111,7 +111,9 @@ def _declare_output(component: str, entry: MappingEntry) -> Output:
         type=mapping_values.normalise_type_name(type_text) if type_text else None,
         external=mapping_values.get_text(body, "external"),
         physical=mapping_values.get_text(body, "medium") == "physical",
+        frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
         at=entry.key_span,
         type_at=mapping_values.get_span(body, "type"),
+        frame_at=mapping_values.get_span(body, "frame"),
     )

@@ -84,12 +84,14 @@ class InputWiring:
             freshness=sanity_checks.read_positive(
                 body, "freshness", "duration", component_id, self.resolver.diagnostics
             ),
+            frame=mapping_values.get_text(body, "frame"),
             description=mapping_values.get_text(body, "description"),
             from_written=body.get("from") is not None
             or (self.sources is not None and ("input", f"{component_id}.{entry.key}") in self.sources.ambiguous_ports),
             at=entry.key_span,
             type_at=mapping_values.get_span(body, "type"),
             freshness_at=mapping_values.get_span(body, "freshness"),
+            frame_at=mapping_values.get_span(body, "frame"),
         )
 
     def _connect_sources(self, component_id: str, input_id: str, sources: PortSources) -> Iterator[Connection]:

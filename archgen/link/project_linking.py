@@ -9,7 +9,9 @@ from archgen.link import mapping_values
 from archgen.link.declare import deployment_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
+from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
+from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
@@ -62,6 +64,10 @@ def link_project(  # noqa: PLR0913 - all by name
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
+    shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
+    frames = declare_frames(
+        root, {**element_outline.components, **shell_entries}, resolver, HandedParameters(element_outline, diagnostics)
+    )
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference
@@ -89,6 +95,7 @@ def link_project(  # noqa: PLR0913 - all by name
         containers=containers,
         resources=resources,
         links=links,
+        frames=frames,
         chains=chains,
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),

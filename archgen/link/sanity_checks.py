@@ -109,6 +109,14 @@ def report_missing_maximum(entry: MappingEntry, element_id: str, diagnostics: li
         diagnostics.append(_diagnose_senseless(message, entry.key_span, help_line, element_id))
 
 
+def report_rate_of_static(frame_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> None:
+    """Report how often a frame is written that never moves."""
+    label = Label(mapping_values.get_span(frame_body, "static"), "it never moves")
+    message, help_line = "`rate` of a static frame: it is written once", "take one of `rate` and `static` out"
+    span = mapping_values.get_span(frame_body, "rate")
+    diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
+
+
 def report_mixed_trigger(trigger_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> None:
     """Report keys of a trigger that have no meaning beside `all`."""
     if trigger_body.get("all") is None:

@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
+from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
@@ -172,6 +173,8 @@ class Architecture:
     containers: Mapping[str, Container] = field(default_factory=dict)
     resources: Mapping[str, Resource] = field(default_factory=dict)
     links: Mapping[str, Link] = field(default_factory=dict)
+    frames: Mapping[str, Frame] = field(default_factory=dict)
+    """Those of the project and those of its components, by name."""
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
@@ -230,6 +233,16 @@ class Architecture:
                     yield name
                 base = self.component_types.get(name)
                 type_text = base.base if base else None
+
+    def list_ports(self) -> Iterator[Input | Output]:
+        """Yield all ports: outputs, then inputs."""
+        yield from self.outputs.values()
+        yield from self.inputs.values()
+
+    def frame_of(self, port: Input | Output) -> str | None:
+        """Return the coordinate frame of a port's data: the one it names, else that of its type; None if unknown."""
+        carried_type = self.types.get(port.type or "")
+        return port.frame or (carried_type.frame if carried_type else None)
 
     def nodes_using(self, resource_id: str) -> Iterator[Node]:
         """Yield the nodes of which an activity uses a resource."""

@@ -57,12 +57,15 @@ class Input:
     optional: bool = False
     freshness: Quantity | None = None
     """How old what is read here may be at most, as the reader demands."""
+    frame: str | None = None
+    """The coordinate frame in which it expects what arrives, as written."""
     description: str | None = None
     from_written: bool = False
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     freshness_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +78,12 @@ class Output:
     type: str | None = None
     external: str | None = None
     physical: bool = False
+    frame: str | None = None
+    """The coordinate frame in which its data is given, as written; None: that of its type."""
     description: str | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from archgen.frozen import dataclass
 GENERATED_CHAPTERS = (
     "overview",
     "groups",
+    "frames",
     "deployment",
     "timing",
     "chains",

@@ -81,10 +81,13 @@ class ConceptualType:
     values: tuple[str, ...] = ()
     part_fields: Mapping[str, tuple[DataField, ...]] = field(default_factory=dict)
     generic: tuple[str, ...] = ()
+    frame: str | None = None
+    """The coordinate frame in which such data is given, as written."""
     origin: Literal["project", "shipped", "message"] = "project"
     """What maps it: the project, the type mapper that ships with archgen, or its own name, which is a message."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
     def has_content(self) -> bool:

@@ -136,6 +136,7 @@ class Endpoint:
     `name` is absolute (`/camera/rgbd`). `port` is the complete id of the component's port, None for internal endpoints.
     `message` is the full name (`pkg/msg/Name`), None if unknown. `written`: the node itself names the port;
     `name_written`: also the topic. `sources` (for subscribes and calls) are the ids of the outputs that arrive here.
+    An internal one that is not written follows from the frames that the node writes.
     """
 
     node: str

@@ -35,6 +35,10 @@ _OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
 
+_UNMARKING_SECTIONS = frozenset({"frames"})
+"""Sections that other programs' files may have, too: one of these alone makes no slice of a file that nobody names."""
+
+
 @dataclass(slots=True)
 class ReadingState:
     """What has been read so far; the functions below add to it."""
@@ -128,9 +132,7 @@ def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> Non
 
 def _read_all_slices(state: ReadingState) -> None:
     """Read every *.yaml below that holds a section, and list those that do not in one note."""
-    from archgen.schema.key_places import is_meant_for_language
-
-    known_sections, ignored_files = list_sections(), list[tuple[str, str | None]]()
+    known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
     for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
         if file in state.seen_files:
             continue
@@ -149,13 +151,10 @@ def _read_all_slices(state: ReadingState) -> None:
             ignored_files.append((file, None))
         elif parsed_slice.document is None:
             _keep_slice(state, parsed_slice)
-        elif not known_sections.isdisjoint(parsed_slice.sections) or any(
-            # Then its slip is an error at its place. Other programs' files may have thousands of keys.
-            map(is_meant_for_language, islice(parsed_slice.document.root, _MAX_SECTIONS))
-        ):
+        elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
             if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
                 _keep_slice(state, parsed_slice)
-        elif parsed_slice.sections:
+        elif parsed_slice.sections and not _leave_out_frames(state, parsed_slice.document):
             # With a guess from the first key that is nearly the name of a section, such as `group:`.
             ignored_files.append(
                 (file, next(filter(None, (find_closest(key, known_sections) for key in parsed_slice.sections)), None))
@@ -184,6 +183,32 @@ def _list_endings(path: str, named_paths: set[str]) -> Iterator[str]:
     """Yield the path and what is left of it without its first folders: a node may name it from its package's folder."""
     parts = path.split("/") if named_paths else []
     return ("/".join(parts[start:]) for start in range(len(parts)))
+
+
+def _is_meant_as_slice(document: YamlDocument) -> bool:
+    """Whether a file without sections was meant to have one: then its slip is an error at its place."""
+    from archgen.schema.key_places import is_meant_for_language
+
+    # Other programs' files may have thousands of keys.
+    entries = islice(document.root, _MAX_SECTIONS)
+    return any(is_meant_for_language(entry) for entry in entries if entry.key not in _UNMARKING_SECTIONS)
+
+
+def _leave_out_frames(state: ReadingState, document: YamlDocument) -> bool:
+    """Report frames in a file that nothing else makes a slice, if they are ours by their looks; whether they are."""
+    from archgen.schema.key_places import looks_like_frames
+
+    entry = document.root.entries.get("frames")
+    if entry is None or not isinstance(entry.value, MappingNode) or not looks_like_frames(entry.value):
+        return False
+    message = "`frames` alone makes no part of the project of a file: it is not read"
+    help_line = f"name the file in `sources` of {PROJECT_FILE}, or write them beside another section"
+    state.diagnostics.append(
+        Diagnostic("ignored-file", message, entry.key_span, severity=Severity.WARNING, help=help_line)
+    )
+    # What stands there is not unknown, only not read.
+    state.lost_keys.update(entry.value.entries)
+    return True
 
 
 def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:

@@ -11,7 +11,9 @@ RULES: tuple[Rule, ...] = (
         """A YAML file below the project's folder holds no section of the language and is not read.
 
 Why: where `sources` is left out, every YAML file below is looked at. Parameter files and workflows are not meant. A file
-with a slip in its only section is: it is read, and the slip an error, if what stands there has the section's keys.
+with a slip in its only section is: it is read, and the slip an error, if what stands there has the section's keys. A file
+that holds nothing but `frames` may be another program's: it is not read unless `sources` names it, and that is a warning
+where it looks like ours.
 
 Bad:
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from archgen.diagnostics.suggestions import find_closest
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.schema_wording import add_article
-from archgen.syntax.yaml_tree import MappingNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 if TYPE_CHECKING:
     from archgen.syntax.yaml_tree import MappingEntry, YamlNode
@@ -30,6 +30,7 @@ _HOMES = {
     "link": "`links: {{LINK: {{{key}: ...}}}}`",
     "chain": "`chains: {{CHAIN: {{{key}: ...}}}}`",
     "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
+    "frame": "`frames: {{FRAME: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
 _READER_KEYS = frozenset({"freshness", "optional"})
@@ -51,6 +52,7 @@ _ELEMENT_SECTIONS = {
     "policies": "policy",
     "partners": "partner",
     "requirements": "requirement",
+    "frames": "frame",
 }
 
 
@@ -137,6 +139,15 @@ def is_meant_for_language(entry: MappingEntry) -> bool:
     section = find_closest(entry.key, _ELEMENT_SECTIONS)
     bodies = [part.value for part in entry.value if isinstance(part.value, MappingNode)]
     return section is not None and any(bodies) and all(_looks_like(body, _ELEMENT_SECTIONS[section]) for body in bodies)
+
+
+def looks_like_frames(mapping: MappingNode) -> bool:
+    """Whether a mapping holds coordinate frames: nothing else's keys, and a frame that stands in another."""
+    values = [entry.value for entry in mapping]
+    bodies = [value for value in values if isinstance(value, MappingNode)]
+    parents = [body.get("parent") for body in bodies if "parent" in body.entries]
+    parents += [value for value in values if isinstance(value, ScalarNode) and value.text in mapping.entries]
+    return bool(parents) and all(_list_keys("frame").issuperset(body.entries) for body in bodies)
 
 
 def find_common_kind(keys: tuple[str, ...]) -> str | None:

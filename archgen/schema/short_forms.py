@@ -45,6 +45,7 @@ _TOPIC_FORM = ElementForm(("topic",), frozenset({"topic"}), part_forms={"qos": E
 _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
 _CONTAINER_FORM = ElementForm(("host",))
+_FRAME_FORM = ElementForm(("parent",))
 _COMPONENT_NODE_FORM = ElementForm(
     list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})
 )
@@ -55,6 +56,7 @@ _COMPONENT_PARTS = {
     "performance": _PLAIN_FORM,
     "containers": _CONTAINER_FORM,
     "operations": ElementForm(("response",)),
+    "frames": _FRAME_FORM,
 }
 _COMPONENT_FORM = ElementForm(
     ("title",),
@@ -101,6 +103,7 @@ _ROOT_FORM = ElementForm(
         "containers": _CONTAINER_FORM,
         "resources": ElementForm(("host",)),
         "links": _LINK_FORM,
+        "frames": _FRAME_FORM,
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,

@@ -11,6 +11,7 @@ from archgen.model.derived_names import derive_node_ids
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, FlowKind, Node, Topic
 from archgen.transform import ros_names
+from archgen.transform.frame_endpoints import derive_frame_endpoints, index_written_frames
 from archgen.transform.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.transform.reading_endpoints import derive_reading_endpoints, index_writers
 from archgen.transform.writing_endpoints import derive_writing_endpoints, find_node_parts
@@ -46,13 +47,17 @@ def _derive_endpoints(architecture: Architecture, shared_topics: frozenset[str])
     writer_index = index_writers(
         architecture, shared_topics, [*(e for endpoints in writing.values() for e in endpoints), *portless_writers]
     )
-    # For each node: what it writes, what it reads, then what has no port.
+    frames_by_node = index_written_frames(architecture)
+    # For each node: what it writes, what it reads, what has no port, then what follows from frames.
     all_endpoints: list[Endpoint] = []
     for node_id in architecture.nodes:
         all_endpoints += writing[node_id]
         for node_part in node_parts[node_id]:
             all_endpoints += derive_reading_endpoints(writer_index, node_part)
         all_endpoints += (complete_message(endpoint, writer_index) for endpoint in portless[node_id])
+        if node_id in frames_by_node:
+            own_endpoints = (*writing[node_id], *portless[node_id])
+            all_endpoints += derive_frame_endpoints(architecture.nodes[node_id], frames_by_node[node_id], own_endpoints)
     return tuple(all_endpoints)
 
 

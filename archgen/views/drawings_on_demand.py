@@ -17,6 +17,9 @@ from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.timing import chain_charts
 
+# One without boxes is not shown: there may be neither hosts nor frames.
+_WHOLE_GRAPHS = {"ros": graphs.draw_ros_graph, "hosts": graphs.draw_hosts, "frames": graphs.draw_frames}
+
 
 class DrawingsOnDemand(Mapping[str, Drawing]):
     """The drawings of a whole architecture by id, each made once. To go through all of them makes all."""
@@ -88,7 +91,7 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
 
     def _draw_graph(self, family: str, name: str) -> Graph | None:
         """Draw one graph; None where no such thing exists."""
-        architecture, lookup = self._lookup.architecture, self._graph_lookup
+        lookup = self._graph_lookup
         if name:
             return self._draw_element(family, name)
         match family:
@@ -96,11 +99,8 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
                 return fold_graph(graphs.draw_overview(lookup))
             case "components":
                 return fold_graph(graphs.draw_components(lookup))
-            case "ros":
-                return graphs.draw_ros_graph(lookup)
-            case "hosts":
-                return graphs.draw_hosts(lookup) if architecture.hosts else None
-        return None
+        draw_whole = _WHOLE_GRAPHS.get(family)
+        return draw_whole(lookup) if draw_whole else None
 
     def _draw_element(self, family: str, name: str) -> Graph | None:
         """Draw the graph of a group, a component or a view; None where there is none of this name."""

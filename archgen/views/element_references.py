@@ -23,6 +23,7 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         ("host", architecture.hosts),
         ("container", architecture.containers),
         ("link", architecture.links),
+        ("frame", architecture.frames),
         ("type", architecture.types),
         ("topic", architecture.topics),
         ("partner", architecture.partners),

@@ -118,6 +118,7 @@ GraphKind = Literal[
     "implementation",
     "ros",
     "hosts",
+    "frames",
     "timing",
     "group-timing",
     "view",

@@ -10,6 +10,7 @@ from typing import TypeVar
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.coordinate_frames import Frame
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.source_repository import SourceRepository
@@ -62,6 +63,8 @@ class Lookup:
     """Outputs by the name of their conceptual type."""
     physical_types: frozenset[str] = frozenset()
     """Types that only physical ports use: they need no message."""
+    frames_of: Mapping[str, tuple[Frame, ...]] = field(default_factory=dict)
+    """Frames that a component writes, by the component's id."""
     group_hues: Mapping[str, int] = field(default_factory=dict)
     """Position of each group in the architecture: the base of its colour."""
     # A closure over the interfaces: it has no useful equality or repr, so both leave it out.
@@ -126,6 +129,11 @@ def make_lookup(
         ),
         outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
         physical_types=_find_physical_types(architecture),
+        frames_of=_group_values(
+            (frame.by, frame)
+            for frame in architecture.frames.values()
+            if frame.by and frame.by_kind == "component" and frame.parent is not None
+        ),
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
         timing=timing_lookup,

@@ -57,6 +57,7 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             "containers",
             "resources",
             "links",
+            "frames",
             "chains",
             "views",
             "policies",

@@ -59,6 +59,7 @@ def make_record(lookup: Lookup) -> Record:
         },
         **_record_resources(architecture),
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
+        **_record_frames(architecture),
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
     }
 
@@ -125,6 +126,16 @@ def _record_resources(architecture: Architecture) -> dict[str, object]:
     )
 
 
+def _record_frames(architecture: Architecture) -> dict[str, object]:
+    """Return the section of frames, empty in a project without any."""
+    frames = {
+        frame.id: pick_fields(frame, "title", "parent", "by")
+        | drop_unknown({"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None})
+        for frame in architecture.frames.values()
+    }
+    return drop_unknown({"frames": frames})
+
+
 def _record_link(link: Link) -> dict[str, object]:
     bandwidth = {"bandwidth": record_quantity(link.bandwidth, "bit/s")}
     latency = {"best": record_quantity(link.best, "ns"), "worst": record_quantity(link.worst, "ns")}
@@ -180,6 +191,7 @@ def _record_port(port: Input | Output) -> dict[str, object]:
         "type": port.type,
         "medium": "physical" if port.physical else "digital",
         "external": port.external,
+        "frame": port.frame,
         "description": port.description,
     }
 

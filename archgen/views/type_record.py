@@ -26,7 +26,7 @@ def record_type(conceptual_type: ConceptualType, interfaces: Interfaces) -> dict
     )
     parts = {part: _record_fields(fields, part, ros_fields) for part, fields in conceptual_type.part_fields.items()}
     constants = {each.name: pick_fields(each, "type", "value", "comment") for each in conceptual_type.constants}
-    keys = ("message", "comment", "status", "request", "response", "feedback", "values", "generic")
+    keys = ("message", "comment", "status", "request", "response", "feedback", "frame", "values", "generic")
     return pick_fields(conceptual_type, *keys) | drop_unknown(
         {
             "size": record_quantity(conceptual_type.size, "B"),

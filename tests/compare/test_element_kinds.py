@@ -19,6 +19,7 @@ from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Eff
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
 from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
 from archgen.model.component import Component, ComponentType, Group, Input, Output
+from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
@@ -45,6 +46,7 @@ MODEL_CLASSES: Mapping[str, type] = {
     "container": Container,
     "resource": Resource,
     "link": Link,
+    "frame": Frame,
     "chain": Chain,
     "policy": Policy,
     "view": View,
@@ -64,6 +66,7 @@ SECTIONS = {
     "container": "containers",
     "resource": "resources",
     "link": "links",
+    "frame": "frames",
     "chain": "chains",
     "policy": "policies",
     "view": "views",
@@ -88,6 +91,7 @@ _INSIDE = {
 SCHEMA_ONLY = {
     **{f"component {key}": reason for key, reason in _INSIDE.items()},
     "component same_as": "the key `is`",
+    "component frames": "elements of their own",
     "group autoconnect": "the connections that it makes",
     **dict.fromkeys(("output from", "output to"), "the connections that it makes"),
     **{
@@ -142,6 +146,9 @@ MODEL_ONLY = {
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
     "chain unresolved": "only for rules",
     "link unresolved": "only for rules",
+    "frame by_kind": "what the key `by` names",
+    "frame component": "where it is written",
+    "frame by_written": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
     "component is": "the fields `component_type` and `is_reference`",
@@ -226,8 +233,9 @@ groups:
         parameters: {gain: {type: float, value: 1, unit: m, range: [0, 2], choices: [1, 2], description: D, read_only: true, visibility: public, hints: {a: {b: 1}}}, side: {from: self.side}}
         open: [plugins]
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
-        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, description: D}}
-        outputs: {o: {type: T, external: the world, description: D}}
+        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D}}
+        outputs: {o: {type: T, external: the world, frame: base, description: D}}
+        frames: {base: {title: B, parent: map, rate: 10 Hz}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
@@ -238,7 +246,7 @@ component_types:
   drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
 types:
-  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}
+  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map}
   S: {request: T, response: T, feedback: T}
   F: {fields: {x: {type: float64, default: 0.5, unit: m, comment: C}, y: {type: "int8[]", default: [1, 2]}, t: T}, constants: {A: {type: int8, value: 1, comment: C}}}
   V: {values: [ON, OFF]}
@@ -275,6 +283,7 @@ hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, ar
 containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo}}
 links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
+frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, layout: {direction: top-bottom}}}
 policies: {p: {title: P, forbid: {from: g, to: g}}}
@@ -387,7 +396,13 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
     for earlier, later in (
         *(("group", "component"), ("component", "output"), ("output", "input"), ("type", "message")),
         *(("component", "node"), ("node", "container"), ("node", "host"), ("container", "host"), ("host", "link")),
-        *(("node", "chain"), ("component", "requirement"), ("requirement", "use_case"), ("partner", "group")),
+        *(
+            ("node", "chain"),
+            ("component", "frame"),
+            ("component", "requirement"),
+            ("requirement", "use_case"),
+            ("partner", "group"),
+        ),
     ):
         assert place(earlier) < place(later), (earlier, later)
 
@@ -396,10 +411,15 @@ def test_the_order_of_the_report() -> None:
     assert list(KIND_ORDER) == [
         *("project", "chapter", "partner", "use_case", "requirement", "component_type", "group", "composed"),
         *("component", "output", "input"),
-        *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "chain", "policy"),
-        "view",
+        *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "frame"),
+        *("chain", "policy", "view"),
     ]
-    assert list(KIND_ORDER.values()) == list(range(23))
+    assert list(KIND_ORDER.values()) == list(range(24))
+
+
+def test_the_schema_of_comparisons_knows_every_kind() -> None:
+    schema = json.loads((ROOT / "schemas" / "diff.schema.json").read_text(encoding="utf-8"))
+    assert schema["$defs"]["change"]["properties"]["sort"]["enum"] == list(KIND_ORDER)
 
 
 def test_whatever_refers_to_a_kind_names_one() -> None:
@@ -423,7 +443,7 @@ def test_no_key_is_listed_twice() -> None:
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
                 "type comment, input external, output description, chapter text, "
                 "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
-                "project layout, partner description, host tags, node urls.x"
+                "project layout, partner description, host tags, node urls.x, frame title"
             ),
         ),
         (
@@ -435,7 +455,8 @@ def test_no_key_is_listed_twice() -> None:
                 "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
-                "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99"
+                "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
+                "output frame, input frame, type frame"
             ),
         ),
         (
@@ -460,7 +481,7 @@ def test_how_far_a_changed_key_reaches(effect: Effect, keys: str) -> None:
 def test_how_far_a_whole_element_reaches() -> None:
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.TEXT} == {"chapter", "view", "use_case"}
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.SYSTEM} == {
-        *("project", "partner", "requirement", "policy", "component_type", "composed")
+        *("project", "partner", "requirement", "policy", "component_type", "composed", "frame")
     }
 
 

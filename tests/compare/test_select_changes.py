@@ -114,6 +114,18 @@ def test_chains_owners_and_findings_are_narrowed_too(compared: Compared) -> None
     assert select_changes(quiet, selected("h.c"), selected("h.c")).silenced_findings == ()
 
 
+@pytest.mark.parametrize(("components", "nodes"), [("g.a", ""), ("h.c", ""), ("", "publisher"), ("g.b", "")])
+def test_a_frame_touches_who_writes_it_and_who_uses_it(compared: Compared, components: str, nodes: str) -> None:
+    text = ROBOT.replace("inputs: {y: a.y}", "inputs: {y: {from: a.y, frame: base}}").replace(
+        "nodes:",
+        "frames: {world: , base: {parent: world, by: a, rate: 5 Hz}, tool: {parent: world, by: publisher, rate: 9 Hz}}\nnodes:\n  publisher: {package: p}",
+    )
+    found = compared(text, text.replace("5 Hz", "4 Hz").replace("9 Hz", "8 Hz"))
+    touched = {"g.a": ["frame base rate"], "h.c": ["frame base rate"], "publisher": ["frame tool rate"]}
+    narrowed = select_changes(found, *[selected(components, nodes)] * 2)
+    assert keys(narrowed.changes) == touched.get(components or nodes, [])
+
+
 def test_a_node_selects_the_chain_through_its_components(compared: Compared) -> None:
     text = ROBOT.replace(
         "implements: c, host: arm", "implements: [c, b], host: arm, timing: {c: {rate: 10 Hz, wcet: 1 ms}}"

@@ -276,6 +276,9 @@ PROJECTS = st.fixed_dictionaries(
         "nodes": st.dictionaries(
             IDS, st.fixed_dictionaries({}, optional={"implements": IDS, "parameters": st.dictionaries(IDS, DATA)})
         ),
+        "frames": st.dictionaries(
+            IDS, st.one_of(st.none(), IDS, st.fixed_dictionaries({"by": IDS, "static": st.booleans()}))
+        ),
         "types": st.dictionaries(WORDS, st.sampled_from(["std_msgs/msg/Bool", "std_srvs/srv/Trigger", "Bool"])),
         "ros": st.fixed_dictionaries({"distro": st.sampled_from(["jazzy", "noetic", "jazy"])}),
     },
@@ -348,4 +351,23 @@ resources: {gpu: pc, npu: {scheduling: fixed_priority}}
     assert data["resources"]["gpu"] == {"host": "pc"}
     again = packed_again(checked, tmp_path)
     for name in ("nodes", "hosts", "resources", "inputs"):
+        assert getattr(again.architecture, name) == getattr(checked.architecture, name)
+
+
+def test_frames_pack_to_the_same(tmp_path: Path) -> None:
+    slices = {
+        "archgen_yaml": "archgen: 1\nsources: ['*.yaml']\nproject: {id: r, title: R}\n",
+        "a_yaml": "groups: {g: {components: {a: {outputs: {o: {type: T, frame: eye}}, frames: {odom: map, '1': odom}}}}}\n"
+        "types: {T: {message: std_msgs/msg/Bool, frame: odom}}\nnodes: {a: a}\n",
+        "frames_yaml": "frames: {map: , base/link.x: {parent: odom, by: a, rate: 20 Hz}, eye: {parent: 1, static: true}}\n",
+        "more_yaml": "frames: {map: {title: 007}, eye: {by: a}}\n",
+    }
+    checked = project(tmp_path / "p", **slices)
+    assert yaml.safe_load(text_of(checked))["frames"] == {
+        "map": {"title": "007"},
+        "base/link.x": {"parent": "odom", "by": "a", "rate": "20 Hz"},
+        "eye": {"parent": "1", "static": True, "by": "a"},
+    }
+    again = packed_again(checked, tmp_path)
+    for name in ("frames", "types", "outputs"):
         assert getattr(again.architecture, name) == getattr(checked.architecture, name)

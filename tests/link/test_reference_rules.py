@@ -22,6 +22,7 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "circular-fields": ("error", True),
         "conflicting-message": ("error", True),
         "unbound-generic": ("error", True),
+        "duplicate-frame": ("error", True),
         "missing-chapter": ("error", True),
         "missing-parameter-file": ("off", False),
     }

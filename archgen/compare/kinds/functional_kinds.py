@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from archgen.compare.compared_elements import MAPPED_KEY, SOME_PORTS
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.element_relations import ElementRelations, ports_of
+from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.shared_keys import (
     CO_OWNERS,
@@ -298,6 +299,7 @@ OUTPUT = KindSpec(
     (
         KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="carries"),
         *_PORT_KEYS,
+        frame_reference("is given in"),
     ),
     elements=lambda version: version.architecture.outputs,
     features=(
@@ -325,6 +327,7 @@ INPUT = KindSpec(
         *_PORT_KEYS,
         KeySpec("optional", lambda port, _: port.optional or None, Effect.SYSTEM),
         KeySpec("freshness", worsening=Worsening.LESS, verb="must be no older than"),
+        frame_reference("is expected in"),
     ),
     elements=lambda version: version.architecture.inputs,
     features=(

@@ -7,6 +7,7 @@ from typing import Any
 
 from archgen.compare.element_likeness import word_set
 from archgen.compare.element_relations import ElementRelations
+from archgen.compare.kinds.frame_kind import FRAME
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.shared_keys import (
     DESCRIPTION,
@@ -193,4 +194,4 @@ VIEW = KindSpec(
     lambda version: version.architecture.views,
     (*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
 )
-SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, CHAIN, POLICY, VIEW)
+SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VIEW)

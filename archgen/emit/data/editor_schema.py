@@ -31,8 +31,12 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "field_type": ("types",),
     "forbid.from": ("selectors",),
     "forbid.to": ("selectors",),
+    "frame": ("frames",),
+    "frame.by": ("implemented",),
+    "frame.parent": ("frames",),
     "group_components": ("implemented",),
     "input": ("sources",),
+    "input.frame": ("frames",),
     "input.from": ("sources",),
     "link": ("hosts",),
     "link.connects": ("hosts",),
@@ -45,6 +49,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "operation.request": ("types",),
     "operation.response": ("types",),
     "output": ("types",),
+    "output.frame": ("frames",),
     "owners": ("partners",),
     "port_list": ("inputs",),
     "resource": ("hosts",),
@@ -57,6 +62,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "topic_use.message": ("topic_messages",),
     "trigger": ("inputs",),
     "type": ("topic_messages", "call_messages"),
+    "type.frame": ("frames",),
     "type.message": ("topic_messages", "call_messages"),
     "type_name": ("types",),
     "view": ("selectors",),
@@ -81,7 +87,7 @@ _SECTIONS = (
         "links",
         "chains",
     ),
-    *("resources", "views", "policies"),
+    *("resources", "frames", "views", "policies"),
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 

@@ -32,6 +32,24 @@ class HandedParameters:
             self._parameters[component_id] = self._hand_in(component_id, written) if written else written
         return self._parameters[component_id]
 
+    def fill_in_name(self, text: str, component_id: str, place: Span) -> str:
+        """Return a text of a component with the parameters of that component, which are its own `self` here."""
+        if "$" not in text:
+            return text
+        parameters = self.find_parameters(component_id)
+        value, missing_names = fill_in_text(text, parameters)
+        for name in missing_names:
+            self._diagnostics.append(
+                Diagnostic(
+                    "unknown-reference",
+                    f"`{component_id}` has no parameter `{name}`",
+                    place,
+                    help=did_you_mean(name, parameters) or f"declare `{name}` among its parameters",
+                    element=component_id,
+                )
+            )
+        return str(value)
+
     def _hand_in(self, component_id: str, written: Mapping[str, Parameter]) -> dict[str, Parameter]:
         parent = self._outline.expansion.parents.get(component_id) if self._outline.expansion else None
         around = self.find_parameters(parent) if parent else {}

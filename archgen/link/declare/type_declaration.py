@@ -156,8 +156,10 @@ def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading) 
         response=_read_type_name(body, "response"),
         feedback=_read_type_name(body, "feedback"),
         **content,
+        frame=mapping_values.get_text(body, "frame"),
         at=entry.key_span,
         message_at=mapping_values.get_span(body, "message"),
+        frame_at=mapping_values.get_span(body, "frame"),
     )
 
 

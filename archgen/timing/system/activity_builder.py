@@ -208,7 +208,8 @@ def _infer_behaviour(part: _NodePart) -> ActivityBehaviour | None:
     # also publishes is not on demand: calls alone would not say how often it publishes.
     if written_period(part.timing) is not None:
         return "periodic"
-    uses = {endpoint.use for endpoint in part.endpoints}
+    # What follows from frames (internal, and not written) says nothing of when a server works.
+    uses = {endpoint.use for endpoint in part.endpoints if endpoint.written or not endpoint.internal}
     if "serves" in uses and "publishes" not in uses:
         return "on_demand"
     return "event" if "subscribes" in uses else None

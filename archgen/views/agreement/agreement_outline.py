@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from archgen.model.architecture import Partner
 from archgen.views import inline_text
@@ -14,6 +14,7 @@ from archgen.views.agreement.agreement_summary import (
     write_summary_section,
 )
 from archgen.views.agreement.budget_section import write_budget_section
+from archgen.views.agreement.frame_section import list_changed_frames, write_frame_section
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.signature_record import write_signature_table
@@ -63,6 +64,7 @@ def outline_agreement(content: AgreementContent) -> Outline:
                 for section in _direction_section(content, section_writer, direction)
             ),
             *_removed_section(content),
+            *write_frame_section(content),
             *write_budget_section(content),
             write_open_points_section(content),
             _signatures_section(content),
@@ -100,6 +102,9 @@ def _partner_runs(partner: Partner) -> Inlines:
 def _changes_notice(content: AgreementContent) -> tuple[Paragraph, ...]:
     if content.changes is None:
         return ()
+    changed_frames = list_changed_frames(content)
+    if changed_frames and not content.changes.has_changes:
+        return (_frames_notice(content, changed_frames),)
     if not content.changes.has_changes:
         return (
             Paragraph(
@@ -116,7 +121,14 @@ def _changes_notice(content: AgreementContent) -> tuple[Paragraph, ...]:
             ),
             "note",
         ),
+        *((_frames_notice(content, changed_frames),) if changed_frames else ()),
     )
+
+
+def _frames_notice(content: AgreementContent, changed_frames: Sequence[str]) -> Paragraph:
+    names = inline_text.join_inlines((Text(name, code=True),) for name in changed_frames)
+    since = content.changes.earlier_revision if content.changes else ""
+    return Paragraph(inline_text.to_inlines(f"Frames that are not what they were at {since}: ", *names, "."), "note")
 
 
 def _partners_section(content: AgreementContent) -> Section:

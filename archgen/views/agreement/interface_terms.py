@@ -147,6 +147,8 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interfa
         yield "Type", inline_text.type_link(interface.type)
     if interface.output and interface.output.description:
         yield "Meaning", inline_text.to_inlines(interface.output.description)
+    if interface.output and (frame_name := lookup.architecture.frame_of(interface.output)):
+        yield "Frame", inline_text.to_inlines(Text(frame_name, code=True))
     if interface.flow != "physical":
         yield "Message", _message_runs(lookup, interface)
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)

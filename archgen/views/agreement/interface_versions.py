@@ -46,6 +46,8 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
     freshness = {_write_quantity(port.freshness) for port in interface.inputs if port.freshness}
     # Nothing where nobody asks for it: versions that were signed stay what they are.
     content |= {"freshness": sorted(freshness)} if freshness else {}
+    frame_name = architecture.frame_of(interface.output) if interface.output else None
+    content |= {"frame": frame_name} if frame_name else {}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:_DIGITS]
 
 

@@ -11,6 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.node import Node, Topic
 from archgen.views import inline_text
+from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.parameter_blocks import (
     list_effective_lines,
     list_operation_lines,
@@ -54,6 +55,7 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "container": a.containers,
         "resource": a.resources,
         "link": a.links,
+        "frame": a.frames,
         "chain": a.chains,
         "view": a.views,
         "policy": a.policies,
@@ -254,6 +256,7 @@ def _port_card(lookup: Lookup, port: Input | Output) -> ElementCard:
     facts = [
         ("component", port.component),
         ("type", port.type or ("?" if isinstance(port, Output) else "")),
+        ("frame", lookup.architecture.frame_of(port) or ""),
         ("medium", "physical" if port.physical else "digital"),
         ("description", port.description or ""),
     ]
@@ -347,6 +350,10 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             "scheduling",
             "connects",
             "bandwidth",
+            "frame",
+            "parent",
+            "by",
+            "rate",
             "deadline",
             "show",
         )
@@ -384,6 +391,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
         )
     elif kind == "resource":
         lists.append(("used by", tuple(node.id for node in architecture.nodes_using(element_id))))
+    elif kind == "frame":
+        facts.append(("static", "yes" if element.static else ""))
+        lists += list_frame_users(architecture, element)
     elif kind == "chain":
         chain = architecture.chains[element_id]
         facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]

@@ -131,11 +131,17 @@ def _component_facts(lookup: Lookup, component: Component) -> list[tuple[str, In
             inline_text.join_inlines((inline_text.node_link(node),) for node in nodes) or inline_text.UNKNOWN_INLINES,
         )
     )
+    if written_frames := lookup.frames_of.get(component.id):
+        rows.append(("Writes the frames", inline_text.join_inlines(_link_frame(frame.id) for frame in written_frames)))
     if component.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(component.tags))))
     if component.urls:
         rows.append(("Links", inline_text.link_urls(component.urls.items())))
     return rows
+
+
+def _link_frame(name: str) -> Inlines:
+    return (Text(name, ref=f"frame:{name}", code=True),)
 
 
 def _requirement_blocks(lookup: Lookup, component: Component) -> list[Block]:
@@ -185,7 +191,7 @@ def _input_blocks(lookup: Lookup, component: Component) -> list[Block]:
             _source_cell(lookup, port),
             _input_type_cell(lookup, port),
             _medium_cell(port),
-            _remarks_cell(port),
+            _remarks_cell(lookup, port),
         )
         for port in component.inputs.values()
     )
@@ -204,7 +210,7 @@ def _output_blocks(lookup: Lookup, component: Component) -> list[Block]:
             inline_text.type_link(port.type),
             _reader_cell(lookup, port),
             _medium_cell(port),
-            _remarks_cell(port),
+            _remarks_cell(lookup, port),
         )
         for port in component.outputs.values()
     )
@@ -292,7 +298,11 @@ def _medium_cell(port: Input | Output) -> Inlines:
     return inline_text.to_inlines("physical" if port.physical else "digital")
 
 
-def _remarks_cell(port: Input | Output) -> Inlines:
+def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
     optional = "optional" if isinstance(port, Input) and port.optional else ""
-    remarks = "; ".join(part for part in (optional, port.description) if part)
-    return inline_text.to_inlines(remarks) if remarks else ()
+    # Only what is written of the port itself: the table of types would say the rest again and again.
+    name = port.frame
+    is_known = name in lookup.architecture.frames
+    frame = (Text("in the frame "), *(_link_frame(name) if is_known else (Text(name, code=True),))) if name else ()
+    parts = [inline_text.to_inlines(optional), frame, inline_text.to_inlines(port.description or "")]
+    return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")

@@ -9,6 +9,7 @@
 | `implementation/G.C` | `implementation` | a component's nodes and topics |
 | `ros` | `ros` | all nodes |
 | `hosts` | `hosts` | hosts, containers and links |
+| `frames` | `frames` | the coordinate frames, as a tree |
 | `views/V` | `view` | a view of the project |
 | `timing` | `timing` | all activities by their period, or those of the selection |
 | `timing/G` | `group-timing` | the activities of a group by their period |
@@ -24,6 +25,7 @@ from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.component_graph import draw_component
+from archgen.views.graphs.frame_graph import draw_frames
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.group_graph import draw_group
 from archgen.views.graphs.host_graph import draw_hosts
@@ -36,6 +38,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 __all__ = [
     "draw_component",
     "draw_components",
+    "draw_frames",
     "draw_group",
     "draw_hosts",
     "draw_implementation",
@@ -82,6 +85,7 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_component
     if selection is None:
         yield draw_ros_graph(lookup)
         yield draw_hosts(lookup)
+        yield draw_frames(lookup)
     else:
         yield selection_graphs.draw_implementation_part(lookup, "ros", "Nodes of the selected part", selection.nodes)
     if lookup.timing is not None:

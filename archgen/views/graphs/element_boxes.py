@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Literal, cast
 
+from archgen.diagnostics.diagnostic import Severity
 from archgen.model.component import Component
 from archgen.views.graph_shapes import Box, Cluster
 from archgen.views.inline_text import count_noun
@@ -56,7 +57,11 @@ def group_hue(lookup: Lookup, group: str) -> int:
 
 def worst_severity(lookup: Lookup, element_id: str) -> BadgeSeverity | None:
     """Return the severity of an element's worst finding."""
-    severities = (finding.effective_severity for finding in lookup.findings_of.get(element_id, ()))
+    return name_severity(finding.effective_severity for finding in lookup.findings_of.get(element_id, ()))
+
+
+def name_severity(severities: Iterable[Severity]) -> BadgeSeverity | None:
+    """Return the worst of some severities as a badge names it."""
     worst = max(severities, default=None)
     return None if worst is None else cast("BadgeSeverity", worst.value)  # `off` is only a setting
 

@@ -20,7 +20,7 @@ from archgen.views.elements.implementation_level import make_implementation_bloc
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, project_growth
+from archgen.views.tables import architecture_tables, frame_table, project_growth
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -176,6 +176,11 @@ class _ChapterMaker:
         """Drop figures that are not among this document's drawings."""
         return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
 
+    def make_frames(self) -> list[Section]:
+        """Make the chapter of coordinate frames."""
+        blocks = [*self._make_figures("frames"), *_drop_missing(frame_table.make_frame_table(self.lookup))]
+        return [Section("page:frames", "Frames", tuple(blocks), page_break=True)] if blocks else []
+
     def make_deployment(self) -> list[Section]:
         """Make the chapter of hosts and links."""
         if self.edition.level == "functional":
@@ -269,6 +274,7 @@ class _ChapterMaker:
 _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] = {
     "overview": _ChapterMaker.make_overview,
     "groups": _ChapterMaker.make_groups,
+    "frames": _ChapterMaker.make_frames,
     "deployment": _ChapterMaker.make_deployment,
     "timing": _ChapterMaker.make_timing,
     "chains": _ChapterMaker.make_chains,

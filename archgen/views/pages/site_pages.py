@@ -29,7 +29,7 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
-from archgen.views.tables import architecture_tables, project_growth
+from archgen.views.tables import architecture_tables, frame_table, project_growth
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
 
@@ -270,6 +270,8 @@ class PageMaker:
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
+        if frames := frame_table.make_frame_table(self.lookup):
+            yield self._spanning_page("frames", "Frames", *self.make_figures("frames"), frames)
         if self.edition.level == "implementation":
             yield self._spanning_page(
                 "nodes",

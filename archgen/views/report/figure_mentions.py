@@ -26,6 +26,8 @@ _BLOCK_WORDS = {
     "table:hosts": "lists what runs on which host",
     "table:links": "lists how the hosts are connected",
     "figure:ros": "shows all nodes",
+    "figure:frames": "shows what each frame is placed in, and who writes it",
+    "table:frames": "lists how often, and whose data is in it",
     "table:periods": "sorts what the nodes do by how often they do it",
     "table:chains": "compares the bound of each chain with its deadline",
     "figure:views/": "shows this part of the architecture by itself",

@@ -22,6 +22,7 @@ def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEn
         *functional_entries.make_chain_entries(lookup),
         *functional_entries.make_partner_entries(lookup),
         *implementation_entries.make_host_entries(lookup),
+        *implementation_entries.make_frame_entries(lookup),
         *implementation_entries.make_message_entries(lookup),
         *text_entries.make_finding_entries(lookup),
         *functional_entries.make_port_entries(lookup),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from archgen.model.known_interfaces import Interface
 from archgen.views import inline_text
+from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.lookup import Lookup
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
@@ -66,6 +67,15 @@ def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     for link in architecture.links.values():
         line = join_words("link", ", ".join(link.connects))
         yield SearchEntry("link", link.title, line, (f"link:{link.id}", "page:hosts"), (link.id,))
+
+
+def make_frame_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the shown coordinate frames."""
+    for frame in list_shown_frames(lookup):
+        writer = f"by {name_writer(lookup.architecture, frame)}" if frame.parent is not None else None
+        line = join_words("frame", f"in {frame.parent}" if frame.parent is not None else None, writer)
+        text = frame.title if frame.title != frame.id else ""
+        yield SearchEntry("frame", frame.id, line, (f"frame:{frame.id}", "page:frames"), text=text)
 
 
 def make_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:

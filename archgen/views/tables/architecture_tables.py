@@ -174,9 +174,10 @@ def describe_mapping(conceptual_type: ConceptualType) -> str:
         if name
     ]
     planned_remark = "message is planned" if conceptual_type.status == "planned" else ""
+    frame_remark = f"in the frame {conceptual_type.frame}" if conceptual_type.frame else ""
     comment = " ".join((conceptual_type.comment or "").split())
     content = type_fields.describe_content(conceptual_type)
-    return "; ".join(part for part in (comment, planned_remark, *content, *inner_messages) if part)
+    return "; ".join(part for part in (comment, planned_remark, frame_remark, *content, *inner_messages) if part)
 
 
 def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requirement]) -> Table | None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.views.elements import parameter_blocks
+from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables
 
@@ -150,6 +151,14 @@ def _operation_rows(lookup: Lookup) -> Iterator[TextRow]:
                 yield (each.id, component.id, request, response, each.call or "", each.visibility or "", str(each.at))
 
 
+def _frame_rows(lookup: Lookup) -> Iterator[TextRow]:
+    ports_by_frame = index_frame_ports(lookup.architecture)
+    for frame in list_shown_frames(lookup):
+        rate = "static" if frame.static else str(frame.rate or "")
+        ports = ", ".join(ports_by_frame.get(frame.id, ()))
+        yield (frame.id, frame.title, frame.parent or "", frame.by or "", rate, ports, str(frame.at))
+
+
 # The column names are the header of what `archgen list` writes, so they are visible to users.
 _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
@@ -170,4 +179,5 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     ),
     "operations": (("id", "component", "request", "response", "call", "visibility", "place"), _operation_rows),
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
+    "frames": (("id", "title", "parent", "by", "rate", "ports", "place"), _frame_rows),
 }

@@ -1,0 +1,87 @@
+"""Coordinate frames: what each is placed in, and who writes it."""
+
+from __future__ import annotations
+
+from archgen.compare.compared_elements import ElementKey
+from archgen.compare.element_relations import ElementRelations
+from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
+from archgen.compare.kinds.shared_keys import NAME_FEATURES, TITLE, mark_values
+from archgen.model.coordinate_frames import Frame
+
+
+def _read_owner(frame: Frame, context: ReadContext) -> str | None:
+    """Return the partner who owns what writes a frame, else what holds it."""
+    architecture = context.architecture
+    component = architecture.components.get(
+        (frame.by if frame.by_kind == "component" else None) or frame.component or ""
+    )
+    node = architecture.nodes.get(frame.by or "") if frame.by_kind == "node" else None
+    writer = node or component
+    return context.common_id("partner", writer.owner) if writer else None
+
+
+def _list_components(frame: Frame, context: ReadContext) -> tuple[str, ...]:
+    component = frame.by if frame.by_kind == "component" else None
+    return (context.matched_ids.common_id("component", component),) if component else ()
+
+
+def _find_parent(frame: Frame, context: ReadContext) -> ElementKey | None:
+    return ("component", context.matched_ids.common_id("component", frame.component)) if frame.component else None
+
+
+def _mark_children(relations: ElementRelations, frame: Frame) -> frozenset[str]:
+    return frozenset(relations.users_by_element[f"below:{frame.id}"])
+
+
+def _mark_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
+    ports = relations.users_by_element[f"frame:{frame.id}"]
+    return relations.common_ids("input", ports) | relations.common_ids("output", ports)
+
+
+def frame_reference(verb: str) -> KeySpec:
+    """Return the key with which a port or a type names a frame."""
+    return KeySpec(
+        "frame",
+        lambda each, context: context.common_id("frame", each.frame),
+        Effect.SYSTEM,
+        refers_to="frame",
+        verb=verb,
+    )
+
+
+FRAME = KindSpec(
+    "frame",
+    "Frames",
+    (
+        TITLE,
+        KeySpec(
+            "parent",
+            lambda frame, context: context.common_id("frame", frame.parent),
+            refers_to="frame",
+            verb="is placed in",
+            new_verb="is placed in",
+        ),
+        KeySpec(
+            "by",
+            lambda frame, context: context.common_id(frame.by_kind, frame.by),
+            refers_to="component",
+            verb="is written by",
+            noun="writer",
+            new_verb="is written by",
+        ),
+        KeySpec("rate", verb="is written at"),
+        KeySpec("static", lambda frame, _: frame.static or None),
+    ),
+    Effect.SYSTEM,
+    elements=lambda version: version.architecture.frames,
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("ports", 4, _mark_ports),
+        FeatureSpec("children", 3, _mark_children),
+        FeatureSpec("parent", 2, lambda _, frame: mark_values(frame.parent)),
+        FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
+    ),
+    parent=_find_parent,
+    owner=_read_owner,
+    components=_list_components,
+)
