@@ -102,7 +102,7 @@ def test_a_step_without_work_is_done_at_once() -> None:
 
 
 def test_two_ways_to_a_step_each_bring_its_work() -> None:
-    """c comes twice: behind a (3 ms), and behind b (4 ms)."""
+    """Behind s, c comes twice: behind a (3 ms), and behind b (4 ms)."""
     nodes = {
         "s @pc": "period: 100 ms, wcet: 1 ms",
         "a @pc": f"{EVENT}, wcet: 3 ms",
