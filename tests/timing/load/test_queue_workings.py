@@ -34,6 +34,7 @@ def explain(queue: CoreQueue, name: str, models: dict[str, EventStreams | Unknow
     response = queue.bound_responses(models.__getitem__, 1000, SearchBudget())[name]
     (working,) = list_queue_workings(queue, models.__getitem__, name, response, CountFormulas(Fraction(10**6)))
     assert (working.is_consistent, working.is_queue) == (True, True)
+    assert all(term.events.formula == str(term.events.number) for term in working.terms if term.reason == "its own")
     terms = [
         f"{term.events.number} x {' + '.join(f'{cost} {part}' for part, cost in term.parts)}, {term.reason}"
         for term in working.terms
@@ -160,6 +161,21 @@ def test_of_one_priority_each_may_be_first() -> None:
     ]
 
 
+def test_of_one_deadline_each_may_be_first() -> None:
+    equal = B._replace(deadline=20)
+    assert explain(CoreQueue("edf", is_core=False, tasks=(A, equal)), "a", MODELS) == [
+        "8 - 0 = 8",
+        "1 x 3 a, its own",
+        "1 x 5 b, those that come until 0 ms",
+    ]
+
+
+def test_what_comes_in_a_round_that_it_is_part_of_has_no_round_before_it() -> None:
+    queue = CoreQueue("ros2_executor", is_core=False, tasks=(A, B))
+    (working,) = list_queue_workings(queue, MODELS.__getitem__, "a", 3, CountFormulas(Fraction(10**6)))
+    assert [term.reason for term in working.terms] == ["in its own round"]
+
+
 def test_a_round_ends_with_what_has_the_same_rank() -> None:
     """Timers come first in a round: `a` waits for a whole round, and works first in its own."""
     queue = CoreQueue("ros2_executor", is_core=False, tasks=(A._replace(entities=1), LATE))
@@ -178,7 +194,7 @@ def test_what_gives_no_such_response_is_not_listed(order: QueueOrder) -> None:
     def list_workings(name: str, response: int, models: dict[str, EventStreams | UnknownCause]) -> list[object]:
         return list(list_queue_workings(queue, models.__getitem__, name, response, formulas))
 
-    assert list_workings("a", 2, MODELS) == []
+    assert list_workings("a", 2, MODELS) == list_workings("a", 4, MODELS) == []
     assert list_workings("c", 10, MODELS) == []
     assert list_workings("a", 3, MODELS | {"a": UnknownCause(("a",))}) == []
     assert list_workings("a", 3, MODELS | {"a": ()}) == []
