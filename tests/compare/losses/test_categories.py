@@ -361,7 +361,9 @@ def test_nobody_is_broken_in_a_robot_of_one_partner(compared: Compared) -> None:
 def test_another_distribution_breaks_from_two_partners_on(compared: Compared) -> None:
     without_plan = ROBOT.replace("  plan: {implements: plan}\n", "")
     reason = "asks for humble instead of jazzy, for which `guard` of Kite and `eye` of Vega are built"
-    assert losses(compared, without_plan, [("jazzy", "humble")]) == [f"wire {name}: {reason}" for name in ("kite", "vega")]
+    assert losses(compared, without_plan, [("jazzy", "humble")]) == [
+        f"wire {name}: {reason}" for name in ("kite", "vega")
+    ]
 
 
 def test_a_frame_that_a_node_is_told_counts_as_meaning(compared: Compared) -> None:

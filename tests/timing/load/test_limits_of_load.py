@@ -185,3 +185,15 @@ def test_what_a_full_core_is_known_by_without_a_search(
     found = propagate_events(system, find_triggers(system)).responses
     assert {response.cause.notes for response in found.values()} == {("diverged",)}
     assert bool(looks) is not is_full
+
+
+@pytest.mark.parametrize(("deadline", "verdict"), [(10, "schedulable"), (9, "undecided")])
+def test_the_rate_monotonic_bound_holds_for_deadlines_that_are_not_before_the_next_activation(
+    deadline: int, verdict: str
+) -> None:
+    """In any order `a` may end 38 ms late, by rate both are in time: 2 / 10 + 30 / 100 is below 0.828."""
+    nodes = {
+        "a @pc": f"period: 10 ms, wcet: 2 ms, deadline: {deadline} ms",
+        "b @pc": "period: 100 ms, wcet: 30 ms",
+    }
+    assert analyse_sketch(nodes, "", "hosts: {pc: {cores: 1}}").hosts["pc"].verdict == verdict

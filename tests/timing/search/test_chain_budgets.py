@@ -128,7 +128,9 @@ chains: {c: {through: [a, b], deadline: 200 ms}}
 def test_a_factor_is_at_least_a_thousandth(deadline: str, factor: Fraction | None) -> None:
     """100 ms, and so many thousandths of 10 + 40 ms."""
     nodes = {"a": "period: 100 ms, wcet: 10 ms", "b": "behaviour: event, wcet: 40 ms"}
-    trials = start_trials(architecture(sketch(nodes, "a>b", f"chains: {{c: {{through: [a, b], deadline: {deadline}}}}}")))
+    trials = start_trials(
+        architecture(sketch(nodes, "a>b", f"chains: {{c: {{through: [a, b], deadline: {deadline}}}}}"))
+    )
     assert share_chain_budget(trials, trials.bound_chain("c")).factor == factor
 
 
