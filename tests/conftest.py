@@ -1,9 +1,11 @@
-"""Fixtures of several rooms: a project in one short text as an architecture, and the case study with all its outputs."""
+"""Fixtures of several rooms: a short text as an architecture, the case study with all its outputs, and a browser."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -17,6 +19,9 @@ from archgen.transform import transform_architecture
 from tests import property_sizes
 from tests.linking import link_table
 from tests.running import RAMCIP, REVISION, archgen, made_once
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 SHIPPED = {
@@ -87,3 +92,17 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
         archgen("build", RAMCIP, *made, cwd=place, env={"XDG_CACHE_HOME": str(place)})
 
     return made_once(place / "ramcip", make)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """Start Chromium for the tests of one module: while it runs, no test of this process can have an event loop."""
+    # Few tests need it, and importing it takes longer than most of them.
+    from playwright.sync_api import sync_playwright
+
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield started
+        started.close()

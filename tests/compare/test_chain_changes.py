@@ -148,3 +148,34 @@ def test_a_chain_that_is_new_has_no_cause(compared: Compared) -> None:
     after = SLOW.replace("chains: {", "chains: {look: {through: [a, b]}, ").replace("10 Hz", "5 Hz")
     causes = {chain.id: len(chain.causes) for chain in compared(SLOW, after).chains}
     assert causes == {"look": 0, "see": 1}
+
+
+RIVAL = """\
+groups:
+  g:
+    components:
+      a: {outputs: {x: sensor_msgs/msg/Image}}
+      b: {inputs: {x: a.x}}
+      clock: {outputs: {x: sensor_msgs/msg/Image}}
+      rival: {inputs: {x: clock.x}}
+nodes:
+  na: {implements: a, timing: {rate: 10 Hz, wcet: 2 ms}, host: far}
+  nb: {implements: b, timing: {behaviour: event, wcet: 8 ms}, host: pc}
+  nclock: {implements: clock, timing: {rate: 100 Hz, wcet: 1 ms}, host: clocks}
+  nrival: {implements: rival, timing: {behaviour: event, wcet: 4 ms}, host: pc}
+hosts: {pc: {cores: 1}, far: {cores: 1}, clocks: {cores: 1}, idle: {cores: 1}}
+links: {net: {connects: [pc, far, clocks], latency: 1 ms}}
+chains: {see: {through: [a, b]}}
+"""
+
+
+@pytest.mark.parametrize(("rate", "bound"), [("10 Hz", 115), ("120 Hz", 123)])
+def test_who_shares_the_core_and_is_fired_less_or_more_often_leads_to_the_cause(
+    compared: Compared, rate: str, bound: int
+) -> None:
+    """100 + 2 + 1 ms, and `b` with what comes of `rival` meanwhile: 8 + 1, 2 or 3 times 4."""
+    after = RIVAL.replace("100 Hz", rate).replace("idle: {cores: 1}", "idle: {cores: 2}")
+    (chain,) = compared(RIVAL, after).chains
+    assert chain.after is not None
+    assert chain.after.bound.value == bound * MS
+    assert [f"{change.element_id} {change.key}" for change in chain.causes] == ["g.clock timing.rate"]

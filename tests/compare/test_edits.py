@@ -113,6 +113,25 @@ def test_nothing_hides_in_a_split(compared: Compared, changes: list[tuple[str, s
     assert edit.endswith(f"; {rest}")
 
 
+@pytest.mark.parametrize(
+    ("old_way", "new_way", "is_told"),
+    [
+        ("[left, finder, driver]", "[left, row_finder, driver]", False),
+        ("[left, finder.rows, driver]", "[left, row_finder.rows, driver]", False),
+        ("[left, finder, driver]", "[left, driver]", False),
+        ("[left, finder, driver]", "[row_finder, driver]", True),
+        ("[left, finder, driver]", "[right, row_finder, driver]", True),
+    ],
+)
+def test_a_chain_that_follows_a_split_is_a_part_of_it(
+    compared: Compared, old_way: str, new_way: str, *, is_told: bool
+) -> None:
+    before, after = (
+        f"{text}chains: {{see: {{through: {way}}}}}\n" for text, way in ((ROBOT, old_way), (SPLIT, new_way))
+    )
+    assert [edit.kind for edit in list_edits(compared(before, after))] == ["split", *(["changed"] if is_told else [])]
+
+
 def test_a_part_that_changes_hands_says_so(compared: Compared) -> None:
     handed_over = edited(SPLIT, (ROWS, ""), ("      driver:\n", f"{ROWS}      driver:\n"))
     handed_over = edited(handed_over, ("left: left.image", "left: eyes.left.image"))

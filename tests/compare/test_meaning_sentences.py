@@ -109,3 +109,14 @@ def test_a_reader_never_read_what_only_has_another_name(compared: Compared) -> N
     texts = [change.text for change in compared(ROBOT, after).changes]
     assert any("`eyes.finder.people` is called `persons` now" in text for text in texts)
     assert not any("no longer reads `eyes.finder.persons`" in text for text in texts)
+
+
+def test_a_field_of_an_answer_is_named_with_its_part(told: Told) -> None:
+    before = """\
+groups: {g: {components: {a: {outputs: {serve: Ask}}, b: {inputs: {ask: a.serve}}}}}
+types: {Ask: m_msgs/srv/Old}
+ros: {definitions: {m_msgs/srv/Old: "int8 x\\n---\\nint8 x", m_msgs/srv/New: "int8 x\\n---\\nint16 x"}}
+"""
+    after = before.replace("Ask: m_msgs/srv/Old", "Ask: m_msgs/srv/New")
+    (line,) = told(before, after)
+    assert line.endswith("`g.a.serve` carries it; of its fields `x of part 2` is `int16` instead of `int8`")

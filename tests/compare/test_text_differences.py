@@ -14,6 +14,7 @@ LONG = "one two three four five six seven eight nine ten"
     [
         ("a b", "a c", "`a b` → `a c`"),
         (LONG, LONG.replace("six", "6"), "`… two three four five six seven eight nine ten` → `… two three four five 6 seven eight nine ten`"),
+        (LONG, LONG.replace("six", "6").replace("eight", "8"), "`… two three four five six seven eight nine ten` → `… two three four five 6 seven 8 nine ten`"),
         (LONG, f"{LONG} eleven", "`… seven eight nine ten` → `… seven eight nine ten eleven`"),
         (f"zero {LONG}", LONG, "`zero one two three four …` → `one two three four …`"),
         (LONG.replace("ten", "a b c d e"), LONG.replace("one", "1").replace("ten", "a b c d f"), "`one two three four five …` → `1 two three four five …`, `… a b c d e` → `… a b c d f`"),

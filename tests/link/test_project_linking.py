@@ -180,6 +180,11 @@ layout: {direction: left-right}
     assert (architecture.distro, architecture.shared_topics) == ("jazzy", ("/estop",))
 
 
+def test_what_a_link_names_that_is_no_host_is_kept_as_unresolved(linked: Linked) -> None:
+    architecture, _ = linked("hosts: {pc: }\nlinks: {lan: {connects: [pc, pq]}}")
+    assert (architecture.links["lan"].connects, architecture.links["lan"].unresolved) == (("pc",), ("pq",))
+
+
 def test_links_and_chains_may_be_stubs(linked: Linked) -> None:
     architecture, found = linked("links: {lan: {title: LAN}}\nchains: {c: {deadline: 1 s}}")
     assert found == ()

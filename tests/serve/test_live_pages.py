@@ -2,53 +2,36 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, expect
 
 from archgen.serve.live_site import LiveSite
 from archgen.serve.site_server import SiteServer
+from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
 from tests.serve.conftest import ROBOT
 
 LONG_TEXT = "# Words\n\n" + "".join(f"## Part {number}\n\n{'Some words. ' * 80}\n\n" for number in range(30))
-Visit = Callable[..., Page]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
 
 
 @pytest.fixture
-def visit(browser: Browser, server: SiteServer) -> Iterator[Visit]:
-    """Open a page of the preview; an error in the console is a failure, and so is a reload."""
-    wrong: list[str] = []
+def visit(browser: Browser, server: SiteServer) -> Iterator[OpenPage]:
+    """Open a page of the preview; a request to another server, an error in the console or a reload is a failure."""
+    with watch_pages(browser, (server.url, "data:")) as watch:
 
-    def opened(path: str, width: int = 1280, scheme: str = "light") -> Page:
-        context = browser.new_context(viewport={"width": width, "height": 700}, color_scheme=scheme)  # type: ignore[arg-type]
-        page = context.new_page()
-        page.on("console", lambda message: wrong.append(message.text))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.goto(server.url + path)
-        page.evaluate("window.stayed = true")
-        return page
+        def open_page(path: str, width: int = 1280, scheme: str = "light") -> Page:
+            context = browser.new_context(viewport={"width": width, "height": 700}, color_scheme=scheme)  # type: ignore[arg-type]
+            page = watch(context.new_page())
+            page.goto(server.url + path)
+            page.evaluate("window.stayed = true")
+            return page
 
-    yield opened
-    pages = [page for context in browser.contexts for page in context.pages]
-    stayed = [page.evaluate("window.stayed === true") for page in pages]
-    for context in browser.contexts:
-        context.close()
-    assert wrong == []
+        yield open_page
+        pages = [page for context in browser.contexts for page in context.pages]
+        stayed = [page.evaluate("window.stayed === true") for page in pages]
     assert all(stayed)
 
 
@@ -66,7 +49,7 @@ def save(live_site: LiveSite, robot: Path) -> Callable[[str], None]:
 Save = Callable[..., None]
 
 
-def test_a_change_is_on_the_page_without_a_reload(visit: Visit, save: Save) -> None:
+def test_a_change_is_on_the_page_without_a_reload(visit: OpenPage, save: Save) -> None:
     page = visit("components/g.eye.html")
     tree = page.locator("#navigation")
     save(ROBOT.replace("Looks.", "Sees.").replace("title: Robot", "title: Other robot"))
@@ -78,7 +61,7 @@ def test_a_change_is_on_the_page_without_a_reload(visit: Visit, save: Save) -> N
     assert tree.locator("[aria-current]").count() == 1
 
 
-def test_errors_stand_on_the_page_until_they_are_mended(visit: Visit, save: Save) -> None:
+def test_errors_stand_on_the_page_until_they_are_mended(visit: OpenPage, save: Save) -> None:
     page = visit("components/g.eye.html")
     save(ROBOT.replace("Looks.", "Sees.").replace("inputs: {i: eye.o}", "imputs: {i: <img src=x onerror=alert(1)>}"))
     mistake = page.locator(".live .mistake")
@@ -93,12 +76,12 @@ def test_errors_stand_on_the_page_until_they_are_mended(visit: Visit, save: Save
     expect(mistake).to_have_count(0)
 
 
-def test_an_error_is_there_when_a_page_is_opened(visit: Visit, save: Save) -> None:
+def test_an_error_is_there_when_a_page_is_opened(visit: OpenPage, save: Save) -> None:
     save(ROBOT.replace("inputs:", "imputs:"))
     expect(visit("index.html").locator(".live .mistake")).to_have_count(1)
 
 
-def test_the_reader_stays_where_he_is(visit: Visit, save: Save) -> None:
+def test_the_reader_stays_where_he_is(visit: OpenPage, save: Save) -> None:
     save(LONG_TEXT, "docs/text.md")
     page = visit("chapters/docs-text.html")
     expect(page.locator("main")).to_contain_text("Part 29")
@@ -109,7 +92,7 @@ def test_the_reader_stays_where_he_is(visit: Visit, save: Save) -> None:
     assert page.evaluate("window.scrollY") == 2000
 
 
-def test_a_filter_its_words_and_the_focus_stay(visit: Visit, save: Save) -> None:
+def test_a_filter_its_words_and_the_focus_stay(visit: OpenPage, save: Save) -> None:
     many = "".join(f"      c{number}: {{functionality: Does {number}.}}\n" for number in range(12))
     robot = ROBOT.replace("      eye:", f"{many}      eye:")
     save(robot)
@@ -128,7 +111,7 @@ def test_a_filter_its_words_and_the_focus_stay(visit: Visit, save: Save) -> None
     assert page.locator("input[type=search]").count() == 1
 
 
-def test_a_picture_that_somebody_looks_at_is_exchanged_in_its_place(visit: Visit, save: Save) -> None:
+def test_a_picture_that_somebody_looks_at_is_exchanged_in_its_place(visit: OpenPage, save: Save) -> None:
     page = visit("components/g.eye.html")
     page.locator("button.closer").first.click()
     for _ in range(3):
@@ -145,7 +128,7 @@ def test_a_picture_that_somebody_looks_at_is_exchanged_in_its_place(visit: Visit
     expect(page.locator("dialog")).to_have_count(0)
 
 
-def test_the_search_finds_what_is_new(visit: Visit, save: Save) -> None:
+def test_the_search_finds_what_is_new(visit: OpenPage, save: Save) -> None:
     page = visit("components/g.eye.html")
     page.keyboard.press("/")
     page.locator("#find-field").fill("brake")
@@ -177,7 +160,7 @@ def re_without_brake() -> str:
     return ROBOT.partition("      brake:")[0] + "nodes: {eye: {implements: eye, host: pc}}\n"
 
 
-def test_a_figure_is_tried_out_and_nothing_is_written(visit: Visit, robot: Path) -> None:
+def test_a_figure_is_tried_out_and_nothing_is_written(visit: OpenPage, robot: Path) -> None:
     page = visit("chains/stop.html")
     card = page.locator(".what-if")
     card.get_by_label("Execution time of eye").fill("150 ms")
@@ -197,7 +180,7 @@ def test_a_figure_is_tried_out_and_nothing_is_written(visit: Visit, robot: Path)
     assert (robot / "archgen.yaml").read_text() == ROBOT
 
 
-def test_what_is_tried_out_stays_when_a_file_changes(visit: Visit, save: Save) -> None:
+def test_what_is_tried_out_stays_when_a_file_changes(visit: OpenPage, save: Save) -> None:
     page = visit("chains/stop.html")
     page.get_by_label("Execution time of eye").fill("50 ms")
     page.get_by_label("Execution time of eye").blur()
@@ -209,17 +192,11 @@ def test_what_is_tried_out_stays_when_a_file_changes(visit: Visit, save: Save) -
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 360])
-def test_axe_finds_nothing(visit: Visit, save: Save, width: int, scheme: str) -> None:
+def test_axe_finds_nothing(visit: OpenPage, save: Save, width: int, scheme: str) -> None:
     page = visit("chains/stop.html", width=width, scheme=scheme)
     page.get_by_label("Execution time of eye").fill("150 ms")
     expect(page.locator(".what-if .answer tbody tr").first).to_be_visible()
     save(ROBOT.replace("inputs:", "imputs:"))
     expect(page.locator(".live .mistake")).to_have_count(1)
-    axe = Path(__file__).parents[1] / "judges" / "node_modules" / "axe-core" / "axe.min.js"
-    assert axe.is_file(), "this test needs axe-core (`npm ci` in tests/judges)"
-    page.evaluate(axe.read_text())
-    assert (
-        page.evaluate("axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")
-        == []
-    )
+    assert judge_with_axe(page) == []
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")

@@ -84,7 +84,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
         pictures.update(zip(missing, drawn, strict=True))
         if cache:
             store.prune_pictures(cache, len(drawings))
-    return {graph.id: hidden[at].restore(pictures[at]) for at, graph in enumerate(drawings)}
+    return {graph.id: hidden[at].restore_texts(pictures[at]) for at, graph in enumerate(drawings)}
 
 
 @contextmanager

@@ -36,7 +36,7 @@ class HiddenTexts:
     addresses: Mapping[str, str] = field(default_factory=dict)
     alt: str = ""
 
-    def restore(self, picture: Picture) -> Picture:
+    def restore_texts(self, picture: Picture) -> Picture:
         """Return a picture with the texts in the places of their marks."""
         if not self.tips:
             return picture

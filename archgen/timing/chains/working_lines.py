@@ -115,13 +115,14 @@ class WorkingLines:
         """Yield what was pending when a core was idle last, and what of all that may be done before the figure ends."""
         yield from self.list_terms(working.pending_terms, depth)
         parts = [self._write(term.total) for term in (*working.beside_terms, *working.pending_terms)]
-        own_work = sum(term.total for term in working.terms)
+        own_work = sum(term.total for term in working.terms) - working.thread_wait
         left_parts = [self._write(ticks) for ticks in (own_work, working.unfinished) if ticks]
         left_text = "".join(f" - {part}" for part in left_parts)
         yield ReasonLine(
             depth,
             f"B = ({' + '.join(parts)}{left_text}) / {working.core_count} = {self._write(working.blocked_time)}: what comes, and "
-            f"{self._write(working.pending)} that may have been pending when a core was idle last, without A"
+            f"{self._write(working.pending)} that may have been pending when a core was idle last, without "
+            f"{'the work in A' if working.thread_wait else 'A'}"
             f"{' and what is done after this' if working.unfinished else ''}",
         )
 

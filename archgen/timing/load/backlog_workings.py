@@ -52,22 +52,24 @@ class BacklogWorkings(NamedTuple):
     def _explain_window(self, way_work: WayWork, steps: tuple[str, ...], event: tuple[int, int, int]) -> FigureWorking:
         count, arrival, window = event
         backlog = self.backlog
-        terms = group_terms(self._list_own_terms(way_work, count, window))
-        own_work = sum(term.total for term in terms)
+        own_terms = group_terms(self._list_own_terms(way_work, count, window))
+        crowd_terms = group_terms(self._list_crowd_terms(way_work, window))
+        own_work, thread_wait = (sum(term.total for term in terms) for terms in (own_terms, crowd_terms))
         events = max_arrivals(backlog.streams.get(way_work.origin, ()), window)
         return FigureWorking(
             window - arrival,
             window,
-            terms,
+            (*own_terms, *crowd_terms),
             count + 1,
             arrival,
             steps=steps if len(steps) > 1 else (),
             core_count=backlog.core_count,
-            blocked_time=max(window - own_work, 0),
+            blocked_time=max(window - own_work - thread_wait, 0),
             beside_terms=group_terms(self._list_arriving(window)),
             pending=backlog.pending_work,
             pending_terms=tuple(self._list_pending()),
             unfinished=backlog.count_unfinished(way_work, count, events),
+            thread_wait=thread_wait,
             is_backlog=True,
         )
 
@@ -78,6 +80,8 @@ class BacklogWorkings(NamedTuple):
             yield WorkTerm((slowest,), EventCount(count, str(count)), "the slowest step, for each event before it")
         for shared_work in way_work.others:
             yield self._count_shared(shared_work, window)
+
+    def _list_crowd_terms(self, way_work: WayWork, window: int) -> Iterator[WorkTerm]:
         core_count = self.backlog.core_count
         for members, threads in way_work.crowds:
             member_terms = [self._count_shared(member, window) for member in members]

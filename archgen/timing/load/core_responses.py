@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from math import lcm
 from typing import NamedTuple
 
 from archgen.timing.analysis import ResponseTier
@@ -27,7 +26,7 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.cascade_demand import CascadeDemand
-from archgen.timing.load.event_streams import EventStreams, streams_of_calls
+from archgen.timing.load.event_streams import EventStreams, settles_at_full_load, streams_of_calls
 from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import LevelCascades, Origin
@@ -41,9 +40,6 @@ from archgen.timing.load.thread_work import (
     WorstResponse,
 )
 from archgen.timing.system.timing_system import samples_inputs
-
-_MAX_JOBS_IN_ROUND = 20_000
-"""Most events in the hyperperiod of a core that is busy all the time."""
 
 
 class CoreResponses(NamedTuple):
@@ -299,11 +295,4 @@ class CoreSolver:
 
 
 def _settles_at_full_load(demand: CascadeDemand) -> bool:
-    """Whether work that fills a core is sure to be done at the end of each hyperperiod."""
-    streams = [stream for model in demand.list_streams() for stream in model]
-    if demand.has_gates or any(stream.jitter or stream.distance or stream.events_per_period != 1 for stream in streams):
-        return False
-    # Strictly periodic work with a load of exactly 1 is done at each common multiple of the periods. Any jitter would
-    # let the busy period go on for ever.
-    hyperperiod = lcm(*(stream.period for stream in streams))
-    return sum(hyperperiod // stream.period for stream in streams) <= _MAX_JOBS_IN_ROUND
+    return not demand.has_gates and settles_at_full_load([each for model in demand.list_streams() for each in model])

@@ -18,6 +18,8 @@ from archgen.timing.system.timing_system import Activity
 
 MAX_STREAMS = 8
 """Streams of one activity that are kept apart; more are collapsed into one that never has fewer events."""
+_MAX_JOBS_IN_ROUND = 20_000
+"""Most events in the hyperperiod of a core that is busy all the time: a longer one would not be searched to its end."""
 
 
 class EventStream(NamedTuple):
@@ -215,3 +217,13 @@ def written_streams(activity: Activity) -> EventStreams | None:
     if activity.behaviour == "once":
         return ()
     return None if activity.period is None else (EventStream(activity.period, activity.jitter),)
+
+
+def settles_at_full_load(streams: Sequence[EventStream]) -> bool:
+    """Whether work on these events that fills a core is sure to be done at the end of each hyperperiod."""
+    if any(stream.jitter or stream.distance or stream.events_per_period != 1 for stream in streams):
+        return False
+    # Strictly periodic work with a load of exactly 1 is done at each common multiple of the periods. Any jitter would
+    # let the busy period go on for ever.
+    hyperperiod = lcm(*(stream.period for stream in streams))
+    return sum(hyperperiod // stream.period for stream in streams) <= _MAX_JOBS_IN_ROUND

@@ -7,7 +7,6 @@ strictly periodic (Burns and Wellings' process set C). No result rests on a figu
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import lcm
 from typing import NamedTuple
 
 from archgen.timing.analysis import ResponseTier
@@ -24,6 +23,7 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
     worst_response,
 )
+from archgen.timing.load.event_streams import settles_at_full_load
 from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
@@ -66,10 +66,6 @@ def find_dedicated_response(
         return WorstResponse(worst_response(work, NO_DEMAND, budget), "dedicated")
     except DivergedError:
         return WorstResponse(None, "dedicated", DIVERGED_CAUSE)
-
-
-_MAX_JOBS_IN_ROUND = 20_000
-"""Most jobs in the hyperperiod of a core that is busy all the time."""
 
 
 def find_responses(
@@ -224,13 +220,5 @@ def _bound_by_priority(
 
 
 def _settles_at_full_load(threads: Iterable[ThreadWork]) -> bool:
-    """Whether work that fills a core is sure to be done at the end of each hyperperiod."""
     works = [work for thread in threads for work in thread.works if work.cost]
-    streams = [stream for work in works for stream in work.streams]
-    if any(stream.jitter or stream.distance or stream.events_per_period != 1 for stream in streams):
-        return False
-    # Strictly periodic work with a load of exactly 1 is done at each common multiple of the periods. Any jitter would
-    # let the busy period go on for ever.
-    hyperperiod = lcm(*(stream.period for stream in streams))
-    # A longer hyperperiod would not be searched to its end within the budget.
-    return sum(hyperperiod // stream.period for stream in streams) <= _MAX_JOBS_IN_ROUND
+    return settles_at_full_load([stream for work in works for stream in work.streams])

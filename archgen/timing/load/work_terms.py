@@ -166,6 +166,8 @@ class FigureWorking:
     pending: int = 0
     pending_terms: tuple[WorkTerm, ...] = ()
     unfinished: int = 0
+    thread_wait: int = 0
+    """How much of the terms is a wait for threads of a container: time, and not work of a core."""
     is_backlog: bool = False
     """Whether all cores may be busy with `beside_terms` and what was pending, less `unfinished` and the own terms."""
     full_ids: tuple[str, ...] = ()

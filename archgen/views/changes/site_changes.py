@@ -63,20 +63,24 @@ class SiteChanges:
         return {anchor: tuple(changes) for anchor, changes in changes_by_page.items()}
 
     @cached_property
-    def kinds(self) -> Mapping[str, ElementChange]:
+    def kinds_by_page(self) -> Mapping[str, ElementChange]:
         """How each element that has a page changed, by the page's anchor."""
         return {anchor: _judge_changes(anchor, changes) for anchor, changes in self.changes_by_page.items()}
 
     @cached_property
     def changed_groups(self) -> frozenset[str]:
         """The anchors of the groups that changed, or in which something did."""
-        names = (anchor.partition(":")[2].partition(".")[0] for anchor in self.kinds if anchor.startswith("component:"))
+        names = (
+            anchor.partition(":")[2].partition(".")[0]
+            for anchor in self.kinds_by_page
+            if anchor.startswith("component:")
+        )
         removed = (
             change.element_id.partition(".")[0]
             for change in self.comparison.changes
             if change.element_kind == "component" and change.kind == "removed"
         )
-        own = (anchor for anchor in self.kinds if anchor.startswith("group:"))
+        own = (anchor for anchor in self.kinds_by_page if anchor.startswith("group:"))
         return frozenset((*own, *(f"group:{name}" for name in (*names, *removed))))
 
 
@@ -156,8 +160,8 @@ def _mark_page(page: Page, site_changes: SiteChanges) -> Page:
     """Mark a page whose element changed, and the elements that its tables list."""
     section = page.section
     if page.kind in _LISTING_KINDS:
-        section = _mark_lists(section, site_changes.kinds)
-    kind = site_changes.kinds.get(page.anchor)
+        section = _mark_lists(section, site_changes.kinds_by_page)
+    kind = site_changes.kinds_by_page.get(page.anchor)
     if kind is not None:
         table = _compare_versions(page.anchor, site_changes)
         section = replace(section, blocks=(*((table,) if table else ()), *section.blocks))
@@ -276,7 +280,7 @@ def mark_drawings(drawings: Mapping[str, Drawing], site_changes: SiteChanges) ->
     """Return drawings in which what is new or changed stands out as in the pictures of a comparison, and those pictures."""
     kinds: Mapping[str, ElementChange] = {
         **dict.fromkeys(sorted(site_changes.changed_groups), "changed"),
-        **site_changes.kinds,
+        **site_changes.kinds_by_page,
     }
     marked = {
         name: _mark_graph(drawing, kinds)

@@ -109,7 +109,7 @@ class _MapMaker:
         return {node_id: group for node_id, group in homes if group}
 
     @cached_property
-    def places(self) -> MapPlaces:
+    def map_places(self) -> MapPlaces:
         return find_places(
             self.lookup,
             {component.id: component.group for component in self.components},
@@ -119,7 +119,7 @@ class _MapMaker:
         )
 
     @cached_property
-    def progress(self) -> Mapping[str, int]:
+    def progress_bits(self) -> Mapping[str, int]:
         """How far each component is, a bit for each of the steps of progress, the first one lowest."""
         return measure_steps(self.lookup, self.components)
 
@@ -143,8 +143,8 @@ class _MapMaker:
             group.title,
             join_owner_titles(self.lookup, group.owners),
             _shorten_text(group.description),
-            self.places.groups.get(group.id, ()),
-            self.places.node_groups.get(group.id, ()),
+            self.map_places.groups.get(group.id, ()),
+            self.map_places.node_groups.get(group.id, ()),
             self._list_places(group.at),
         )
 
@@ -157,7 +157,7 @@ class _MapMaker:
             host.title,
             line,
             _shorten_text(host.description),
-            self.places.hosts.get(host.id, ()),
+            self.map_places.hosts.get(host.id, ()),
             self._list_places(host.at),
         )
 
@@ -173,9 +173,9 @@ class _MapMaker:
             _shorten_text(component.functionality, component.description),
             tuple(self.key_numbers[key] for key in self.component_keys[component.id]),
             _shortest_step(paces),
-            self.progress[component.id],
+            self.progress_bits[component.id],
             worst_severity(self.lookup, component.id) or "",
-            self.places.components[component.id],
+            self.map_places.components[component.id],
             self._list_places(component.at),
         )
 
@@ -194,8 +194,8 @@ class _MapMaker:
             tuple(self.key_numbers[key] for key in self.node_keys[node.id]),
             _shortest_step(paces),
             worst_severity(self.lookup, node.id) or "",
-            self.places.nodes_by_group[node.id],
-            self.places.nodes_by_host.get(node.id, ()),
+            self.map_places.nodes_by_group[node.id],
+            self.map_places.nodes_by_host.get(node.id, ()),
             self._list_places(node.at),
         )
 

@@ -174,16 +174,18 @@ def _order_entries(
 ) -> tuple[list[str], list[str], bool]:
     """Return the order of entries and of their groups, and whether both are the best there are."""
 
-    def outer(name: str) -> tuple[str, bool]:
+    def find_outer(name: str) -> tuple[str, bool]:
         group = groups.get(name)
         return (group, True) if group else (name, False)
 
-    outer_weights = Counter((outer(giver), outer(taker)) for giver, taker, _, _ in flows)
-    outer_order: FeedbackOrder[tuple[str, bool]] = order_by_feedback(dict.fromkeys(map(outer, names)), outer_weights)
-    inner_weights = Counter((giver, taker) for giver, taker, _, _ in flows if outer(giver) == outer(taker))
+    outer_weights = Counter((find_outer(giver), find_outer(taker)) for giver, taker, _, _ in flows)
+    outer_order: FeedbackOrder[tuple[str, bool]] = order_by_feedback(
+        dict.fromkeys(map(find_outer, names)), outer_weights
+    )
+    inner_weights = Counter((giver, taker) for giver, taker, _, _ in flows if find_outer(giver) == find_outer(taker))
     members: dict[tuple[str, bool], list[str]] = {}
     for name in names:
-        members.setdefault(outer(name), []).append(name)
+        members.setdefault(find_outer(name), []).append(name)
     inner_orders = [order_by_feedback(members[key], inner_weights) for key in outer_order.elements]
     order = [name for inner_order in inner_orders for name in inner_order.elements]
     is_exact = outer_order.is_exact and all(inner_order.is_exact for inner_order in inner_orders)

@@ -54,7 +54,7 @@ class _CutAxis:
     room: float
     """The share of the axis that the known time takes."""
 
-    def place(self, time: Fraction) -> float:
+    def find_share(self, time: Fraction) -> float:
         """Return the share of the axis at a time."""
         if self.cut is None:
             return self.room * float(time / self.total) if self.total else 0.0
@@ -75,7 +75,7 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
     lead = advice.lateness if advice else chain_charts.describe_chain_verdict(result, timing_lookup)
     total, deadline = _sum_known(result.terms), result.deadline.value if result.deadline else None
     axis = _make_axis(result.terms, total)
-    step_limit = axis.place(deadline) if deadline is not None and deadline <= total else None
+    step_limit = axis.find_share(deadline) if deadline is not None and deadline <= total else None
     whole = max(total, deadline or Fraction(0)) or Fraction(1)
     return Waterfall(
         inline_text.message_to_inlines(lead),
@@ -176,7 +176,7 @@ def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
         multiple = (multiple // step + 1) * step if multiple < start or multiple > end else (end // step + 1) * step
     last_place = 0.0
     for time in sorted(times):
-        place = axis.place(time)
+        place = axis.find_share(time)
         if place - last_place > 0.06 and place < 0.97:  # noqa: PLR2004 - shares that keep two figures apart
             yield place, _format(time)
             last_place = place
@@ -203,10 +203,10 @@ def _make_steps(
             if value.value:
                 start, time = time, time + value.value
                 is_cut = axis.cut == (start, time)
-                pieces.append(WaterfallPiece(kind, axis.place(start), axis.place(time), tip, is_cut))
+                pieces.append(WaterfallPiece(kind, axis.find_share(start), axis.find_share(time), tip, is_cut))
             elif value.value is None:
                 # It has no length: what follows it is drawn too early, and the hatching says so.
-                start_share = pieces[-1].end if pieces else axis.place(time)
+                start_share = pieces[-1].end if pieces else axis.find_share(time)
                 end_share = min(1.0, start_share + _UNKNOWN_LENGTH)
                 pieces.append(WaterfallPiece("unknown", start_share, end_share, f"{word} for how long, nobody knows"))
         yield WaterfallStep(

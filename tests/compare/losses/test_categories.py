@@ -333,6 +333,20 @@ def test_a_rate_below_what_a_subscription_asks_for_breaks_under_every_policy(
     assert losses(compared, asking, [("rate: 10 Hz", "rate: 5 Hz")]) == ([lost] if breaks else [])
 
 
+def test_what_a_subscription_asks_of_another_output_does_not_count(compared: Compared) -> None:
+    asking = UNGUARDED
+    for old, new in (
+        ("guard: {inputs: {persons: eye.persons}}", "guard: {timing: {rate: 10 Hz}, outputs: {stop: Rows}}"),
+        ("plan: {inputs: {rows: eye.rows}}", "plan: {inputs: {rows: eye.rows, stop: guard.stop}}"),
+        ("plan: {implements: plan}", "plan: {implements: plan, subscribes: {stop: {qos: {deadline: 150 ms}}}}"),
+    ):
+        assert old in asking
+        asking = asking.replace(old, new)
+    lost = "promise orsa: promises for `drive.guard.stop` 5 Hz instead of 10 Hz; `nav.plan.stop` of Orsa reads it"
+    assert losses(compared, asking, [("timing: {rate: 10 Hz}", "timing: {rate: 5 Hz}")]) == [lost]
+    assert losses(compared, asking, [("periodic, rate: 10 Hz", "periodic, rate: 5 Hz")]) == []
+
+
 def test_what_is_no_margin_breaks_under_every_policy(compared: Compared) -> None:
     for edit in (("jitter: 1 ms", "outputs: {rows: {conditional: true}}"), ("behaviour: periodic, rate: 10 Hz, ", "")):
         assert losses(compared, UNGUARDED, [edit]) != []
@@ -342,6 +356,14 @@ def test_nobody_is_broken_in_a_robot_of_one_partner(compared: Compared) -> None:
     own = ROBOT.replace("owner: kite", "owner: vega").replace("owner: orsa", "owner: vega")
     edits = [("jazzy", "humble"), ("10 Hz", "1 Hz"), ("in metres", "in feet"), ("10 kB", "1 MB"), ("# m,", "# mm,")]
     assert losses(compared, own, edits) == []
+
+
+def test_another_distribution_breaks_from_two_partners_on(compared: Compared) -> None:
+    without_plan = ROBOT.replace("  plan: {implements: plan}\n", "")
+    reason = "asks for humble instead of jazzy, for which `guard` of Kite and `eye` of Vega are built"
+    assert losses(compared, without_plan, [("jazzy", "humble")]) == [
+        f"wire {name}: {reason}" for name in ("kite", "vega")
+    ]
 
 
 def test_a_frame_that_a_node_is_told_counts_as_meaning(compared: Compared) -> None:

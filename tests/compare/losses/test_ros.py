@@ -147,6 +147,11 @@ NAMES = {
         [("topic: /eye/image", "topic: /eye/rgb"), ("  mind:", "  ghost: {implements: camera, status: planned, publishes: {image: /eye/image}}\n  mind:")],
         ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/rgb")],
     ),
+    "a topic that a new node keeps": (
+        NODES,
+        [("topic: /eye/image", "topic: /eye/rgb"), ("  mind:", "  lens: {implements: camera, publishes: {image: /eye/image}}\n  mind:")],
+        [],
+    ),
     "a topic that a new, planned node takes over": (
         NODES,
         [("publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}", "status: existing, publishes: {depth: }}\n  lens: {implements: camera, status: planned, publishes: {image: {topic: /eye/image, qos: {reliability: reliable, deadline: 50 ms}}}}")],

@@ -1,15 +1,23 @@
-"""A made-up architecture as pages and pictures, small for reading and in the size of a real project for measuring."""
+"""A made-up architecture as pages and pictures, and the case study's site."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
-from archgen.emit.file_tree import FileTree
+from archgen import pipeline
+from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.picture import Picture
 from archgen.emit.site import build_site
+from archgen.products import project_outputs
+from archgen.products.output_options import OutputOptions
+from archgen.products.product_inputs import ProductInputs
+from archgen.views.explorer import make_explorer_map
+from archgen.views.search import make_search_entries
 from archgen.views.shapes import Bullets, Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text
+from tests.running import RAMCIP
 
 HOME = ("Overview", "page:index")
 GROUPS = (
@@ -276,3 +284,28 @@ def made() -> Callable[[], FileTree]:
 def site(made: Callable[[], FileTree]) -> FileTree:
     """Give the site of the made-up architecture."""
     return made()
+
+
+@pytest.fixture(scope="session")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the case study's site, with its real pictures."""
+    folder = tmp_path_factory.mktemp("out") / "example"
+    project_outputs.write_site(pipeline.check_project(RAMCIP), OutputOptions(revision="test"), folder)
+    return folder
+
+
+def write_bare_site(project: Path, folder: Path) -> Path:
+    """Write a project's site without pictures, and return its folder."""
+    inputs = ProductInputs(pipeline.check_project(project), OutputOptions(revision="test"))
+    tree = build_site(
+        inputs.pages,
+        {},
+        title=inputs.checked_project.architecture.project.title,
+        revision="test",
+        notices=(),
+        chapter_files=lambda _: None,
+        search_entries=make_search_entries(inputs.views.lookup, inputs.pages),
+        explorer_map=make_explorer_map(inputs.views.lookup),
+    )
+    write_tree(tree, folder)
+    return folder

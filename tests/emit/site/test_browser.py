@@ -5,18 +5,16 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, Route, sync_playwright
+from playwright.sync_api import Browser, Page, Route
 
-from archgen import pipeline
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site as make_site
-from archgen.products import project_outputs
-from archgen.products.output_options import OutputOptions
 from archgen.views import shapes
+from tests.browser_pages import OpenPage, judge_with_axe
 
 ROOT = Path(__file__).resolve().parents[3]
 JUDGES = ROOT / "tests" / "judges" / "node_modules"
@@ -67,29 +65,8 @@ def folder(site: FileTree, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-@pytest.fixture(scope="module")
-def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the case study's site, with its real pictures."""
-    place = tmp_path_factory.mktemp("out") / "example"
-    project_outputs.write_site(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"), place)
-    return place
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = needed(shutil.which("chromium") or shutil.which("chromium-browser"), "Chromium (Debian: `chromium`)")
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
-
-
-Open = Callable[..., Page]
-
-
 @pytest.fixture
-def visit(browser: Browser, folder: Path) -> Iterator[Open]:
+def visit(browser: Browser, folder: Path) -> Iterator[OpenPage]:
     """Open a page from the disk; a request to anywhere else, an error or a message in the console is a failure."""
     wrong: list[str] = []
 
@@ -137,11 +114,6 @@ def said_by_nu(folder: Path) -> list[str]:
     return [message for message in messages if "blocked by" not in message or "Content Security Policy" not in message]
 
 
-def said_by_axe(page: Page) -> object:
-    page.evaluate(Path(needed(JUDGES / "axe-core/axe.min.js", "axe-core (`npm ci` in tests/judges)")).read_text())
-    return page.evaluate("axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")
-
-
 def test_the_nu_checker_finds_nothing(folder: Path) -> None:
     assert said_by_nu(folder) == []
 
@@ -152,21 +124,21 @@ def test_the_nu_checker_finds_nothing_in_the_case_study(example: Path) -> None:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 360])
-def test_axe_finds_nothing(visit: Open, scheme: str, width: int) -> None:
+def test_axe_finds_nothing(visit: OpenPage, scheme: str, width: int) -> None:
     for path in SAMPLE:
-        assert said_by_axe(visit(path, width, scheme)) == [], path
+        assert judge_with_axe(visit(path, width, scheme)) == [], path
 
 
 @pytest.mark.parametrize(("width", "scheme"), [(1280, "dark"), (360, "light")])
-def test_the_case_study_in_chromium(visit: Open, example: Path, width: int, scheme: str) -> None:
+def test_the_case_study_in_chromium(visit: OpenPage, example: Path, width: int, scheme: str) -> None:
     for path in EXAMPLE:
         page = visit(path, width, scheme, example)
-        assert said_by_axe(page) == [], path
+        assert judge_with_axe(page) == [], path
         assert page.evaluate("document.documentElement.scrollWidth") == width, path
 
 
 @pytest.mark.parametrize("path", SAMPLE)
-def test_nothing_scrolls_sideways_on_a_telephone(visit: Open, path: str) -> None:
+def test_nothing_scrolls_sideways_on_a_telephone(visit: OpenPage, path: str) -> None:
     page = visit(path, 360)
     assert page.evaluate("document.documentElement.scrollWidth") == 360
     wide = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken") &&
@@ -174,13 +146,13 @@ def test_nothing_scrolls_sideways_on_a_telephone(visit: Open, path: str) -> None
     assert page.evaluate(wide) == []
 
 
-def test_the_font_that_ships_is_loaded(visit: Open) -> None:
+def test_the_font_that_ships_is_loaded(visit: OpenPage) -> None:
     page = visit("index.html")
     assert page.evaluate("document.fonts.ready.then(() => document.fonts.check('16px Inter'))")
     assert page.evaluate("[...document.fonts].filter(f => f.family == 'Inter' && f.status == 'loaded').length") >= 1
 
 
-def test_light_and_dark_are_remembered(visit: Open) -> None:
+def test_light_and_dark_are_remembered(visit: OpenPage) -> None:
     page = visit("index.html", scheme="dark")
     colour = "getComputedStyle(document.body).backgroundColor"
     assert page.evaluate(colour) == "rgb(20, 24, 28)"
@@ -191,7 +163,7 @@ def test_light_and_dark_are_remembered(visit: Open) -> None:
     assert page.evaluate(colour) == "rgb(246, 247, 249)"
 
 
-def test_pictures_follow_light_and_dark(visit: Open) -> None:
+def test_pictures_follow_light_and_dark(visit: OpenPage) -> None:
     page = visit("index.html")
     colour = "getComputedStyle(document.querySelector('.canvas svg polygon')).fill"
     assert page.evaluate(colour) == "rgb(255, 255, 255)"
@@ -199,7 +171,7 @@ def test_pictures_follow_light_and_dark(visit: Open) -> None:
     assert page.evaluate(colour) == "rgb(20, 24, 28)"
 
 
-def test_paper_is_light(visit: Open) -> None:
+def test_paper_is_light(visit: OpenPage) -> None:
     page = visit("index.html", scheme="dark")
     page.get_by_role("button", name="Light").click()
     page.get_by_role("button", name="Dark").click()
@@ -209,7 +181,7 @@ def test_paper_is_light(visit: Open) -> None:
     assert not page.locator("#navigation").is_visible()
 
 
-def test_links_in_pictures_work(visit: Open) -> None:
+def test_links_in_pictures_work(visit: OpenPage) -> None:
     page = visit("index.html")
     page.locator(".canvas a").nth(1).click()
     page.wait_for_url("**/groups/g1.html")
@@ -220,7 +192,7 @@ def test_links_in_pictures_work(visit: Open) -> None:
     page.wait_for_url("**/components/g1.c2.html")
 
 
-def test_a_picture_can_be_looked_at_closely(visit: Open) -> None:
+def test_a_picture_can_be_looked_at_closely(visit: OpenPage) -> None:
     page = visit("groups/g1.html")
     page.get_by_role("button", name="Look closer").click()
     drawing = page.locator("dialog svg")
@@ -239,7 +211,7 @@ def test_a_picture_can_be_looked_at_closely(visit: Open) -> None:
     page.wait_for_url("**/components/g1.c2.html")
 
 
-def test_tables_sort_and_filter(visit: Open) -> None:
+def test_tables_sort_and_filter(visit: OpenPage) -> None:
     page = visit("connections.html")
     column = "[...document.querySelectorAll('tbody tr')].filter(r => !r.hidden).map(r => r.cells[1].innerText)"
     page.get_by_role("button", name="Topic").click()
@@ -272,7 +244,7 @@ def _write_quantities(folder: Path) -> Path:
     return folder / "site"
 
 
-def test_quantities_sort_by_value_and_unknown_ones_stay_last_both_ways(visit: Open, tmp_path: Path) -> None:
+def test_quantities_sort_by_value_and_unknown_ones_stay_last_both_ways(visit: OpenPage, tmp_path: Path) -> None:
     page = visit("index.html", root=_write_quantities(tmp_path))
     known = ["1/3 ms", "8.3 ms", "20 ms", "350 ms", "15 s", "60 s"]
     page.get_by_role("button", name="Deadline").click()
@@ -283,7 +255,7 @@ def test_quantities_sort_by_value_and_unknown_ones_stay_last_both_ways(visit: Op
     assert set(page.evaluate(COLUMN, 1)[-4:]) == {"unknown", "longer"}
 
 
-def test_back_brings_back_field_rows_count_and_order(visit: Open, tmp_path: Path) -> None:
+def test_back_brings_back_field_rows_count_and_order(visit: OpenPage, tmp_path: Path) -> None:
     page = visit("index.html", root=_write_quantities(tmp_path))
     page.get_by_role("searchbox").fill("ms")
     page.get_by_role("button", name="Deadline").click()
@@ -303,7 +275,7 @@ def test_back_brings_back_field_rows_count_and_order(visit: Open, tmp_path: Path
     assert page.locator("th").nth(1).get_attribute("aria-sort") == "descending"
 
 
-def test_a_link_with_filter_and_order_shows_what_the_sender_saw(visit: Open, tmp_path: Path) -> None:
+def test_a_link_with_filter_and_order_shows_what_the_sender_saw(visit: OpenPage, tmp_path: Path) -> None:
     page = visit("index.html?q=15&sort=Deadline", root=_write_quantities(tmp_path))
     assert page.evaluate(COLUMN, 0) == ["chain 15", "chain 1", "chain 9"]
     # The name of no column, and a filter that nothing matches: obeyed as far as it goes, and no error.
@@ -312,7 +284,7 @@ def test_a_link_with_filter_and_order_shows_what_the_sender_saw(visit: Open, tmp
     assert page.locator("output").inner_text() == "0 of 16"
 
 
-def test_the_keyboard_gets_past_the_tree(visit: Open) -> None:
+def test_the_keyboard_gets_past_the_tree(visit: OpenPage) -> None:
     page = visit("components/g1.c2.html")
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
@@ -320,7 +292,7 @@ def test_the_keyboard_gets_past_the_tree(visit: Open) -> None:
     assert page.evaluate("document.activeElement.id") == "content"
 
 
-def test_the_tree_opens_on_a_telephone(visit: Open) -> None:
+def test_the_tree_opens_on_a_telephone(visit: OpenPage) -> None:
     page = visit("components/g1.c2.html", 360)
     tree = page.locator("#navigation")
     assert not tree.is_visible()
@@ -330,7 +302,7 @@ def test_the_tree_opens_on_a_telephone(visit: Open) -> None:
     assert not tree.is_visible()
 
 
-def test_hostile_titles_run_nothing(visit: Open, tmp_path: Path) -> None:
+def test_hostile_titles_run_nothing(visit: OpenPage, tmp_path: Path) -> None:
     table = shapes.Table("t", HOSTILE, (shapes.Column(HOSTILE),), (((shapes.Text(HOSTILE),),),) * 12)
     section = shapes.Section("page:index", HOSTILE, (table, shapes.Markdown(HOSTILE)))
     start = shapes.Page("index.html", "page:index", HOSTILE, "overview", section)

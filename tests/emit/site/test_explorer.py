@@ -3,106 +3,60 @@
 from __future__ import annotations
 
 import re
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, Request, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, expect
 
-from archgen import pipeline
-from archgen.emit.file_tree import write_tree
-from archgen.emit.site import build_site
-from archgen.products.output_options import OutputOptions
-from archgen.products.product_inputs import ProductInputs
-from archgen.views.explorer import make_explorer_map
-from archgen.views.search import make_search_entries
+from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
+from tests.emit.site.conftest import write_bare_site
+from tests.running import RAMCIP
 
-ROOT = Path(__file__).resolve().parents[3]
-AXE = ROOT / "tests" / "judges" / "node_modules" / "axe-core" / "axe.min.js"
 HOSTILE = '</script><img src=x onerror=document.title="taken"><script>document.title="taken"</script>'
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; img-src 'self' data:; base-uri 'none'; "
     "form-action 'none'"
 )
 """The least that a page is allowed."""
-Open = Callable[..., Page]
-
-
-def write_site(project: Path, folder: Path) -> Path:
-    """Write a project's site, without pictures."""
-    inputs = ProductInputs(pipeline.check_project(project), OutputOptions(revision="test"))
-    tree = build_site(
-        inputs.pages,
-        {},
-        title=inputs.checked_project.architecture.project.title,
-        revision="test",
-        notices=(),
-        chapter_files=lambda _: None,
-        search_entries=make_search_entries(inputs.views.lookup, inputs.pages),
-        explorer_map=make_explorer_map(inputs.views.lookup),
-    )
-    write_tree(tree, folder)
-    return folder
 
 
 @pytest.fixture(scope="module")
 def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the case study's site."""
-    return write_site(ROOT / "example_ramcip", tmp_path_factory.mktemp("out") / "example")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
+    """Write the case study's site, without pictures."""
+    return write_bare_site(RAMCIP, tmp_path_factory.mktemp("out") / "example")
 
 
 @pytest.fixture
-def visit(browser: Browser, example: Path) -> Iterator[Open]:
+def visit(browser: Browser, example: Path) -> Iterator[OpenPage]:
     """Open the explorer; a request to anywhere else, an error or a message in the console is a failure."""
-    wrong: list[str] = []
+    with watch_pages(browser, ("file://", "data:")) as watch:
 
-    def judge(request: Request) -> None:
-        if not request.url.startswith(("file://", "data:")):
-            wrong.append(request.url)
+        def open_explorer(  # noqa: PLR0913 - what a reader's browser may be
+            address: str = "",
+            *,
+            root: Path | None = None,
+            path: str = "explorer.html",
+            width: int = 1280,
+            scheme: str = "light",
+            scripts: bool = True,
+            touch: bool = False,
+        ) -> Page:
+            context = browser.new_context(
+                viewport={"width": width, "height": 800},
+                color_scheme=scheme,  # type: ignore[arg-type]
+                java_script_enabled=scripts,
+                reduced_motion="reduce",
+                has_touch=touch,
+            )
+            page = watch(context.new_page())
+            page.goto(f"file://{root or example}/{path}{address}")
+            if scripts and path.startswith("explorer"):
+                expect(page.locator(".stage .box").first).to_be_attached()
+            return page
 
-    def opened(  # noqa: PLR0913 - what a reader's browser may be
-        address: str = "",
-        *,
-        root: Path | None = None,
-        path: str = "explorer.html",
-        width: int = 1280,
-        scheme: str = "light",
-        scripts: bool = True,
-        touch: bool = False,
-    ) -> Page:
-        context = browser.new_context(
-            viewport={"width": width, "height": 800},
-            color_scheme=scheme,  # type: ignore[arg-type]
-            java_script_enabled=scripts,
-            reduced_motion="reduce",
-            has_touch=touch,
-        )
-        page = context.new_page()
-        page.on("request", judge)
-        page.on("console", lambda message: wrong.append(message.text))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.goto(f"file://{root or example}/{path}{address}")
-        if scripts and path.startswith("explorer"):
-            expect(page.locator(".stage .box").first).to_be_attached()
-        return page
-
-    yield opened
-    for context in browser.contexts:
-        context.close()
-    assert wrong == []
+        yield open_explorer
 
 
 def box(page: Page, title: str) -> Locator:
@@ -122,22 +76,17 @@ def address(page: Page) -> dict[str, str]:
     return page.evaluate("Object.fromEntries(new URLSearchParams(location.hash.slice(1)))")  # type: ignore[no-any-return]
 
 
-def said_by_axe(page: Page) -> object:
-    page.evaluate(AXE.read_text())
-    return page.evaluate("axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")
-
-
 # --- what is on the map ---------------------------------------------------------------------------------------------
 
 
-def test_the_map_opens_with_all_groups_closed_and_one_arrow_for_all_that_runs_between_two(visit: Open) -> None:
+def test_the_map_opens_with_all_groups_closed_and_one_arrow_for_all_that_runs_between_two(visit: OpenPage) -> None:
     page = visit()
     assert page.locator(".stage .box").count() == 10
     assert page.locator(".map .arrow").count() == 39
     assert page.locator(".map .arrow.many").count() > 5
 
 
-def test_a_group_opens_in_place_and_back_closes_it(visit: Open) -> None:
+def test_a_group_opens_in_place_and_back_closes_it(visit: OpenPage) -> None:
     page = visit()
     before = box(page, "Robot Task Scheduler").bounding_box()
     box(page, "Human State").locator(".sign").click(force=True)
@@ -154,7 +103,7 @@ def test_a_group_opens_in_place_and_back_closes_it(visit: Open) -> None:
     ("level", "boxes", "first"),
     [("groups", 10, "Cognitive Reasoning"), ("nodes", 10, "Cognitive Reasoning"), ("hosts", 5, "Base Computer")],
 )
-def test_levels(visit: Open, level: str, boxes: int, first: str) -> None:
+def test_levels(visit: OpenPage, level: str, boxes: int, first: str) -> None:
     page = visit()
     page.get_by_role("button", name=level.capitalize(), exact=True).click()
     assert address(page)["level"] == level
@@ -163,7 +112,7 @@ def test_levels(visit: Open, level: str, boxes: int, first: str) -> None:
     assert box(page, first).locator(".sign").count() == (0 if level == "groups" else 1)
 
 
-def test_boxes_do_not_cover_one_another_when_all_is_open(visit: Open) -> None:
+def test_boxes_do_not_cover_one_another_when_all_is_open(visit: OpenPage) -> None:
     page = visit("#level=components&open=*")
     expect(page.locator(".stage .box")).to_have_count(71)
     overlapping = page.evaluate("""() => {
@@ -175,7 +124,7 @@ def test_boxes_do_not_cover_one_another_when_all_is_open(visit: Open) -> None:
     assert overlapping == 0
 
 
-def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: Open) -> None:
+def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: OpenPage) -> None:
     page = visit("#level=groups")
     below = page.evaluate(
         """() => {
@@ -189,14 +138,14 @@ def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: Open) -> 
     assert "Hardware at the Boundary → Robot Action Planner" not in below
 
 
-def test_the_panel_says_where_a_thing_is_written(visit: Open) -> None:
+def test_the_panel_says_where_a_thing_is_written(visit: OpenPage) -> None:
     page = visit("#level=components&open=human_state&pick=human_state.fall_detector")
     expect(page.locator(".panel .written")).to_contain_text("Written in groups/human_state.yaml:")
     # An icon in each chip of a state.
     assert page.locator(".panel .chip").count() == page.locator(".panel .chip svg path[d^=M]").count() > 0
 
 
-def test_a_merged_arrow_opens_into_its_flows(visit: Open) -> None:
+def test_a_merged_arrow_opens_into_its_flows(visit: OpenPage) -> None:
     page = visit()
     page.locator(".map .arrow.many").first.evaluate("a => a.dispatchEvent(new MouseEvent('click', {bubbles: true}))")
     flows = page.locator(".panel .flows li")
@@ -208,7 +157,7 @@ def test_a_merged_arrow_opens_into_its_flows(visit: Open) -> None:
 # --- what is chosen, and the address ----------------------------------------------------------------------------------
 
 
-def test_a_focus_lights_what_feeds_it_and_what_it_feeds(visit: Open) -> None:
+def test_a_focus_lights_what_feeds_it_and_what_it_feeds(visit: OpenPage) -> None:
     page = visit("#level=components&open=human_state&sel=1%2Bfall_detector%2B1")
     assert lit(page) == ["Cognitive Reasoning", "Fall Detector", "Skeleton Tracking", "Speech Recognition"]
     assert page.locator(".map .arrow.lit.before").count() == 2
@@ -218,7 +167,7 @@ def test_a_focus_lights_what_feeds_it_and_what_it_feeds(visit: Open) -> None:
     assert box(page, "Person Identification").evaluate("b => getComputedStyle(b).opacity") == "1"
 
 
-def test_steps_before_and_after_are_counted_up_and_down(visit: Open) -> None:
+def test_steps_before_and_after_are_counted_up_and_down(visit: OpenPage) -> None:
     page = visit("#level=components&open=human_state&sel=1%2Bfall_detector%2B1")
     page.get_by_role("button", name="More steps before").click()
     assert address(page)["sel"] == "2+fall_detector+1"
@@ -229,7 +178,7 @@ def test_steps_before_and_after_are_counted_up_and_down(visit: Open) -> None:
     expect(page.locator("#selector")).to_have_value("2+fall_detector+1")
 
 
-def test_positions_stay_on_focus_filter_and_theme(visit: Open) -> None:
+def test_positions_stay_on_focus_filter_and_theme(visit: OpenPage) -> None:
     page = visit("#level=components&open=human_state")
     places = "() => [...document.querySelectorAll('.stage .box')].map(b => [b.dataset.box, b.getAttribute('transform')]).sort()"
     before = page.evaluate(places)
@@ -244,7 +193,7 @@ def test_positions_stay_on_focus_filter_and_theme(visit: Open) -> None:
     assert all(dict(before)[name] == place for name, place in after.items())
 
 
-def test_ways_from_a_to_b(visit: Open) -> None:
+def test_ways_from_a_to_b(visit: OpenPage) -> None:
     page = visit("#level=components&open=human_state")
     page.get_by_role("button", name="A → B: all ways").click()
     page.get_by_label("From", exact=True).fill("skeleton_tracking")
@@ -264,13 +213,13 @@ def test_ways_from_a_to_b(visit: Open) -> None:
         ("#sel=a,b", ", is reserved; words are separated by blanks"),
     ],
 )
-def test_names_that_are_not_there_are_said_and_the_rest_is_obeyed(visit: Open, hash_: str, words: str) -> None:
+def test_names_that_are_not_there_are_said_and_the_rest_is_obeyed(visit: OpenPage, hash_: str, words: str) -> None:
     page = visit(hash_ + "&colour=owner")
     assert page.locator(".notes").inner_text() == words
     assert page.locator(".legend .colours li").first.inner_text() == "TU München (16)"
 
 
-def test_moving_is_kept_in_the_address_but_is_no_step_for_back(visit: Open) -> None:
+def test_moving_is_kept_in_the_address_but_is_no_step_for_back(visit: OpenPage) -> None:
     page = visit()
     length = page.evaluate("history.length")
     page.mouse.move(600, 300)
@@ -287,7 +236,7 @@ def test_moving_is_kept_in_the_address_but_is_no_step_for_back(visit: Open) -> N
     assert [float(n) for n in re.findall(r"-?[\d.]+", transform)] == pytest.approx([x, y, zoom], abs=0.01)
 
 
-def test_hover_lights_a_box_with_its_arrows_and_leaving_ends_that(visit: Open) -> None:
+def test_hover_lights_a_box_with_its_arrows_and_leaving_ends_that(visit: OpenPage) -> None:
     page = visit()
     box(page, "Human Model").hover()
     expect(page.locator(".map.dims")).to_have_count(1)
@@ -297,7 +246,7 @@ def test_hover_lights_a_box_with_its_arrows_and_leaving_ends_that(visit: Open) -
     expect(page.locator(".map.dims")).to_have_count(0)
 
 
-def test_colours_have_words_in_the_legend(visit: Open) -> None:
+def test_colours_have_words_in_the_legend(visit: OpenPage) -> None:
     page = visit("#open=*")
     for key, word in (("status", "planned"), ("period", "up to 100 ms"), ("finding", "a warning"), ("progress", "5 of 5 steps"),
                       ("requirement", "serves none"), ("host", "Vision Computer"), ("type", "others")):  # fmt: skip
@@ -309,7 +258,7 @@ def test_colours_have_words_in_the_legend(visit: Open) -> None:
 # --- keys -----------------------------------------------------------------------------------------------------------
 
 
-def test_everything_by_keyboard(visit: Open) -> None:
+def test_everything_by_keyboard(visit: OpenPage) -> None:
     page = visit()
     page.locator('.stage .box[tabindex="0"]').focus()
     page.keyboard.press("ArrowRight")
@@ -342,7 +291,7 @@ def test_everything_by_keyboard(visit: Open) -> None:
     assert page.locator("#selector").input_value() == "o"
 
 
-def test_a_list_has_all_that_the_map_has(visit: Open) -> None:
+def test_a_list_has_all_that_the_map_has(visit: OpenPage) -> None:
     page = visit("#level=components&open=human_state&view=list")
     entries = page.locator(".as-list li > span:first-child > .name").all_inner_texts()
     assert len(entries) == page.locator(".stage .box").count() == 15
@@ -360,15 +309,14 @@ def test_a_list_has_all_that_the_map_has(visit: Open) -> None:
     "hash_",
     ["", "#open=human_state&sel=2%2Bfall_detector%2B1&pick=human_state.fall_detector&colour=owner", "#view=list"],
 )
-def test_axe_finds_nothing(visit: Open, scheme: str, hash_: str) -> None:
-    assert AXE.exists(), "this test needs axe-core (`npm ci` in tests/judges)"
-    assert said_by_axe(visit(hash_, scheme=scheme)) == []
+def test_axe_finds_nothing(visit: OpenPage, scheme: str, hash_: str) -> None:
+    assert judge_with_axe(visit(hash_, scheme=scheme)) == []
 
 
 # --- ways in and out ------------------------------------------------------------------------------------------------
 
 
-def test_pages_of_elements_lead_to_their_box(visit: Open) -> None:
+def test_pages_of_elements_lead_to_their_box(visit: OpenPage) -> None:
     page = visit(path="components/human_state.fall_detector.html")
     page.get_by_role("link", name="Show in explorer").click()
     expect(page.locator(".panel h2")).to_have_text("Fall Detector")
@@ -377,7 +325,7 @@ def test_pages_of_elements_lead_to_their_box(visit: Open) -> None:
     assert page.url.endswith("components/human_state.fall_detector.html")
 
 
-def test_the_search_shows_what_it_found_on_the_map(visit: Open) -> None:
+def test_the_search_shows_what_it_found_on_the_map(visit: OpenPage) -> None:
     page = visit()
     page.keyboard.press("/")
     page.keyboard.type("fall detector")
@@ -387,7 +335,7 @@ def test_the_search_shows_what_it_found_on_the_map(visit: Open) -> None:
     expect(box(page, "Fall Detector")).to_be_visible()
 
 
-def test_without_scripts_there_is_a_list_of_what_flows(visit: Open) -> None:
+def test_without_scripts_there_is_a_list_of_what_flows(visit: OpenPage) -> None:
     page = visit(scripts=False)
     assert page.get_by_role("link", name="the table of all connections").is_visible()
     assert page.locator("table tbody tr").count() > 40
@@ -395,7 +343,7 @@ def test_without_scripts_there_is_a_list_of_what_flows(visit: Open) -> None:
 
 
 @pytest.mark.parametrize("form", ["SVG", "PNG"])
-def test_a_view_is_saved_as_a_picture_that_stands_alone(visit: Open, form: str, tmp_path: Path) -> None:
+def test_a_view_is_saved_as_a_picture_that_stands_alone(visit: OpenPage, form: str, tmp_path: Path) -> None:
     page = visit("#open=human_state&sel=2%2Bfall_detector%2B1")
     page.get_by_role("button", name="Share").click()
     with page.expect_download() as download:
@@ -415,7 +363,7 @@ def test_a_view_is_saved_as_a_picture_that_stands_alone(visit: Open, form: str, 
     assert "var(" not in text
 
 
-def test_a_strict_policy_refuses_nothing_of_it(visit: Open, example: Path) -> None:
+def test_a_strict_policy_refuses_nothing_of_it(visit: OpenPage, example: Path) -> None:
     text = (example / "explorer.html").read_text("utf-8")
     assert " style=" not in text
     assert "<style" not in text
@@ -428,7 +376,7 @@ def test_a_strict_policy_refuses_nothing_of_it(visit: Open, example: Path) -> No
         page.get_by_role("button", name="Save as PNG").click()
 
 
-def test_pinch_zooms_on_a_phone(visit: Open) -> None:
+def test_pinch_zooms_on_a_phone(visit: OpenPage) -> None:
     page = visit(width=390, touch=True)
     scale = "() => Number(document.querySelector('.map').style.transform.match(/scale\\(([\\d.]+)/)[1])"
     before = page.evaluate(scale)
@@ -447,7 +395,7 @@ def test_pinch_zooms_on_a_phone(visit: Open) -> None:
 # --- hostile, large -------------------------------------------------------------------------------------------------
 
 
-def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
+def test_hostile_titles_are_text(visit: OpenPage, tmp_path: Path) -> None:
     title = HOSTILE.replace("'", "''")
     long = "x" * 300
     (tmp_path / "robot.yaml").write_text(
@@ -460,7 +408,7 @@ def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
         "nodes: {n: {implements: [a.c], host: h}}\n",
         encoding="utf-8",
     )
-    site = write_site(tmp_path / "robot.yaml", tmp_path / "site")
+    site = write_bare_site(tmp_path / "robot.yaml", tmp_path / "site")
     for hash_ in ("#open=a+b&pick=a.c", "#open=a+b&pick=a.d&sel=a.c%2B1", "#level=hosts&open=h", "#view=list&open=*", f"#sel={HOSTILE}&pick={HOSTILE}"):  # fmt: skip
         page = visit(hash_, root=site)
         assert page.locator("img").count() == 0
@@ -470,12 +418,12 @@ def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
     assert box(page, long).locator(".title.near").last.text_content().endswith("…")  # type: ignore[union-attr]
 
 
-def test_levels_that_a_project_has_not_are_empty(visit: Open, tmp_path: Path) -> None:
+def test_levels_that_a_project_has_not_are_empty(visit: OpenPage, tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text(
         "archgen: 1\nproject: {id: r}\nnodes: {a: {publishes: {x: {topic: /x}}}, b: {subscribes: {x: {topic: /x}}}}\n",
         "utf-8",
     )
-    site = write_site(tmp_path / "robot.yaml", tmp_path / "site")
+    site = write_bare_site(tmp_path / "robot.yaml", tmp_path / "site")
     page = visit(root=site)
     assert page.locator(".stage .box").count() == 1
     page.get_by_role("button", name="Open all").click()
@@ -500,10 +448,10 @@ def large(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "robot.yaml").write_text(
         "archgen: 1\nproject: {id: r, title: R}\ngroups:\n" + "\n".join(groups) + "\n", "utf-8"
     )
-    return write_site(folder / "robot.yaml", folder / "site")
+    return write_bare_site(folder / "robot.yaml", folder / "site")
 
 
-def test_above_the_budget_groups_fold_and_what_is_chosen_keeps_its_neighbours(visit: Open, large: Path) -> None:
+def test_above_the_budget_groups_fold_and_what_is_chosen_keeps_its_neighbours(visit: OpenPage, large: Path) -> None:
     page = visit("#open=*&pick=g20.c5", root=large)
     assert page.locator(".stage .box").count() <= 150
     assert page.locator(".map .arrow").count() <= 300

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 from playwright.sync_api import Page as BrowserPage
 
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site
 from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow
 from archgen.views.shapes import Page, Section
+from tests.browser_pages import watch_pages
 
 HOSTILE = '=1+1</script><b>"x"'
 
@@ -91,29 +91,14 @@ def test_the_data_is_a_script_that_no_title_can_end() -> None:
     assert "</script><b>" in data  # in a file of its own it ends nothing
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
-
-
 @pytest.fixture
 def page(browser: Browser, tmp_path: Path) -> Iterator[BrowserPage]:
     """Open the matrix from the disk; an error or a message in the console is a failure."""
     write_tree(build(make_matrix(3)), tmp_path / "site")
-    opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
-    wrong: list[str] = []
-    opened.on("console", lambda message: wrong.append(message.text))
-    opened.on("pageerror", lambda error: wrong.append(str(error)))
-    opened.goto(f"file://{tmp_path}/site/index.html")
-    yield opened
-    opened.context.close()
-    assert wrong == []
+    with watch_pages(browser) as watch:
+        opened = watch(browser.new_context(viewport={"width": 1280, "height": 800}).new_page())
+        opened.goto(f"file://{tmp_path}/site/index.html")
+        yield opened
 
 
 ROWS = "[...document.querySelectorAll('.matrix tbody th')].map(head => head.innerText.split('\\n')[0].replace(/^[▸▾]\\s*/, ''))"

@@ -3,46 +3,20 @@
 from __future__ import annotations
 
 import re
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
-from archgen import pipeline
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.emit.site.page_policy import PAGE_POLICY
 from archgen.emit.site.standalone_page import write_standalone_page
-from archgen.products import project_outputs
-from archgen.products.output_options import OutputOptions
 from archgen.views.shapes import Figure, Outline, Section
 
-ROOT = Path(__file__).resolve().parents[3]
 MOST_BYTES = 100_000
 """A page's bytes without its pictures."""
 _PICTURE = re.compile(r'<svg\b[^>]*class="archgen".*?</svg>', re.DOTALL)
 _INLINE = re.compile(r"<[a-z]+\b[^>]*\s(?:style|on[a-z]+)=|<style\b|<script(?![^>]*\bsrc=)")
-
-
-@pytest.fixture(scope="module")
-def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the case study's site, with its real pictures."""
-    place = tmp_path_factory.mktemp("out") / "example"
-    project_outputs.write_site(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"), place)
-    return place
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
 
 
 def choose_pages(folder: Path) -> list[str]:

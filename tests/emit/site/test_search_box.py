@@ -3,46 +3,27 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, Request, expect, sync_playwright
+from playwright.sync_api import Browser, Page, expect
 
-from archgen import pipeline
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site
-from archgen.products.output_options import OutputOptions
-from archgen.products.product_inputs import ProductInputs
 from archgen.views import shapes
-from archgen.views.search import make_search_entries
 from archgen.views.search.search_entry import SearchEntry
+from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
+from tests.emit.site.conftest import write_bare_site
+from tests.running import RAMCIP
 
-ROOT = Path(__file__).resolve().parents[3]
-AXE = ROOT / "tests" / "judges" / "node_modules" / "axe-core" / "axe.min.js"
 HOSTILE = '</script><img src=x onerror=document.title="taken"><script>document.title="taken"</script>'
-Open = Callable[..., Page]
 
 
 @pytest.fixture(scope="module")
 def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the case study's pages, without pictures."""
-    inputs = ProductInputs(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"))
-    entries = make_search_entries(inputs.views.lookup, inputs.pages)
-    folder = tmp_path_factory.mktemp("out") / "example"
-    write_tree(
-        build_site(
-            inputs.pages,
-            {},
-            title="RAMCIP",
-            revision="test",
-            notices=(),
-            chapter_files=lambda _: None,
-            search_entries=entries,
-        ),
-        folder,
-    )
-    return folder
+    """Write the case study's site, without pictures."""
+    return write_bare_site(RAMCIP, tmp_path_factory.mktemp("out") / "example")
 
 
 def site_of(*entries: SearchEntry, title: str = "Robot") -> FileTree:
@@ -53,50 +34,28 @@ def site_of(*entries: SearchEntry, title: str = "Robot") -> FileTree:
     )
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
-
-
 @pytest.fixture
-def visit(browser: Browser, example: Path) -> Iterator[Open]:
+def visit(browser: Browser, example: Path) -> Iterator[OpenPage]:
     """Open a page from the disk; a request to anywhere else, an error or a message in the console is a failure."""
-    wrong: list[str] = []
+    with watch_pages(browser) as watch:
 
-    def judge(request: Request) -> None:
-        if not request.url.startswith("file://"):
-            wrong.append(request.url)
+        def open_page(  # noqa: PLR0913 - what a reader's browser may be
+            path: str = "index.html",
+            *,
+            root: Path | None = None,
+            width: int = 1280,
+            scheme: str = "light",
+            script: str = "",
+            quiet: bool = True,
+        ) -> Page:
+            context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)  # type: ignore[arg-type]
+            page = watch(context.new_page(), console=quiet)
+            if script:
+                page.add_init_script(script)
+            page.goto(f"file://{root or example}/{path}")
+            return page
 
-    def opened(  # noqa: PLR0913 - what a reader's browser may be
-        path: str = "index.html",
-        *,
-        root: Path | None = None,
-        width: int = 1280,
-        scheme: str = "light",
-        script: str = "",
-        quiet: bool = True,
-    ) -> Page:
-        context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)  # type: ignore[arg-type]
-        page = context.new_page()
-        page.on("request", judge)
-        if quiet:
-            page.on("console", lambda message: wrong.append(message.text))
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        if script:
-            page.add_init_script(script)
-        page.goto(f"file://{root or example}/{path}")
-        return page
-
-    yield opened
-    for context in browser.contexts:
-        context.close()
-    assert wrong == []
+        yield open_page
 
 
 def search(page: Page, words: str) -> None:
@@ -115,12 +74,7 @@ def said(page: Page) -> str:
     return page.locator(".find-box .note").inner_text()
 
 
-def said_by_axe(page: Page) -> object:
-    page.evaluate(AXE.read_text())
-    return page.evaluate("axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")
-
-
-def test_nothing_of_the_index_is_loaded_before_the_first_key(visit: Open) -> None:
+def test_nothing_of_the_index_is_loaded_before_the_first_key(visit: OpenPage) -> None:
     page = visit()
     loaded = "performance.getEntriesByType('resource').map(e => e.name).filter(n => n.includes('/search/'))"
     assert page.evaluate(loaded) == []
@@ -144,7 +98,7 @@ def test_nothing_of_the_index_is_loaded_before_the_first_key(visit: Open) -> Non
         ("handover planner skeletons", "Handover Planner · skeletons"),
     ],
 )
-def test_what_fits_best_stands_first(visit: Open, words: str, first: str) -> None:
+def test_what_fits_best_stands_first(visit: OpenPage, words: str, first: str) -> None:
     page = visit()
     search(page, words)
     assert titles(page)[0] == first
@@ -167,7 +121,7 @@ def test_what_fits_best_stands_first(visit: Open, words: str, first: str) -> Non
         ("Skelton", "skeleton"),
     ],
 )
-def test_one_wrong_letter_in_a_word_is_found_and_said(visit: Open, words: str, nearest: str | None) -> None:
+def test_one_wrong_letter_in_a_word_is_found_and_said(visit: OpenPage, words: str, nearest: str | None) -> None:
     page = visit()
     search(page, words)
     assert "Skeleton Tracking" in titles(page)
@@ -177,7 +131,7 @@ def test_one_wrong_letter_in_a_word_is_found_and_said(visit: Open, words: str, n
         assert page.locator(".find-box .note").is_hidden()
 
 
-def test_a_wrong_letter_that_makes_another_word_is_found_behind_it(visit: Open, tmp_path: Path) -> None:
+def test_a_wrong_letter_that_makes_another_word_is_found_behind_it(visit: OpenPage, tmp_path: Path) -> None:
     entries = [SearchEntry("node", title, "", ("page:index",)) for title in ("form_filler", "from_camera")]
     write_tree(site_of(*entries), tmp_path / "site")
     page = visit(root=tmp_path / "site")
@@ -186,7 +140,7 @@ def test_a_wrong_letter_that_makes_another_word_is_found_behind_it(visit: Open, 
     assert said(page) == "Also what is spelt nearly so: from"
 
 
-def test_every_kind_of_thing_is_found(visit: Open) -> None:
+def test_every_kind_of_thing_is_found(visit: OpenPage) -> None:
     page = visit()
     for words, kind in (
         ("human state", "group"),
@@ -205,7 +159,7 @@ def test_every_kind_of_thing_is_found(visit: Open) -> None:
         page.keyboard.press("Escape")
 
 
-def test_keys_lead_to_a_page_and_escape_gives_the_focus_back(visit: Open) -> None:
+def test_keys_lead_to_a_page_and_escape_gives_the_focus_back(visit: OpenPage) -> None:
     page = visit("components/human_state.skeleton_tracking.html")
     page.get_by_role("link", name="Overview").first.focus()
     search(page, "skeleton")
@@ -226,7 +180,7 @@ def test_keys_lead_to_a_page_and_escape_gives_the_focus_back(visit: Open) -> Non
     page.wait_for_url("**/components/robot_action_planner.navigator.html")
 
 
-def test_tab_goes_through_the_kinds(visit: Open) -> None:
+def test_tab_goes_through_the_kinds(visit: OpenPage) -> None:
     page = visit()
     search(page, "skeleton")
     pressed = page.locator(".find-box .chips [aria-pressed=true]")
@@ -242,7 +196,7 @@ def test_tab_goes_through_the_kinds(visit: Open) -> None:
     assert page.evaluate("document.activeElement.id") == "find-field"
 
 
-def test_a_slash_in_a_field_is_a_slash(visit: Open) -> None:
+def test_a_slash_in_a_field_is_a_slash(visit: OpenPage) -> None:
     page = visit("connections.html")
     page.get_by_role("searchbox").first.focus()
     page.keyboard.press("/")
@@ -252,7 +206,7 @@ def test_a_slash_in_a_field_is_a_slash(visit: Open) -> None:
     assert page.get_by_role("combobox").is_visible()
 
 
-def test_an_empty_box_teaches(visit: Open) -> None:
+def test_an_empty_box_teaches(visit: OpenPage) -> None:
     page = visit("components/robot_action_planner.navigator.html")
     page.goto(page.url.replace("components/robot_action_planner.navigator", "index"))
     page.get_by_role("button", name="Search everything").click()
@@ -277,7 +231,7 @@ POISONED = (
 
 
 @pytest.mark.parametrize("script", [REFUSED, POISONED])
-def test_it_works_where_nothing_can_be_remembered_or_trusted(visit: Open, script: str) -> None:
+def test_it_works_where_nothing_can_be_remembered_or_trusted(visit: OpenPage, script: str) -> None:
     page = visit(script=script)
     page.keyboard.press("/")
     expect(page.locator(".find-box .heading")).to_have_text(["Open points", "Also understood"])
@@ -288,19 +242,19 @@ def test_it_works_where_nothing_can_be_remembered_or_trusted(visit: Open, script
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 360])
-def test_axe_finds_nothing_in_the_box(visit: Open, scheme: str, width: int) -> None:
+def test_axe_finds_nothing_in_the_box(visit: OpenPage, scheme: str, width: int) -> None:
     page = visit("components/robot_action_planner.navigator.html", width=width, scheme=scheme)
     page.keyboard.press("/")
     expect(page.locator(".find-box .heading").last).to_have_text("Also understood")
-    assert said_by_axe(page) == []
+    assert judge_with_axe(page) == []
     for words in ("skeleton", "sekleton", "zzzqqq"):
         page.keyboard.press("Escape")
         search(page, words)
-        assert said_by_axe(page) == [], words
+        assert judge_with_axe(page) == [], words
         assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
-def test_a_screen_reader_hears_the_counts(visit: Open) -> None:
+def test_a_screen_reader_hears_the_counts(visit: OpenPage) -> None:
     page = visit()
     search(page, "sekleton trakcing")
     status = page.locator(".find-box [role=status]")
@@ -308,7 +262,7 @@ def test_a_screen_reader_hears_the_counts(visit: Open) -> None:
     expect(status).to_contain_text("Nearest: skeleton, tracking")
 
 
-def test_of_many_results_fifty_are_drawn_and_all_are_counted(visit: Open, tmp_path: Path) -> None:
+def test_of_many_results_fifty_are_drawn_and_all_are_counted(visit: OpenPage, tmp_path: Path) -> None:
     entries = [SearchEntry("port", f"Port {at}", "of a group", ("page:index",)) for at in range(9_000)]
     entries += [SearchEntry("component", f"Reporter {at}", "", ("page:index",)) for at in range(1_000)]
     write_tree(site_of(*entries), tmp_path / "site")
@@ -328,7 +282,7 @@ def test_of_many_results_fifty_are_drawn_and_all_are_counted(visit: Open, tmp_pa
     expect(page.locator(".find-box .note")).to_contain_text("Nothing here has all of “zzzqqq”")
 
 
-def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
+def test_hostile_titles_are_text(visit: OpenPage, tmp_path: Path) -> None:
     turned = "abc \u202egnirts\u202c def"
     entries = [SearchEntry("node", title, title, ("page:index",), (), title) for title in (HOSTILE, turned, "😀😀")]
     write_tree(site_of(*entries, title=HOSTILE), tmp_path / "site")
@@ -347,7 +301,7 @@ def test_hostile_titles_are_text(visit: Open, tmp_path: Path) -> None:
     assert page.title() == HOSTILE
 
 
-def test_a_strict_policy_is_enough(visit: Open, tmp_path: Path) -> None:
+def test_a_strict_policy_is_enough(visit: OpenPage, tmp_path: Path) -> None:
     write_tree(site_of(SearchEntry("node", "skeleton_tracker", "", ("page:index",))), tmp_path / "site")
     page_file = tmp_path / "site" / "index.html"
     policy = "default-src 'none'; script-src file:; style-src file:; font-src file:; img-src file:"
@@ -358,7 +312,7 @@ def test_a_strict_policy_is_enough(visit: Open, tmp_path: Path) -> None:
     assert titles(page) == ["skeleton_tracker"]
 
 
-def test_a_part_that_is_missing_is_said(visit: Open, example: Path, tmp_path: Path) -> None:
+def test_a_part_that_is_missing_is_said(visit: OpenPage, example: Path, tmp_path: Path) -> None:
     shutil.copytree(example, tmp_path / "site")
     (tmp_path / "site/assets/search/node-1.js").unlink()
     page = visit(root=tmp_path / "site", quiet=False)

@@ -2,42 +2,18 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 from playwright.sync_api import Page as BrowserPage
 
-from archgen import pipeline
-from archgen.products import project_outputs
-from archgen.products.output_options import OutputOptions
 from tests.emit.site.test_page_policy import choose_pages
 
-ROOT = Path(__file__).resolve().parents[3]
 # What scrolls by itself is left out: tables, listings, the matrix, and the explorer's bar of tools and its map.
 WIDE = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken, .matrix-box, .explorer-tools, .map, thead") &&
     e.getBoundingClientRect().right > innerWidth + 1).map(e => e.outerHTML.slice(0, 90))"""
-
-
-@pytest.fixture(scope="module")
-def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the case study's site, with its real pictures."""
-    place = tmp_path_factory.mktemp("out") / "example"
-    project_outputs.write_site(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"), place)
-    return place
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """Start Chromium."""
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield started
-        started.close()
 
 
 @pytest.fixture

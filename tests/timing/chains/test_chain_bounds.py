@@ -217,6 +217,20 @@ def test_what_is_missing_is_named_and_the_rest_adds_up() -> None:
     assert result.best.value is None  # nothing is known of it; zero is never made up
 
 
+def test_a_figure_known_from_below_bounds_the_best_case_alone() -> None:
+    """100 + 5 + 50 ms, and at least 3 ms of `det`; at best 5 + 3 ms or more."""
+    at_least = TimingValue(Fraction(3 * 10**6), complete=False, missing=("det",), side="at least")
+    found = analysis(
+        [periodic("cam", 100), periodic("det", 50)],
+        [arc("cam", "det")],
+        {"cam": 5, "det": at_least},
+        {"cam": 100, "det": 50},
+    )
+    result = _one(found, "cam", "det", deadline=500)
+    assert (_ms(result.bound), result.bound.complete, result.verdict) == (158, False, "open")
+    assert (_ms(result.best), result.best.complete, result.best.side) == (8, True, "at least")
+
+
 def test_an_overloaded_host_makes_the_chain_boundless() -> None:
     found = analysis(
         [periodic("cam", 100), periodic("det", 50)],

@@ -35,6 +35,10 @@ def test_percentiles_of_few_values_are_exact(count: int) -> None:
     )
 
 
+def test_of_a_hundred_values_each_percentile_is_that_of_its_name() -> None:
+    assert _count(*range(1, 101)).summarise().percentiles == {"p50": 50, "p90": 90, "p95": 95, "p99": 99}
+
+
 @pytest.mark.parametrize("scale", [10**4, 10**7, 10**12])
 def test_percentiles_of_many_values_are_at_most_a_step_too_large(scale: int) -> None:
     values = [random.Random(7 * n).randrange(scale) for n in range(20_000)]  # noqa: S311 - no secret

@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.load import busy_windows, core_responses
+from archgen.timing.load import busy_windows, core_responses, event_streams
 from archgen.timing.load.busy_windows import DemandFunction, DivergedError, SearchBudget
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import show_ms
@@ -149,7 +149,7 @@ def test_strictly_periodic_cascades_may_fill_a_core_up_to_a_limit(monkeypatch: p
         "a 5..5 priorities",
         "b 5..5 priorities",
     ]
-    monkeypatch.setattr(core_responses, "_MAX_JOBS_IN_ROUND", 0)
+    monkeypatch.setattr(event_streams, "_MAX_JOBS_IN_ROUND", 0)
     assert (
         list_responses(analyse_sketch(nodes, "a>b", "hosts: {pc: {cores: 1}}"))[1] == "b 5..none [overload] priorities"
     )

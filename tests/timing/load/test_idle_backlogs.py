@@ -82,6 +82,17 @@ def test_what_comes_behind_the_last_step_does_not_hold_it_up() -> None:
     assert {name: in_ms(cores, delay) for (name, _), delay in backlog.delays.items()} == {"s": 40, "a": 70, "t": 60}
 
 
+def test_what_takes_no_time_leaves_nothing_pending() -> None:
+    """On 3 cores two threads count: that of `a`, and that of what it fires."""
+    cores = prepare(
+        {"a @pc": "period: 100 ms, wcet: 10 ms", "b @pc": f"{EVENT}, wcet: 0 ms"}, "a>b", "hosts: {pc: {cores: 3}}"
+    )
+    backlog = find_backlog(cores)
+    assert backlog is not None
+    shares = [(share.name, in_ms(cores, share.rest), in_ms(cores, share.work)) for share in backlog.pending_shares]
+    assert shares == [("a", 10, 10), ("b", 0, 0)]
+
+
 def test_a_row_of_steps_that_lasts_longer_than_its_period_is_bounded() -> None:
     """Six steps of 30 ms every 100 ms on 4 cores: up to six events are under way at once, each in another step."""
     nodes = {"n0 @pc": "period: 100 ms, wcet: 30 ms"} | {f"n{at} @pc": f"{EVENT}, wcet: 30 ms" for at in range(1, 6)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -28,6 +29,16 @@ def prepare(nodes: dict[str, str], wires: str, rest: str = "hosts: {pc: {cores: 
 
 
 TIMER, EVENT = "period: 100 ms, wcet: 1 ms", "behaviour: event, trigger: any, wcet: 1 ms"
+
+
+@pytest.mark.parametrize("rest", [{"joined": True}, {"missing": ("cores",)}, {"waits": True}])
+def test_each_activity_is_looked_at_by_itself_where_cores_are_joined_or_not_known_or_threads_wait(
+    rest: dict[str, object],
+) -> None:
+    system, _ = build_system(read_sketch({"s @pc": TIMER, "a @pc": EVENT}, "s>a", "hosts: {pc: {cores: 1}}"))
+    (resource,) = find_resources(system)
+    assert find_inner_triggers(system, find_triggers(system), resource) is not None
+    assert find_inner_triggers(system, find_triggers(system), replace(resource, **rest)) is None  # type: ignore[arg-type]
 
 
 def list_ways(core: InnerCore) -> list[str]:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load import link_queueing, response_times, search_budgets, shared_core_responses
+from archgen.timing.load import event_streams, link_queueing, search_budgets, shared_core_responses
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.host_verdicts import is_below_rate_bound, rate_monotonic_bound
@@ -94,7 +94,7 @@ def test_a_container_has_as_many_cores_as_threads_where_there_are_enough() -> No
 @pytest.mark.parametrize(("jobs", "settles"), [(5, True), (4, False)])
 def test_a_full_core_settles_within_so_many_jobs(monkeypatch: pytest.MonkeyPatch, jobs: int, settles: object) -> None:
     """5 each 10, 10 each 20 and nothing each 40: 4 + 2 = 6 jobs of work in 40 ms, but the hyperperiod of work is 20: 2 + 1."""
-    monkeypatch.setattr(response_times, "_MAX_JOBS_IN_ROUND", jobs - 2)
+    monkeypatch.setattr(event_streams, "_MAX_JOBS_IN_ROUND", jobs - 2)
     nodes = {
         "a @pc": "period: 10 ms, wcet: 5 ms, priority: 3",
         "b @pc": "period: 20 ms, wcet: 10 ms, priority: 2",
@@ -185,3 +185,15 @@ def test_what_a_full_core_is_known_by_without_a_search(
     found = propagate_events(system, find_triggers(system)).responses
     assert {response.cause.notes for response in found.values()} == {("diverged",)}
     assert bool(looks) is not is_full
+
+
+@pytest.mark.parametrize(("deadline", "verdict"), [(10, "schedulable"), (9, "undecided")])
+def test_the_rate_monotonic_bound_holds_for_deadlines_that_are_not_before_the_next_activation(
+    deadline: int, verdict: str
+) -> None:
+    """In any order `a` may end 38 ms late, by rate both are in time: 2 / 10 + 30 / 100 is below 0.828."""
+    nodes = {
+        "a @pc": f"period: 10 ms, wcet: 2 ms, deadline: {deadline} ms",
+        "b @pc": "period: 100 ms, wcet: 30 ms",
+    }
+    assert analyse_sketch(nodes, "", "hosts: {pc: {cores: 1}}").hosts["pc"].verdict == verdict

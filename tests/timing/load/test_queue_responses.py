@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams
@@ -13,7 +14,7 @@ from archgen.timing.load.queue_orders import QueuedTask
 from archgen.timing.load.queue_responses import CoreQueue, QueueOrder, find_core_queue
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import Activity, Executor, ResourceUse
-from tests.simulation.systems import event, system, timed
+from tests.simulation.systems import event, stores, system, timed
 
 A = QueuedTask("a", 3, (), priority=2, deadline=50, rank=0)
 B = QueuedTask("b", 5, (), priority=1, deadline=90)
@@ -90,12 +91,14 @@ TIMER = timed("a", 100, 3, host="pc", deadline=50, executor="e", callback_group=
 SERVER = event("b", 5, host="pc", executor="e", callback_group="h", behaviour="on_demand")
 
 
-def find_queue(resource: ProcessingResource, timer: Activity = TIMER, threads: int | None = 1) -> CoreQueue | None:
-    """Return the queue of a core in the order of arrival, or of a thread by deadlines."""
+def find_queue(
+    resource: ProcessingResource, timer: Activity = TIMER, threads: int | None = 1, order: SchedulingOrder = "fifo"
+) -> CoreQueue | None:
+    """Return the queue of a core in an order, or of a thread by deadlines."""
     made = system(
         (timer, SERVER),
         cores={"pc": 1},
-        host_orders={"pc": "fifo"},
+        host_orders={"pc": order},
         executors={"e": Executor("e", threads, "pc", "edf")},
     )
     return find_core_queue(made, resource, {"a": 7, "b": None})
@@ -159,3 +162,15 @@ def test_several_threads_are_no_queue() -> None:
     assert find_queue(ON_CORE, replace(TIMER, callback_group=None), threads=3) is None
     assert find_queue(ON_CORE, replace(TIMER, callback_group=None), threads=None) is None
     assert find_queue(ON_CORE, threads=None) is not None
+
+
+@pytest.mark.parametrize(
+    ("order", "is_queued"), [("fifo", False), ("edf", False), ("non_preemptive", True), ("fixed_priority", False)]
+)
+def test_messages_to_be_stored_hold_up_a_thread_unless_it_keeps_the_core(
+    order: SchedulingOrder,
+    is_queued: bool,  # noqa: FBT001
+) -> None:
+    """A thread that stores a message takes its turn with that, before the activation that is due."""
+    assert (find_queue(ON_CORE, replace(TIMER, storing={"x": stores()}), order=order) is not None) is is_queued
+    assert (find_queue(ON_CORE, order=order) is not None) is (order != "fixed_priority")

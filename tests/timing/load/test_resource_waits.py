@@ -76,6 +76,20 @@ def test_load_of_a_gpu(uses: tuple[int, int], verdict: str) -> None:
     assert ("overload" in analysis.responses["a"].worst.assumptions) == (verdict == "overload")
 
 
+@pytest.mark.parametrize(("threads", "is_full"), [(1, True), (2, False)])
+def test_a_thread_that_has_more_to_do_than_it_can_is_overloaded(threads: int, is_full: object) -> None:
+    """Twice 5 + 6 ms each 20 ms: too much for one thread, though neither for the core nor for the GPU."""
+    users = [_user(name, 20, 5, 6, container="box") for name in "ab"]
+    worst = analyse_system(replace(_system(*users), threads={"box": threads})).responses["a"].worst
+    assert ("overload" in worst.assumptions) is is_full
+
+
+def test_a_core_that_waits_and_work_fill_wholly_gives_no_bound_to_who_waits() -> None:
+    """Half of 20 ms is that of `a` with its use of the GPU, the other half that of `b`."""
+    of = _system(_user("a", 20, 5, 5, priority=1), timed("b", 20, 10, host="pc", priority=2))
+    assert _responses(of) == {"a": None, "b": 10}
+
+
 def test_what_a_waiting_thread_fires_is_bounded_too() -> None:
     """`b` is fired by the end of `a`, which may come R - B later than it might."""
     of = _system(_user("a", 100, 5, 20), event("b", 3, "a", host="pc"), arcs=[arc("a", "b")])

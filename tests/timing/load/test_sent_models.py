@@ -9,8 +9,8 @@ from archgen.timing.load.link_queueing import settle_links
 from archgen.timing.load.sent_models import sent_model
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.timing_system import calls_per_activation
-from tests.timing.printed import MS
-from tests.timing.sketches import read_sketch
+from tests.timing.printed import MS, show_ms
+from tests.timing.sketches import analyse_sketch, read_sketch
 
 
 def _sent(role: str, client: str, server: str, latency: str) -> list[str]:
@@ -29,6 +29,7 @@ def _sent(role: str, client: str, server: str, latency: str) -> list[str]:
     ]
 
 
+PERIODIC = "period: 100 ms"
 BOTH, LATENCY = "wcet: 1 ms, bcet: 1 ms", ", latency: {best: 1 ms, worst: 4 ms}"
 
 
@@ -73,3 +74,15 @@ def test_one_call_an_activation_unless_more_are_written() -> None:
     requests = [arc for arc in system.arcs if arc.role == "request"]
     counts = {arc.source: calls_per_activation(system.activities[arc.source], arc) for arc in requests}
     assert counts == {"a": 0.5, "b": 1}
+
+
+def test_what_leaves_a_core_comes_as_much_later_as_the_run_to_it_may_take() -> None:
+    """The 10 ms of `c` hold up `a` or `b`, but not both: 15 ms at most and 5 at least, and not 12 - 2 and 13 - 3 more."""
+    nodes = {
+        "a @pc": f"{PERIODIC}, wcet: 2 ms, bcet: 2 ms, priority: 2",
+        "b @pc": "behaviour: event, wcet: 3 ms, bcet: 3 ms, priority: 1",
+        "c @pc": f"{PERIODIC}, wcet: 10 ms, priority: 3",
+        "d @q": "behaviour: event, wcet: 1 ms",
+    }
+    rest = "hosts: {pc: {cores: 1}, q: {cores: 1}}\nlinks: {lan: {connects: [pc, q], latency: 0 ms}}"
+    assert show_ms(analyse_sketch(nodes, "a>b b>d", rest).paces["d"].jitter) == "10"

@@ -28,3 +28,22 @@ def test_what_holds_up_storing_ends_with_an_activation_that_comes_too_soon() -> 
         "B = 0 ms: no other thread has work, which cannot keep 2 cores busy all at once",
         "32 ms + 0 ms = 32 ms, A + B until then",
     ]
+
+
+def test_what_works_only_at_the_start_says_so() -> None:
+    """In a thread of two, and beside two threads of their own: 9 ms, and (1 + 1) / 2 ms of others."""
+    nodes = {
+        "o +box": "behaviour: once, wcet: 5 ms",
+        "a +box": "period: 20 ms, wcet: 4 ms",
+        "b @pc": "period: 20 ms, wcet: 6 ms",
+        "c @pc": "behaviour: event, wcet: 1 ms",
+    }
+    rest = "hosts: {pc: {cores: 2}}\ncontainers: {box: {threads: 1, host: pc}}"
+    lines = [line.text for line in explain_word(analyse_sketch(nodes, "b>c", rest), {}, "o")]
+    assert lines[-5:] == [
+        "1 x 5 ms o = 5 ms, at the start",
+        "A = 4 ms + 5 ms = 9 ms",
+        "1 x (6 ms b + 1 ms c) = 7 ms, since ceil(10 ms / 20 ms) = 1, events of b",
+        "B = (1 ms b + 1 ms c) / 2 = 1 ms, what each of 2 other threads has to do, but none for longer than B: b (6 ms)",
+        "9 ms + 1 ms = 10 ms, A + B",
+    ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from archgen.timing.load.busy_windows import (
@@ -17,6 +19,8 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.event_streams import EventStream
+from archgen.timing.load.level_cascades import GateRule, Origin
+from archgen.timing.load.work_terms import CountFormulas, EventCount
 
 WHOLE = 2**64
 PLAIN, LATE = EventStream(10), EventStream(10, 25)
@@ -135,3 +139,16 @@ def test_the_worst_activation_is_not_the_first() -> None:
     """
     interference = GrowingLoad([ActivityWork(26, (EventStream(70),))]).demand_function()
     assert worst_response(ActivityWork(62, (EventStream(100),)), interference, SearchBudget()) == 118
+
+
+@pytest.mark.parametrize(
+    ("every", "calls", "count"),
+    [
+        (1, Fraction(1), EventCount(5, "5")),
+        (2, Fraction(1), EventCount(3, "ceil((5) / 2)")),
+        (1, Fraction(1, 2), EventCount(3, "ceil(0.5 x (5))")),
+    ],
+)
+def test_what_a_gate_lets_through_is_written_as_it_is_counted(every: int, calls: Fraction, count: EventCount) -> None:
+    rule = GateRule(({Origin("activity", "s"): 1},), every, calls=calls)
+    assert CountFormulas(Fraction(10**6)).count_gate(rule, [EventCount(5, "5")], 10) == count

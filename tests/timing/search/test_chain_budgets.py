@@ -103,6 +103,37 @@ def test_each_host_has_a_factor_of_its_own() -> None:
             )
 
 
+def test_a_share_is_that_of_the_owner_of_the_node_and_else_of_its_component() -> None:
+    text = """
+partners: {vega: Vega, kite: Kite}
+groups:
+  g:
+    owner: vega
+    components:
+      a: {outputs: {out: Data}, timing: {period: 100 ms, wcet: 1 ms}}
+      b: {inputs: {a: a.out}, timing: {behaviour: event, wcet: 2 ms}}
+nodes:
+  a: {implements: a, host: p}
+  b: {implements: b, host: p, owner: kite}
+types: {Data: {message: std_msgs/msg/String}}
+hosts: {p: {cores: 1}}
+chains: {c: {through: [a, b], deadline: 200 ms}}
+"""
+    trials = start_trials(architecture(text))
+    shares = share_chain_budget(trials, trials.bound_chain("c")).shares
+    assert [(share.activity, share.owners) for share in shares] == [("a", ("vega",)), ("b", ("kite",))]
+
+
+@pytest.mark.parametrize(("deadline", "factor"), [("100060 us", Fraction(1, 1000)), ("100040 us", None)])
+def test_a_factor_is_at_least_a_thousandth(deadline: str, factor: Fraction | None) -> None:
+    """100 ms, and so many thousandths of 10 + 40 ms."""
+    nodes = {"a": "period: 100 ms, wcet: 10 ms", "b": "behaviour: event, wcet: 40 ms"}
+    trials = start_trials(
+        architecture(sketch(nodes, "a>b", f"chains: {{c: {{through: [a, b], deadline: {deadline}}}}}"))
+    )
+    assert share_chain_budget(trials, trials.bound_chain("c")).factor == factor
+
+
 def test_a_neighbour_that_cannot_make_the_chain_late_is_left_out() -> None:
     assert "idle" not in {figure.activity for figure in _find_budget("300 ms").figures}
 

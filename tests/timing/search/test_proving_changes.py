@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.timing.search.change_trials import TriedChange
+from archgen.timing.search.change_trials import TriedChange, TriesSpentError
 from archgen.timing.search.proving_changes import ChainRemedy, find_remedies
 from tests.timing.random_systems import architecture
 from tests.timing.search.trials import bound_with, start_trials
@@ -140,6 +140,24 @@ def test_tries_are_counted_and_the_same_each_time() -> None:
     remedies = [_find_remedy(text, tries) for tries in (60, 60)]
     assert remedies[0] == remedies[1]
     assert [str(change) for change in remedies[0].changes] == changes
+
+
+def test_an_analysis_is_one_try_and_what_was_tried_is_none() -> None:
+    trials = start_trials(architecture(PROJECTS["a rate"][0]), tries=10)
+    change = (TriedChange("a", "timing.period", "88ms"),)
+    tries_left = [trials.tries_left]
+    for changes in ((), change, change):
+        trials.find_slack("c", changes)
+        trials.bound_chain("c", changes)
+        tries_left.append(trials.tries_left)
+    assert tries_left == [10, 10, 9, 9]
+
+
+def test_no_more_is_tried_than_is_allowed() -> None:
+    trials = start_trials(architecture(PROJECTS["a rate"][0]), tries=1)
+    trials.bound_chain("c", (TriedChange("a", "timing.period", "88ms"),))
+    with pytest.raises(TriesSpentError):
+        trials.bound_chain("c", (TriedChange("a", "timing.period", "87ms"),))
 
 
 def test_a_chain_that_is_met_or_open_or_too_late_at_best_is_not_looked_at() -> None:

@@ -138,6 +138,8 @@ def defined(text: str, distro: str = "jazzy") -> Interfaces:
         ("bool a; geometry_msgs/Point[2] p", 4 + 8 + 48, True, "computed from its definition"),
         ("std_msgs/Empty[3] e", 4 + 3, True, "computed from its definition"),
         ("uint8[1000000000000] a", 4 + 10**12, True, "computed from its definition"),
+        ("uint8[9223372036854775807] a", 4 + 2**63 - 1, True, "computed from its definition"),
+        ("uint8[9223372036854775808] a", None, False, "`demo_msgs/msg/A` would be larger than any message can be"),
         ("string<=10 a", 4 + 4 + 11, False, "computed from its definition, which bounds the field `a`"),
         ("wstring<=10 a", 4 + 4 + 40, False, "computed from its definition, which bounds the field `a`"),
         ("uint8 x; float64[<=3] a", 4 + 8 + 24, False, "computed from its definition, which bounds the field `a`"),

@@ -1,0 +1,202 @@
+"""How responses in queues come about: by hand, in ms."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.event_streams import EventStream, EventStreams
+from archgen.timing.load.queue_orders import QueuedTask
+from archgen.timing.load.queue_responses import CoreQueue, QueueOrder
+from archgen.timing.load.queue_workings import list_queue_workings
+from archgen.timing.load.work_terms import CountFormulas
+
+A = QueuedTask("a", 3, (), priority=2, deadline=20, rank=0)
+B = QueuedTask("b", 5, (), priority=1, deadline=90)
+C = QueuedTask("c", 2, (), priority=3, deadline=30)
+LATE = QueuedTask("late", 4, (), rank=2)
+"""Without a priority, and without a deadline."""
+BURST = (EventStream(20, 19),)
+"""Two may come within 1 ms."""
+MODELS: dict[str, EventStreams | UnknownCause] = {
+    "a": (EventStream(10),),
+    "b": (EventStream(40),),
+    "c": (EventStream(20, 5),),
+    "late": (EventStream(100),),
+}
+
+
+def explain(queue: CoreQueue, name: str, models: dict[str, EventStreams | UnknownCause]) -> list[str]:
+    """Return the response that the analysis finds, and the work that gives it; empty where nothing does."""
+    response = queue.bound_responses(models.__getitem__, 1000, SearchBudget())[name]
+    (working,) = list_queue_workings(queue, models.__getitem__, name, response, CountFormulas(Fraction(10**6)))
+    assert (working.is_consistent, working.is_queue) == (True, True)
+    assert all(term.events.formula == str(term.events.number) for term in working.terms if term.reason == "its own")
+    terms = [
+        f"{term.events.number} x {' + '.join(f'{cost} {part}' for part, cost in term.parts)}, {term.reason}"
+        for term in working.terms
+    ]
+    return [f"{working.window} - {working.arrival} = {response}", *terms]
+
+
+@pytest.mark.parametrize(
+    ("order", "is_core", "name", "lines"),
+    [
+        (
+            "fifo",
+            False,
+            "b",
+            [
+                "10 - 0 = 10",
+                "1 x 3 a, those that come until 0 ms",
+                "1 x 5 b, those that come until 0 ms",
+                "1 x 2 c, those that come until 0 ms",
+            ],
+        ),
+        (
+            "non_preemptive",
+            True,
+            "a",
+            [
+                "10 - 0 = 10",
+                "1 x 5 b, which may just have begun",
+                "1 x 3 a, its own",
+                "1 x 2 c, those that come until 7 ms",
+            ],
+        ),
+        (
+            "non_preemptive",
+            True,
+            "b",
+            [
+                "10 - 0 = 10",
+                "1 x 5 b, its own",
+                "1 x 3 a, those that come until 5 ms",
+                "1 x 2 c, those that come until 5 ms",
+            ],
+        ),
+        ("non_preemptive", True, "c", ["7 - 0 = 7", "1 x 5 b, which may just have begun", "1 x 2 c, its own"]),
+        ("edf", True, "a", ["3 - 0 = 3", "1 x 3 a, its own"]),
+        (
+            "edf",
+            True,
+            "b",
+            [
+                "10 - 0 = 10",
+                "1 x 5 b, its own",
+                "1 x 3 a, those that come until 9 ms",
+                "1 x 2 c, those that come until 9 ms",
+            ],
+        ),
+        ("edf", True, "c", ["5 - 0 = 5", "1 x 2 c, its own", "1 x 3 a, those that come until 4 ms"]),
+        ("edf", False, "a", ["8 - 0 = 8", "1 x 3 a, its own", "1 x 5 b, which may just have begun"]),
+        (
+            "edf",
+            False,
+            "b",
+            [
+                "10 - 0 = 10",
+                "1 x 5 b, its own",
+                "1 x 3 a, those that come until 5 ms",
+                "1 x 2 c, those that come until 5 ms",
+            ],
+        ),
+        (
+            "ros2_executor",
+            False,
+            "c",
+            ["30 - 0 = 30", "2 x 3 a + 5 b + 2 c, in the rounds before", "1 x 3 a + 5 b + 2 c, in its own round"],
+        ),
+    ],
+)
+def test_the_work_before_the_end_of_an_activation_is_listed(
+    order: QueueOrder,
+    is_core: bool,  # noqa: FBT001
+    name: str,
+    lines: list[str],
+) -> None:
+    assert explain(CoreQueue(order, is_core, (A, B, C)), name, MODELS) == lines
+
+
+@pytest.mark.parametrize(
+    ("order", "is_core", "lines"),
+    [
+        ("fifo", False, ["11 - 1 = 10", "2 x 3 a, those that come until 1 ms", "1 x 5 b, those that come until 1 ms"]),
+        ("non_preemptive", True, ["11 - 1 = 10", "1 x 5 b, which may just have begun", "2 x 3 a, its own"]),
+        ("edf", True, ["6 - 1 = 5", "2 x 3 a, its own"]),
+        ("edf", False, ["11 - 1 = 10", "2 x 3 a, its own", "1 x 5 b, which may just have begun"]),
+    ],
+)
+def test_the_second_of_two_that_come_together_waits_for_the_first(
+    order: QueueOrder,
+    is_core: bool,  # noqa: FBT001
+    lines: list[str],
+) -> None:
+    assert explain(CoreQueue(order, is_core, (A, B)), "a", MODELS | {"a": BURST}) == lines
+
+
+def test_what_has_no_priority_or_deadline_is_behind_all_by_priority_and_may_be_first_by_deadlines() -> None:
+    tasks = (A, LATE)
+    assert explain(CoreQueue("non_preemptive", is_core=True, tasks=tasks), "a", MODELS) == [
+        "7 - 0 = 7",
+        "1 x 4 late, which may just have begun",
+        "1 x 3 a, its own",
+    ]
+    assert explain(CoreQueue("edf", is_core=True, tasks=tasks), "a", MODELS) == [
+        "7 - 0 = 7",
+        "1 x 3 a, its own",
+        "1 x 4 late, those that come until 6 ms",
+    ]
+
+
+def test_of_one_priority_each_may_be_first() -> None:
+    equal = B._replace(priority=2)
+    assert explain(CoreQueue("non_preemptive", is_core=True, tasks=(A, equal)), "a", MODELS) == [
+        "8 - 0 = 8",
+        "1 x 3 a, its own",
+        "1 x 5 b, those that come until 5 ms",
+    ]
+
+
+def test_of_one_deadline_each_may_be_first() -> None:
+    equal = B._replace(deadline=20)
+    assert explain(CoreQueue("edf", is_core=False, tasks=(A, equal)), "a", MODELS) == [
+        "8 - 0 = 8",
+        "1 x 3 a, its own",
+        "1 x 5 b, those that come until 0 ms",
+    ]
+
+
+def test_what_comes_in_a_round_that_it_is_part_of_has_no_round_before_it() -> None:
+    queue = CoreQueue("ros2_executor", is_core=False, tasks=(A, B))
+    (working,) = list_queue_workings(queue, MODELS.__getitem__, "a", 3, CountFormulas(Fraction(10**6)))
+    assert [term.reason for term in working.terms] == ["in its own round"]
+
+
+def test_a_round_ends_with_what_has_the_same_rank() -> None:
+    """Timers come first in a round: `a` waits for a whole round, and works first in its own."""
+    queue = CoreQueue("ros2_executor", is_core=False, tasks=(A._replace(entities=1), LATE))
+    assert explain(queue, "a", MODELS | {"a": (EventStream(50),)}) == [
+        "10 - 0 = 10",
+        "1 x 3 a + 4 late, in the rounds before",
+        "1 x 3 a, in its own round",
+    ]
+
+
+@pytest.mark.parametrize("order", ["fifo", "non_preemptive", "edf", "ros2_executor"])
+def test_what_gives_no_such_response_is_not_listed(order: QueueOrder) -> None:
+    """Nor what is not in the queue, has no events, or has no deadline where these count."""
+    queue, formulas = CoreQueue(order, is_core=True, tasks=(A, B, LATE)), CountFormulas(Fraction(10**6))
+
+    def list_workings(name: str, response: int, models: dict[str, EventStreams | UnknownCause]) -> list[object]:
+        return list(list_queue_workings(queue, models.__getitem__, name, response, formulas))
+
+    assert list_workings("a", 2, MODELS) == list_workings("a", 4, MODELS) == []
+    assert list_workings("c", 10, MODELS) == []
+    assert list_workings("a", 3, MODELS | {"a": UnknownCause(("a",))}) == []
+    assert list_workings("a", 3, MODELS | {"a": ()}) == []
+    if order == "edf":
+        assert list_workings("late", 4, MODELS) == []
