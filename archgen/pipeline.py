@@ -20,6 +20,7 @@ from archgen.diagnostics.source_span import SourceTexts
 from archgen.findings import error_aftermath, finding_limit, ignore_comments, option_settings, rule_table
 from archgen.frozen import dataclass
 from archgen.link import (
+    chapter_pictures,
     interface_sources,
     parameter_files,
     report_chapters,
@@ -220,6 +221,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     architecture = transform.transform_architecture(linked_architecture)
     analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
+    missing_pictures = chapter_pictures.find_missing_pictures(
+        project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
+    )
     # A project of one file is a whole: like its `sources`, what it names lies elsewhere.
     is_folder = loaded_project.first_file == project.PROJECT_FILE
     missing_files = (
@@ -237,6 +241,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *merge_findings,
         *interface_findings,
         *chapter_findings,
+        *missing_pictures,
         *missing_files,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules
