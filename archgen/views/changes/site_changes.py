@@ -54,12 +54,17 @@ class SiteChanges:
 
     @cached_property
     def changes_by_page(self) -> Mapping[str, tuple[Change, ...]]:
-        """The changes of each page's element and its ports, by the page's anchor; removed elements have no page."""
+        """The changes of each page's element and its ports, by the page's anchor; removed elements have no page.
+
+        What partners give each other has those of its output, as `interface:OUTPUT`.
+        """
         changes_by_page: dict[str, list[Change]] = {}
         for change in self.comparison.changes:
             anchor = _find_page(change)
             if anchor:
                 changes_by_page.setdefault(anchor, []).append(change)
+            if change.element_kind == "output":
+                changes_by_page.setdefault(f"interface:{change.element_id}", []).append(change)
         return {anchor: tuple(changes) for anchor, changes in changes_by_page.items()}
 
     @cached_property
@@ -93,6 +98,11 @@ def _find_page(change: Change) -> str:
     return f"{change.element_kind}:{change.element_id}" if change.element_kind in _PAGE_KINDS and not is_gone else ""
 
 
+def _name_changes(page: Page) -> str:
+    """Return the name that the changes of a page have: its anchor, without the two partners of an interface."""
+    return page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
+
+
 def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
     """Say how an element changed as a whole: what happens to its ports changes it."""
     own_kinds = {
@@ -110,9 +120,10 @@ def mark_page(page: Page, site_changes: SiteChanges) -> Page:
     section = page.section
     if page.kind in _LISTING_KINDS:
         section = _mark_lists(section, site_changes.kinds)
-    kind = site_changes.kinds.get(page.anchor)
+    anchor = _name_changes(page)
+    kind = site_changes.kinds.get(anchor)
     if kind is not None:
-        table = _compare_versions(page.anchor, site_changes)
+        table = _compare_versions(anchor, site_changes)
         section = replace(section, blocks=(*((table,) if table else ()), *section.blocks))
         page = replace(page, verdict=(*page.verdict, *_make_chip(kind, site_changes.since)))
     is_changed = page.is_changed or kind is not None or page.anchor in site_changes.changed_groups
