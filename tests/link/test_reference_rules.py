@@ -13,5 +13,6 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "ambiguous-reference": ("error", True),
         "hidden-reference": ("warning", False),
         "missing-chapter": ("error", True),
+        "missing-picture": ("warning", False),
         "missing-parameter-file": ("warning", False),
     }
