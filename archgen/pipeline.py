@@ -28,6 +28,7 @@ from archgen.findings import (
 from archgen.frozen import dataclass
 from archgen.link import (
     element_outline,
+    chapter_pictures,
     interface_sources,
     parameter_files,
     parameter_reading,
@@ -250,6 +251,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     architecture = transform.transform_architecture(read_parameters.architecture)
     analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
+    missing_pictures = chapter_pictures.find_missing_pictures(
+        project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
+    )
     missing_files = (
         tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
     )
@@ -265,6 +269,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *merge_findings,
         *interface_findings,
         *chapter_findings,
+        *missing_pictures,
         *missing_files,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(

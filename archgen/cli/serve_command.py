@@ -30,8 +30,23 @@ DEFAULT_PORT = 8470
     help="The port to listen at; 0 takes one that is free.",
 )
 @click.option("--open", "opens", is_flag=True, help="Open the start page in the browser.")
+@shared_options.select_option
 @shared_options.level_option
-def command(*, project: Path | None, host: str, port: int, opens: bool, level: DetailLevel | None) -> None:
+@click.option(
+    "--since",
+    metavar="REV",
+    help="Show what changed since a version (as `archgen diff` takes it), which is read once, at the start.",
+)
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    host: str,
+    port: int,
+    opens: bool,
+    select: str | None,
+    level: DetailLevel | None,
+    since: str | None,
+) -> None:
     """Show the site of PROJECT in the browser, and each saved file at once.
 
     Nothing is written. Errors stand on the page until they are mended. Only this machine can see it unless --host says
@@ -41,9 +56,9 @@ def command(*, project: Path | None, host: str, port: int, opens: bool, level: D
     from archgen.project import ProjectNotFoundError
     from archgen.serve.live_site import LiveSite
 
-    options = OutputOptions(level=level, warn=command_support.print_warning)
+    options = OutputOptions(selector_text=select or "", level=level, warn=command_support.print_warning)
     try:
-        live_site = LiveSite(project, options)
+        live_site = LiveSite(project, options, since)
     except ProjectNotFoundError as error:
         raise click.UsageError(str(error)) from None
     server = _open_port(live_site, host, port)
@@ -79,7 +94,7 @@ def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     serving = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.2}, daemon=True)
     try:
-        live_site.start()
+        _start_site(live_site)
         serving.start()
         _print_state(live_site)
         click.echo(f"serving {live_site.title} at {server.url}  (Ctrl-C ends it)")
@@ -96,6 +111,18 @@ def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
         if serving.is_alive():
             server.shutdown()
         server.server_close()
+
+
+def _start_site(live_site: LiveSite) -> None:
+    """Read the project. What is not there to select, or to compare with, is wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.serve.project_state import SelectionError
+
+    try:
+        with command_support.explain_missing_versions():
+            live_site.start()
+    except SelectionError as error:
+        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _print_state(live_site: LiveSite) -> None:

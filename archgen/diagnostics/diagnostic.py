@@ -106,7 +106,7 @@ class Rule:
     fixed: bool = False
     options: tuple[RuleOption, ...] = ()
     setting: str = ""
-    """The line of archgen.yaml that sets the severity, where that is not an entry below `rules`."""
+    """The line of archgen.yaml that sets the severity, where no comment can, or where it is no entry below `rules`."""
 
     @classmethod
     def from_function(

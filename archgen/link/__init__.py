@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.link import composition_rules, reference_rules, slice_merging
+from archgen.link.chapter_pictures import MISSING_PICTURE
 from archgen.link.data_types import type_rules
 from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
@@ -16,6 +17,7 @@ RULES = (
     *type_rules.RULES,
     DUPLICATE_FRAME,
     MISSING_CHAPTER,
+    MISSING_PICTURE,
     MISSING_PARAMETER_FILE,
 )
 

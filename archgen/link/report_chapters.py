@@ -7,6 +7,7 @@ import binascii
 import posixpath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 from urllib.parse import unquote
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
@@ -94,8 +95,8 @@ class ReportChapters:
         """Return the paths of all pictures that the chapters show; some may be absent."""
         paths: dict[str, None] = {}
         for chapter in self.texts.values():
-            for name in find_shown_pictures(chapter.text):
-                normal_path = posixpath.normpath(posixpath.join(chapter.folder, name))
+            for picture in find_shown_pictures(chapter.text):
+                normal_path = posixpath.normpath(posixpath.join(chapter.folder, picture.path))
                 paths[normal_path] = None
                 if normal_path.endswith(".svg"):
                     # Programs that cannot show SVG use a PNG of the same name instead.
@@ -108,16 +109,25 @@ class ReportChapters:
         return {path: data for path, data in pictures.items() if data is not None}
 
 
-def find_shown_pictures(markdown: str) -> Iterator[str]:
-    """Yield the paths of the pictures in a Markdown text, percent-decoded, without those with a scheme (`https:`)."""
+class ShownPicture(NamedTuple):
+    """A picture in a Markdown text: its path, percent-decoded, and the lines (from 1, the end exclusive) of its block."""
+
+    path: str
+    first_line: int
+    end_line: int
+
+
+def find_shown_pictures(markdown: str) -> Iterator[ShownPicture]:
+    """Yield the pictures in a Markdown text, without those with a scheme (`https:`)."""
     from markdown_it import MarkdownIt
 
     for block in MarkdownIt("commonmark", {"html": False}).parse(markdown):
+        first_line, end_line = block.map or (0, 0)
         # Pictures are inline tokens, which markdown-it keeps one level below the blocks.
         for token in block.children or ():
             address = str(token.attrs.get("src", "")) if token.type == "image" else ""
             if address and ":" not in address.split("/", 1)[0]:
-                yield unquote(address)
+                yield ShownPicture(unquote(address), first_line + 1, end_line + 1)
 
 
 def read_chapters(root: MappingNode, files: ProjectFiles) -> tuple[ReportChapters, tuple[Diagnostic, ...]]:
@@ -151,6 +161,13 @@ def read_chapters(root: MappingNode, files: ProjectFiles) -> tuple[ReportChapter
     pictures = dict(_decode_pictures(report.get("pictures")))
     settings = read_report_settings(root)
     return ReportChapters(files, chapter_order, texts, pictures, settings), tuple(diagnostics)
+
+
+def locate_packed_texts(root: MappingNode) -> dict[str, Span]:
+    """Return the places of the chapters' texts that a packed project holds itself, by chapter."""
+    report = root.get("report")
+    texts = report.get("texts") if isinstance(report, MappingNode) else None
+    return {entry.key: entry.key_span for entry in (texts if isinstance(texts, MappingNode) else ())}
 
 
 def _list_texts(node: object) -> Iterator[tuple[str, str]]:

@@ -144,13 +144,25 @@ def compare_since(revision: str, path: Path | None, checked_project: CheckedProj
 
     Raise `git.GitError` and `project.ProjectNotFoundError`.
     """
+    return list_changes_since(read_version_before(revision, path, checked_project), checked_project)
+
+
+def read_version_before(revision: str, path: Path | None, checked_project: CheckedProject) -> ProjectVersion:
+    """Read an earlier version of a project. Raise `git.GitError` and `project.ProjectNotFoundError`."""
     from archgen.pipeline import VersionCache
+    from archgen.products import compared_versions
+
+    new_version = ProjectVersion(WORKING_TREE_NAME, checked_project)
+    return compared_versions.read_earlier_version(revision, path, VersionCache(), new_version)
+
+
+def list_changes_since(old_version: ProjectVersion, checked_project: CheckedProject) -> SiteChanges:
+    """Compare a project with an earlier version of itself, for its site."""
     from archgen.products import compared_versions
     from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.graphs import changes as pictures
 
     new_version = ProjectVersion(WORKING_TREE_NAME, checked_project)
-    old_version = compared_versions.read_earlier_version(revision, path, VersionCache(), new_version)
     comparison = compared_versions.compare_named_versions(old_version, new_version)
     document = describe_versions(comparison, old_version, new_version, pictures.draw_changes(comparison))
     return SiteChanges(comparison, document, old_version.name)

@@ -3,104 +3,38 @@
 from __future__ import annotations
 
 import gc
-import json
 import secrets
 import threading
 import time
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 
 from archgen.emit import site
 from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.explorer_files import EXPLORER_ANCHOR, build_explorer_files
-from archgen.emit.site.matrix_files import build_matrix_files
-from archgen.emit.site.page_links import open_page, renew_ids
-from archgen.emit.site.search_files import build_search_files
+from archgen.emit.site.explorer_files import EXPLORER_ANCHOR
+from archgen.emit.site.page_links import renew_ids
 from archgen.pipeline import CheckedProject, VersionCache, check_project
+from archgen.products.compared_versions import ProjectVersion
+from archgen.products.comparison_documents import read_version_before
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.project.project_search import PROJECT_FILE, find_project
 from archgen.resources import resource_path
-from archgen.serve.error_notes import ErrorNote, list_error_notes
+from archgen.serve.error_notes import list_error_notes
 from archgen.serve.file_watch import WatchedPlaces, join_paths
 from archgen.serve.live_pictures import LivePictures
-from archgen.serve.project_state import ProjectState, make_state, renew_history
-from archgen.views.explorer import make_explorer_map
+from archgen.serve.live_status import LiveStatus
+from archgen.serve.project_state import ProjectState, SelectionError, make_state, renew_changes, renew_history
+from archgen.serve.site_index import SiteIndex, list_figures, make_index
 from archgen.views.pages.report_outline import make_notices
 from archgen.views.pages.single_page import make_page
-from archgen.views.pages.site_pages import make_pages
-from archgen.views.search import make_search_entries
-from archgen.views.shapes import Figure, Page, Section
+from archgen.views.shapes import Page
 
 _IDLE_TIME = 0.4
 """Seconds without a change after which the whole site is made anew: until then a reader's page comes first. Where that took
 long the last time, as long again: it would hold up the next change.
 """
-
-
-@dataclass(frozen=True)
-class SiteIndex:
-    """All pages of one state: which there are, what leads where, and what the search finds."""
-
-    state: ProjectState
-    frame: site.SiteFrame
-    pages: Mapping[str, Page]
-    """By their paths."""
-
-    @cached_property
-    def search_files(self) -> Mapping[str, bytes]:
-        """The files of the search, by their paths."""
-        entries = make_search_entries(self.state.lookup, tuple(self.pages.values()))
-        return dict(build_search_files(entries, self.frame.links))
-
-    @cached_property
-    def map_files(self) -> Mapping[str, bytes]:
-        """The files with what the explorer shows, by their paths."""
-        return build_explorer_files(make_explorer_map(self.state.lookup), self.frame.links)
-
-    @cached_property
-    def matrix_files(self) -> Mapping[str, bytes]:
-        """The files of all matrices, by their paths."""
-        links = self.frame.links
-        return {
-            name: data
-            for path, page in self.pages.items()
-            if page.matrix
-            for name, data in build_matrix_files(page.matrix, open_page(path, links))
-        }
-
-    def find_data_file(self, path: str) -> bytes | None:
-        """Return a file that the scripts of pages read, None where there is none of this path."""
-        if path.startswith("assets/search/"):
-            return self.search_files.get(path)
-        return self.map_files.get(path) if path.startswith("assets/explorer/") else self.matrix_files.get(path)
-
-
-@dataclass(frozen=True, slots=True)
-class LiveStatus:
-    """What readers are told: which version there is to see, and what is wrong in the files."""
-
-    version: str = ""
-    shown_since: str = ""
-    """The time of day (`14:02:11`) of the state that is shown."""
-    errors: tuple[ErrorNote, ...] = ()
-    further_errors: int = 0
-    is_outdated: bool = False
-    """Whether the files as they are cannot be shown, so that an older state is."""
-
-    def to_json(self) -> str:
-        """Return the status as one line."""
-        fields = {
-            "version": self.version,
-            "since": self.shown_since,
-            "errors": self.errors,
-            "further": self.further_errors,
-            "outdated": self.is_outdated,
-        }
-        return json.dumps(fields, ensure_ascii=True)
 
 
 @dataclass(slots=True)
@@ -110,7 +44,7 @@ class _Shared:
     changed: threading.Condition = field(default_factory=threading.Condition)
     state: ProjectState | None = None
     index: SiteIndex | None = None
-    status: LiveStatus = LiveStatus()
+    status: LiveStatus = field(default_factory=LiveStatus)
     last_change: float = 0.0
     is_stopped: bool = False
 
@@ -118,10 +52,14 @@ class _Shared:
 class LiveSite:
     """The site of the project at a path. Call `start`, then `refresh` whenever files have changed, and `stop` at the end."""
 
-    def __init__(self, path: Path | None, options: OutputOptions) -> None:
-        """Read nothing yet. Raise `ProjectNotFoundError` if there is no project."""
+    def __init__(self, path: Path | None, options: OutputOptions, since: str | None = None) -> None:
+        """Read nothing yet. Raise `ProjectNotFoundError` if there is no project.
+
+        `since` is a version: the site shows what changed since. It is read once, by `start`.
+        """
         self._root, self._first_file = find_project(path)
-        self._path, self._options = path, options
+        self._path, self._options, self._since = path, options, since
+        self._old_version: ProjectVersion | None = None
         self._cache = VersionCache()
         self._shared = _Shared()
         self._index_lock = threading.Lock()
@@ -137,9 +75,16 @@ class LiveSite:
         """The project as it was read last, sound or not."""
 
     def start(self) -> None:
-        """Read the project, and start to draw and to keep the whole site up to date."""
+        """Read the project, and start to draw and to keep the whole site up to date.
+
+        Raise `SelectionError`, and for a version before `git.GitError` and `ProjectNotFoundError`.
+        """
         self._pictures.start()
         self.refresh()
+        state = self._shared.state
+        if self._since and state is not None:
+            self._old_version = read_version_before(self._since, self._path, state.checked_project)
+            self._shared.state = renew_changes(state, self._options, self._old_version)
         threading.Thread(target=self._keep_index, daemon=True).start()
 
     def stop(self) -> None:
@@ -181,8 +126,15 @@ class LiveSite:
         self._forget_old_slices(checked_project)
         is_sound = not checked_project.structural_errors
         last_state = self._shared.state
-        # Without any sound state before, what is sound of this one is better than nothing.
-        state = make_state(checked_project, self._options, last_state) if is_sound or last_state is None else last_state
+        try:
+            # Without any sound state before, what is sound of this one is better than nothing.
+            is_new = is_sound or last_state is None
+            state = make_state(checked_project, self._options, last_state) if is_new else last_state
+        except SelectionError as error:
+            if last_state is None:
+                raise
+            self._tell_failure(str(error))
+            return
         errors, further_errors = list_error_notes(checked_project)
         with self._shared.changed:
             self._shared.last_change = time.monotonic()
@@ -265,7 +217,7 @@ class LiveSite:
             notices=make_notices(state.lookup, state.edition),
             links=renew_ids(frame.links, path, page),
         )
-        drawings = [state.edition.drawings[name] for name in _list_figures(page) if name in state.edition.drawings]
+        drawings = [state.edition.drawings[name] for name in list_figures(page) if name in state.edition.drawings]
         self._picture_ids |= {page_pictures.picture_path(drawing.id): drawing.id for drawing in drawings}
         chapter_writer = ChapterWriter(state.checked_project.chapters.read_picture)
         data = site.write_page(path, page, self._pictures.find_pictures(drawings), frame, chapter_writer)
@@ -290,7 +242,7 @@ class LiveSite:
             if state is None:  # `start` has not come so far
                 raise StoppedError
             if index is None or index.state is not state:
-                self._shared.index = index = _make_index(state)
+                self._shared.index = index = make_index(state)
             return index
 
     def _keep_index(self) -> None:
@@ -310,6 +262,8 @@ class LiveSite:
                 continue
             start = time.monotonic()
             newer_state = renew_history(state, self._options)
+            if self._old_version:
+                newer_state = renew_changes(newer_state, self._options, self._old_version)
             with self._shared.changed:
                 if self._shared.state is state:
                     self._shared.state = newer_state
@@ -328,25 +282,6 @@ class LiveSite:
 
 class StoppedError(Exception):
     """The preview ends: nothing more comes."""
-
-
-def _make_index(state: ProjectState) -> SiteIndex:
-    pages = make_pages(state.lookup, state.edition)
-    frame = site.make_frame(
-        pages, title=state.checked_project.architecture.project.title, revision=state.edition.revision, notices=()
-    )
-    return SiteIndex(state, frame, {frame.links.files[page.path]: page for page in pages})
-
-
-def _list_figures(page: Page) -> Iterator[str]:
-    """Yield the ids of the drawings that a page shows."""
-    for card in page.dashboard.cards if page.dashboard else ():
-        yield from (block.graph for block in card.blocks if isinstance(block, Figure))
-    pending_sections: list[Section] = [page.section]
-    while pending_sections:
-        section = pending_sections.pop()
-        yield from (block.graph for block in section.blocks if isinstance(block, Figure))
-        pending_sections += section.sections
 
 
 def _read_live_assets() -> dict[str, bytes]:

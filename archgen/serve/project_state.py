@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from archgen.model.project_history import History
+from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views
+from archgen.products.compared_versions import ProjectVersion
+from archgen.products.comparison_documents import list_changes_since
 from archgen.products.output_options import OutputOptions
 from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import analyse_architecture
+from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.lookup import Lookup
 from archgen.views.pages.report_outline import DocumentEdition
@@ -26,12 +30,18 @@ class ProjectState:
     edition: DocumentEdition
     full_analysis: Analysis
     """The timing with all that pages show; the rules judge a part of it."""
+    selection: Selection | None = None
+    """What pages and pictures show, None for all."""
+
+
+class SelectionError(ValueError):
+    """What the selector names is not there; the message says why."""
 
 
 def make_state(checked_project: CheckedProject, options: OutputOptions, last: ProjectState | None) -> ProjectState:
-    """Make a state; what cannot have changed is taken from the last one.
+    """Make a state; what cannot have changed is taken from the last one. Raise `SelectionError`.
 
-    History and revision are those of the last one: git is asked for them by `renew_history`, when nobody waits.
+    History, revision and changes are those of the last one: `renew_history` and `renew_changes` come when nobody waits.
     """
     # The check returns the very same analysis where no figure and no place of one has changed.
     is_same_timing = (
@@ -42,17 +52,26 @@ def make_state(checked_project: CheckedProject, options: OutputOptions, last: Pr
     full_analysis = (
         last.full_analysis if last and is_same_timing else analyse_architecture(checked_project.architecture)
     )
+    selection = _select_elements(checked_project, options.selector_text)
     lookup = replace(
-        project_views.make_scoped_lookup(checked_project, options),
+        project_views.make_scoped_lookup(checked_project, replace(options, selection=selection)),
         timing=bound_chains(full_analysis, checked_project.architecture),
         repository=project_views.locate_repository(checked_project),
     )
-    history = last.edition.history if last else History()
-    return _make_with_history(checked_project, options, lookup, full_analysis, (history, _revision_of(last)))
+    last_edition = last.edition if last else DocumentEdition()
+    state = ProjectState(checked_project, lookup, last_edition, full_analysis, selection)
+    return _renew_edition(state, options, last_edition.history, last_edition.revision, last_edition.changes)
 
 
-def _revision_of(state: ProjectState | None) -> str:
-    return state.edition.revision if state else ""
+def _select_elements(checked_project: CheckedProject, selector_text: str) -> Selection | None:
+    """Return what a selector names, None for all. Raise `SelectionError`."""
+    if not selector_text:
+        return None
+    selection, problems = project_views.select_elements(checked_project, selector_text)
+    for problem in problems:
+        if problem.severity == "error":
+            raise SelectionError(f"{problem.message}; {problem.help}" if problem.help else problem.message)
+    return selection
 
 
 def renew_history(state: ProjectState, options: OutputOptions) -> ProjectState:
@@ -61,17 +80,21 @@ def renew_history(state: ProjectState, options: OutputOptions) -> ProjectState:
     revision = project_views.choose_revision(state.checked_project, options)
     if (history, revision) == (state.edition.history, state.edition.revision):
         return state
-    return _make_with_history(state.checked_project, options, state.lookup, state.full_analysis, (history, revision))
+    return _renew_edition(state, options, history, revision, state.edition.changes)
 
 
-def _make_with_history(
-    checked_project: CheckedProject,
-    options: OutputOptions,
-    lookup: Lookup,
-    full_analysis: Analysis,
-    history_and_revision: tuple[History, str],
+def renew_changes(state: ProjectState, options: OutputOptions, old_version: ProjectVersion) -> ProjectState:
+    """Return the state with what changed since an earlier version."""
+    changes = list_changes_since(old_version, state.checked_project)
+    return _renew_edition(state, options, state.edition.history, state.edition.revision, changes)
+
+
+def _renew_edition(
+    state: ProjectState, options: OutputOptions, history: History, revision: str, changes: SiteChanges | None
 ) -> ProjectState:
-    history, revision = history_and_revision
-    drawings = DrawingsOnDemand(lookup, options.level or "implementation", project_growth.make_growth_charts(history))
-    edition = project_views.make_edition(checked_project, options.level, drawings, history, revision)
-    return ProjectState(checked_project, lookup, edition, full_analysis)
+    """Return a state with its documents made anew."""
+    charts = project_growth.make_growth_charts(history)
+    level = options.level or "implementation"
+    drawings = DrawingsOnDemand(state.lookup, level, charts, state.selection, changes)
+    edition = project_views.make_edition(state.checked_project, options.level, drawings, history, revision)
+    return replace(state, edition=replace(edition, changes=changes))

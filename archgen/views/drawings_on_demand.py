@@ -8,8 +8,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Literal
 
-from archgen.model.selector_evaluation import SelectorEvaluator
+from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views import drawing_set, graphs
+from archgen.views.changes.site_changes import SiteChanges, mark_drawing
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
@@ -22,17 +23,24 @@ _WHOLE_GRAPHS = {"ros": graphs.draw_ros_graph, "hosts": graphs.draw_hosts, "fram
 
 
 class DrawingsOnDemand(Mapping[str, Drawing]):
-    """The drawings of a whole architecture by id, each made once. To go through all of them makes all."""
+    """The drawings of an architecture by id, each made once. To go through all of them makes all."""
 
     def __init__(
         self,
         lookup: Lookup,
         level: Literal["functional", "implementation"],
         further_drawings: Iterable[Drawing] = (),
+        selection: Selection | None = None,
+        changes: SiteChanges | None = None,
     ) -> None:
-        """Make nothing yet. `further_drawings` are there besides those of the architecture."""
+        """Make nothing yet. `further_drawings` are there besides those of the architecture.
+
+        Of a selection all are made with the first one: they are few. What changed is marked.
+        """
         self._lookup, self._level = lookup, level
-        self._further_drawings = {drawing.id: drawing for drawing in further_drawings}
+        self._selection, self._changes = selection, changes
+        change_graphs = changes.document.graphs if changes else ()
+        self._further_drawings = {drawing.id: drawing for drawing in (*further_drawings, *change_graphs)}
         self._made_drawings: dict[str, Drawing | None] = {}
 
     @cached_property
@@ -42,18 +50,27 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
 
     @cached_property
     def _all_drawings(self) -> dict[str, Drawing]:
-        return drawing_set.make_drawings(self._lookup, None, self._level) | self._further_drawings
+        return drawing_set.make_drawings(self._lookup, self._selection, self._level) | self._further_drawings
 
     def __getitem__(self, drawing_id: str) -> Drawing:
         """Return a drawing, made now if need be."""
         drawing = self._further_drawings.get(drawing_id)
         if drawing is None:
             if drawing_id not in self._made_drawings:
-                self._make_drawing(drawing_id)
+                self._make_drawings(drawing_id)
             drawing = self._made_drawings[drawing_id]
         if drawing is None:
             raise KeyError(drawing_id)
         return drawing
+
+    def _make_drawings(self, drawing_id: str) -> None:
+        """Make a drawing and whatever is made together with it; None is kept where there is nothing to draw."""
+        drawings = self._list_drawings(drawing_id) if self._selection is None else self._all_drawings.values()
+        changes = self._changes
+        self._made_drawings |= {
+            drawing.id: mark_drawing(drawing, changes) if changes else drawing for drawing in drawings
+        }
+        self._made_drawings.setdefault(drawing_id, None)
 
     def __iter__(self) -> Iterator[str]:
         """Go through the ids."""
@@ -63,16 +80,15 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
         """Return how many there are."""
         return len(self._all_drawings)
 
-    def _make_drawing(self, drawing_id: str) -> None:
-        """Make a drawing and whatever can only be made together with it; None is kept where there is nothing to draw."""
+    def _list_drawings(self, drawing_id: str) -> Iterator[Drawing]:
+        """Yield a drawing and whatever can only be made together with it."""
         family, _, name = drawing_id.partition("/")
         made_drawings = (
             self._make_timing_drawings(family)
             if family in {"timing", "chains", "load"}
             else (self._draw_graph(family, name),)
         )
-        self._made_drawings |= {drawing.id: drawing for drawing in made_drawings if drawing and self._is_shown(drawing)}
-        self._made_drawings.setdefault(drawing_id, None)
+        yield from (drawing for drawing in made_drawings if drawing and self._is_shown(drawing))
 
     def _is_shown(self, drawing: Drawing) -> bool:
         """Whether a drawing is not empty, and not left out at this level."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from archgen.model.architecture import Chain, Requirement
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines, Text
+from archgen.views.shapes import Inlines, Status, Text
+
+_CHAIN_STATUSES: Mapping[str, Status] = {"met": "met", "not proven": "not proven", "missed": "missed", "open": "open"}
+"""The states that are verdicts; that a chain has no deadline is none."""
 
 
 def describe_chain_state(lookup: Lookup, chain: Chain) -> str:
@@ -18,10 +21,13 @@ def describe_chain_state(lookup: Lookup, chain: Chain) -> str:
 
 
 def chain_link(lookup: Lookup, chain: Chain) -> Inlines:
-    """Link to a chain by its title, with its state behind it; a deadline that is not met stands out."""
+    """Link to a chain by its title, with its state behind it: a chip where there are such, else its words."""
     state = describe_chain_state(lookup, chain)
     link = Text(chain.title, ref=f"chain:{chain.id}")
-    return (link, Text(f" ({state})", strong=state in {"missed", "not proven"})) if state else (link,)
+    if not state:
+        return (link,)
+    status = _CHAIN_STATUSES.get(state)
+    return (link, Text(": "), Text(state, strong=state in {"missed", "not proven"}, status=status))
 
 
 def name_chain(lookup: Lookup, chain: Chain) -> str:

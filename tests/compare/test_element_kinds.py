@@ -202,6 +202,7 @@ CARD_ONLY = {
     "group": "the beginning of the id",
     "component": "the beginning of the id",
     "message": "that of the type",
+    "values": "the kind `message`",
 }
 ROBOT = """\
 archgen: 1
@@ -230,7 +231,7 @@ groups:
         timing: {rate: 10 Hz, wcet: {max: 8 ms, p50: 2 ms, measured: true}, uses: {gpu: {max: 2 ms, min: 1 ms}}, deadline: 9 ms, cores: [1, 2]}
         tags: [t]
         urls: {a: "https://a.eu"}
-        parameters: {gain: {type: float, value: 1, unit: m, range: [0, 2], choices: [1, 2], description: D, read_only: true, visibility: public, hints: {a: {b: 1}}}, side: {from: self.side}}
+        parameters: {gain: {type: float, value: 1, unit: m, range: [0, 2], choices: [1, 2], description: D, read_only: true, visibility: public, hints: {a: {b: 1}}}}
         open: [plugins]
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D}}

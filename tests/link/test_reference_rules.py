@@ -24,5 +24,6 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "unbound-generic": ("error", True),
         "duplicate-frame": ("error", True),
         "missing-chapter": ("error", True),
+        "missing-picture": ("warning", False),
         "missing-parameter-file": ("off", False),
     }

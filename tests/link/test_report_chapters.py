@@ -94,4 +94,5 @@ def test_a_picture_is_read_once(tmp_path: Path) -> None:
 
 def test_pictures_of_a_text() -> None:
     markdown = "![a](x/y%20z.png)\n\n# ![b](b.png)\n\n[no](c.png) `![d](d.png)` ![e](data:image/png;base64,x) ![f]()\n\n![g](s/a:b.png)\n\n<div>![h](h.png)</div>"
-    assert list(find_shown_pictures(markdown)) == ["x/y z.png", "b.png", "s/a:b.png", "h.png"]
+    places = [(picture.path, picture.first_line) for picture in find_shown_pictures(markdown)]
+    assert places == [("x/y z.png", 1), ("b.png", 3), ("s/a:b.png", 7), ("h.png", 9)]

@@ -9,9 +9,13 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.products import project_outputs
+from archgen.products.comparison_documents import compare_since
 from archgen.products.output_options import OutputOptions
+from archgen.products.project_views import select_elements
 from archgen.project import ProjectNotFoundError
 from archgen.serve.live_site import LiveSite
+from archgen.serve.project_state import SelectionError
+from tests.repositories import commit, git
 from tests.serve.conftest import PIXEL, ROBOT
 
 
@@ -145,3 +149,70 @@ def test_a_day_of_editing_does_not_fill_the_memory(live_site: LiveSite, robot: P
         (robot / "archgen.yaml").write_text(f"{ROBOT}# {number}\n")
         live_site.refresh()
     assert len(live_site._cache.parsed_slices) == 1  # noqa: SLF001 - nothing else shows it
+
+
+@pytest.mark.parametrize("selector", ["", "g.eye"])
+def test_changes_and_a_selection_are_served_as_they_are_written(robot: Path, tmp_path: Path, selector: str) -> None:
+    git(robot, "init", "-q", "-b", "main")
+    commit(robot, {})
+    (robot / "archgen.yaml").write_text(ROBOT.replace("Looks.", "Sees."))
+    checked = check_project(robot)
+    selection = select_elements(checked, selector)[0] if selector else None
+    changes = compare_since("HEAD", robot, checked)
+    options = OutputOptions(selection, selector, show_history=False, changes=changes)
+    project_outputs.write_site(checked, options, tmp_path / "site")
+    live = LiveSite(robot, OutputOptions(selector_text=selector, show_history=False), "HEAD")
+    live.start()
+    try:
+        for name in ("index.html", "changes.html", "components/g.eye.html", "groups/g.html"):
+            # Served pages ask git when nobody waits.
+            revision = r'<span class="revision">.*</span>\n|<div><dt>Revision</dt>.*\n'
+            written = re.sub(revision, "", (tmp_path / "site" / name).read_text())
+            assert without_live_parts(read_text(live, name)) == written, name
+        assert "since HEAD</span>" in read_text(live, "components/g.eye.html")
+        for picture in ("figures/overview.svg", "figures/components-g.eye.svg"):
+            file = tmp_path / "site" / picture
+            assert live.read_file(picture) == (file.read_bytes() if file.exists() else None), picture
+    finally:
+        live.stop()
+
+
+def test_what_changes_while_it_is_served_is_marked(robot: Path) -> None:
+    git(robot, "init", "-q", "-b", "main")
+    commit(robot, {})
+    live = LiveSite(robot, OutputOptions(), "HEAD")
+    live.start()
+    try:
+        assert "since HEAD" not in read_text(live, "components/g.eye.html")
+        (robot / "archgen.yaml").write_text(ROBOT.replace("Looks.", "Sees."))
+        live.refresh()
+        assert "Sees." in read_text(live, "components/g.eye.html")
+        seen = False
+        for _ in range(30):  # the comparison comes when nobody waits
+            live.wait_for_news(live.status.version, 1.0)
+            seen = seen or "since HEAD</span>" in read_text(live, "components/g.eye.html")
+            if seen:
+                break
+        assert seen
+    finally:
+        live.stop()
+
+
+def test_a_selector_that_names_nothing_any_more_leaves_the_last_state(robot: Path) -> None:
+    live = LiveSite(robot, OutputOptions(selector_text="g.eye"))
+    live.start()
+    try:
+        (robot / "archgen.yaml").write_text(ROBOT.replace("eye", "ear").replace("Looks", "Hears"))
+        live.refresh()
+        (note,) = live.status.errors
+        assert "eye" in note["message"]
+        assert "Looks." in read_text(live, "components/g.eye.html")
+    finally:
+        live.stop()
+
+
+def test_a_selector_that_names_nothing_at_the_start_is_an_error(robot: Path) -> None:
+    live = LiveSite(robot, OutputOptions(selector_text="g.nose"))
+    with pytest.raises(SelectionError, match="nose"):
+        live.start()
+    live.stop()

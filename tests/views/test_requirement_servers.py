@@ -45,8 +45,8 @@ def test_the_table_of_requirements_names_chains_with_their_state(tmp_path: Path)
     assert table is not None
     assert ["".join(part.text for part in row[-1]) for row in table.rows] == [
         "uncovered no component yet",
-        "chain Late (not proven), chain In good time (met), chain Free (without a deadline)",
-        "Eye, chain In good time (met)",
+        "chain Late: not proven, chain In good time: met, chain Free: without a deadline",
+        "Eye, chain In good time: met",
     ]
 
 
@@ -55,7 +55,7 @@ def test_the_page_of_a_requirement_lists_its_chains(tmp_path: Path) -> None:
     blocks = pages["requirement:R-1"].section.blocks
     assert [
         "".join(part.text for part in item) for block in blocks if isinstance(block, Bullets) for item in block.items
-    ] == ["Late (not proven)", "In good time (met)", "Free (without a deadline)"]
+    ] == ["Late: not proven", "In good time: met", "Free: without a deadline"]
     assert not [block for block in blocks if isinstance(block, Paragraph) and block.kind == "warning"]
     assert Bullets not in {type(block) for block in pages["requirement:R-3"].section.blocks}
 

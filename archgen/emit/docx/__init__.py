@@ -15,6 +15,7 @@ from archgen.emit.docx.core_properties import write_core_properties
 from archgen.emit.docx.document_parts import clean_settings, replace_document_text
 from archgen.emit.docx.document_text import format_document
 from archgen.emit.docx.docx_file import save_package
+from archgen.emit.docx.page_filling import fill_pages
 from archgen.emit.docx.page_flow import assign_sheets, estimate_pages
 from archgen.emit.docx.report_template import open_template
 from archgen.emit.docx.section_pieces import list_anchors, write_sections
@@ -57,9 +58,9 @@ def write(
         warn_of_template(writer, unknown_names)
     title_page = tuple(write_title_page(writer, outline, cover_names))
     front = tuple(write_front_sections(writer, outline, cover_names))
-    sections = tuple(write_sections(writer, outline))
-    # The lists take pages themselves: they are written once to be measured, and once with the numbers.
     base = writer.paper.base
+    sections = fill_pages(assign_sheets(tuple(write_sections(writer, outline)), base), base)
+    # The lists take pages themselves: they are written once to be measured, and once with the numbers.
     in_cover = contents_mark is not None
     contents = tuple(write_contents(writer, {}, outline.lists, one_column=in_cover))
     flow = assign_sheets((*front, *(() if in_cover else contents), *sections), base)

@@ -43,4 +43,5 @@ def write_caption(
         whole=True,
         sheet=sheet,
         marks=(entry.bookmark,),
+        captions=kind,
     )

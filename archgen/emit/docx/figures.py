@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.image_formats import draw_stand_in, recognise_image
-from archgen.emit.docx.page_flow import FlowPiece
+from archgen.emit.docx.page_flow import FlowPiece, ScalablePicture
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.picture_runs import format_picture
 from archgen.emit.docx.word_xml import format_paragraph, format_run
@@ -19,6 +19,8 @@ _TYPE_SIZE = 9.0
 _LEGIBLE_SIZE = 5.4
 _LEGIBLE_SIZE_TURNED = 5.5
 """Below these sizes the next larger sheet is tried; turning a printed page is a price, finding A3 paper a higher one."""
+_LEAST_SIZE = 6.5
+"""A picture that would leave the foot of a page empty is drawn smaller, down to this size of its type."""
 _CAPTION_HEIGHT = 60.0
 """Points kept free below a picture for its caption."""
 _MIN_GAIN = 1.05
@@ -48,8 +50,16 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     raster = writer.relate_image(f"graph:{shape.graph}", "png", png)
     svg = picture.svg_outlines
     drawing = writer.relate_image(f"graph:{shape.graph}", "svg", svg) if svg else ""
-    run = format_picture(writer, (raster, drawing), (width, height), shape.alt or shape.caption)
-    yield write_picture(writer, PictureRun(run, height), sheet, keep_next=shape.numbered)
+
+    def draw_piece(share: float) -> FlowPiece:
+        size = (width * share, height * share)
+        run = format_picture(writer, (raster, drawing), size, shape.alt or shape.caption)
+        piece = write_picture(writer, PictureRun(run, size[1]), sheet, keep_next=shape.numbered)
+        return replace(piece, picture=scalable_picture)
+
+    least = _LEAST_SIZE / (_TYPE_SIZE * scale)
+    scalable_picture = ScalablePicture(height, least, draw_piece) if sheet is None and least < 1 else None
+    yield draw_piece(1.0)
     if shape.numbered:
         yield write_caption(writer, shape.anchor, _note_scale(shape.caption, scale), sheet)
     # Whoever reads the page must know what the picture lacks, not only whoever wrote it.

@@ -7,8 +7,9 @@ be close. Everything that decides them is known but the exact breaking of lines:
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from archgen.emit.docx.paper_sheets import PaperSheet
 
@@ -19,11 +20,21 @@ _MIN_PAGE_TEXT = 130.0
 
 
 @dataclass(frozen=True, slots=True)
+class ScalablePicture:
+    """A picture that may be drawn smaller: `draw_piece` returns its piece at a share of `height` (points), `least` or more."""
+
+    height: float
+    least: float
+    draw_piece: Callable[[float], FlowPiece]
+
+
+@dataclass(frozen=True, slots=True)
 class FlowPiece:
     """A paragraph, or a table with the empty paragraph behind it. Heights are in points.
 
     `rows` are the heights of what may stand on different pages: lines or rows. `repeat` is the height of what the next page
-    repeats. `sheet` is the paper it needs, None for any. `marks` are the bookmarks at its start.
+    repeats. `sheet` is the paper it needs, None for any. `marks` are the bookmarks at its start. `captions` is what it is the
+    caption of, `picture` what it shows where that may be drawn smaller.
     """
 
     xml: str
@@ -36,6 +47,8 @@ class FlowPiece:
     sheet: PaperSheet | None = None
     new_page: bool = False
     marks: tuple[str, ...] = ()
+    captions: Literal["Figure", "Table"] | None = None
+    picture: ScalablePicture | None = None
 
     @property
     def first_height(self) -> float:
@@ -72,28 +85,46 @@ def assign_sheets(pieces: Sequence[FlowPiece], base: PaperSheet) -> tuple[FlowPi
     return tuple(replace(piece, sheet=sheet) for piece, sheet in zip(pieces, sheets, strict=True))
 
 
+@dataclass(slots=True)
+class PageCursor:
+    """Where the next piece goes: its page, the height in use there, and the space that the last piece asks for below it."""
+
+    sheet: PaperSheet
+    page: int = 1
+    position: float = 0.0
+    gap: float = 0.0
+
+    def measure_shortage(self, pieces: Sequence[FlowPiece], index: int) -> float:
+        """Return the height that lacks for a piece to begin on this page with those that it is kept with; 0 where it fits."""
+        # Of two spaces that meet Word takes the larger one.
+        space = max(self.gap, pieces[index].before)
+        required = self.position + space + _measure_required_height(pieces, index)
+        return max(required - self.sheet.text_height, 0.0) if self.position else 0.0
+
+    def place_piece(self, pieces: Sequence[FlowPiece], index: int, base: PaperSheet, *, in_new_section: bool) -> int:
+        """Go behind a piece, and return the page that it begins on."""
+        piece = pieces[index]
+        sheet = piece.sheet or base
+        turned = in_new_section or (index > 0 and sheet != self.sheet and sheet.columns == 1)
+        self.sheet = sheet
+        space = max(self.gap, piece.before)
+        if turned or (piece.new_page and self.position) or self.measure_shortage(pieces, index) > 0:
+            self.page, self.position = self.page + 1, 0.0
+            # At the head of a page that came by itself Word leaves the space before a paragraph out.
+            space = piece.before if turned or piece.new_page else 0.0
+        first_page = self.page
+        self.page, self.position = _fill_pages(piece, self.page, self.position + space, sheet.text_height)
+        self.gap = piece.after
+        return first_page
+
+
 def estimate_pages(pieces: Sequence[FlowPiece], base: PaperSheet, section_start: int = 0) -> dict[str, int]:
     """Return the page of every bookmark. The pieces have their sheets; a section begins at the one with index `section_start`."""
     pages: dict[str, int] = {}
-    page, position, gap, sheet = 1, 0.0, 0.0, base
+    cursor = PageCursor(base)
     for index, piece in enumerate(pieces):
-        height = (piece.sheet or base).text_height
-        changes_sheet = (piece.sheet or base) != sheet
-        sheet = piece.sheet or base
-        turned = index > 0 and (index == section_start or (changes_sheet and sheet.columns == 1))
-        # Of two spaces that meet Word takes the larger one.
-        space = max(gap, piece.before)
-        if (
-            turned
-            or (piece.new_page and position)
-            or (position and position + space + _measure_required_height(pieces, index) > height)
-        ):
-            page, position = page + 1, 0.0
-            # At the head of a page that came by itself Word leaves the space before a paragraph out.
-            space = piece.before if turned or piece.new_page else 0.0
+        page = cursor.place_piece(pieces, index, base, in_new_section=index == section_start > 0)
         pages.update(dict.fromkeys(piece.marks, page))
-        page, position = _fill_pages(piece, page, position + space, height)
-        gap = piece.after
     return pages
 
 

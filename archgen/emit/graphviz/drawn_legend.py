@@ -15,6 +15,8 @@ from archgen.views.graph_shapes import Arrow, Box, Graph, PeriodStep
 _SAMPLE_SIZE = (24.0, 11.0)
 _ROW_HEIGHT = 15.0
 _MIN_WIDTH = 260.0
+_WIDEST_FACE = 1.15
+"""How much wider words become where a picture is opened without its fonts; measured with DejaVu Sans for Inter."""
 
 _BOX_SAMPLES: dict[str, tuple[Box, str]] = {
     "subject": (Box("", "", emphasis="subject"), "what the picture is about"),
@@ -90,7 +92,16 @@ def add_legend(scene: Scene, entries: Sequence[tuple[Scene, str]], sentences: Se
     width = max(right - left, _MIN_WIDTH)
     legend = _lay_out_entries(entries, width)
     notes = _lay_out_notes(sentences, width, -legend.bounds()[1] if entries else 0.0)
-    return scene.joined(*(part.moved(left, bottom - 20) for part in (legend, notes)))
+    return scene.joined(*(_reserve_width(part).moved(left, bottom - 20) for part in (legend, notes)))
+
+
+def _reserve_width(legend: Scene) -> Scene:
+    """Return a part of the legend with an unseen point where its words end in the widest face: the picture reaches as far."""
+    ends = [part.rectangle[0] + part.width * _WIDEST_FACE for part in legend.parts if part.kind == "label"]
+    if not ends:
+        return legend
+    mark = _create_mark(f"{legend.parts[-1].name}end", max(ends), legend.parts[-1].y)
+    return legend.joined(Scene(parts=(mark,)))
 
 
 def _legend_entries(key: str, graph: Graph) -> Iterator[tuple[Scene, str]]:
@@ -132,10 +143,7 @@ def _colour_sample(index: int) -> Scene:
 
 def _arrow_sample(key: str, arrow: Arrow, *, merged: bool) -> Scene:
     width = _SAMPLE_SIZE[0]
-    ends = tuple(
-        ScenePart(f"{key}{at}", {"style": '"invis"', "label": '""', "shape": '"point"'}, x, 0, 0, 0, "mark")
-        for at, x in enumerate((0.0, width))
-    )
+    ends = tuple(_create_mark(f"{key}{at}", x, 0) for at, x in enumerate((0.0, width)))
     attributes = {
         **arrow_styles.style_arrow(arrow, lambda _: None, merged=merged),
         "tooltip": '" "',
@@ -147,6 +155,11 @@ def _arrow_sample(key: str, arrow: Arrow, *, merged: bool) -> Scene:
     middle = f"0,0 {third:.2f},0 {2 * third:.2f},0 {3 * third:.2f},0"
     spline = f"e,{width:.2f},0 {middle}" if head_length else middle
     return Scene(lines=(SceneLine(f"x{key}", "", ends[0].name, ends[1].name, attributes, spline),), parts=ends)
+
+
+def _create_mark(name: str, x: float, y: float) -> ScenePart:
+    """Return a point that nobody sees."""
+    return ScenePart(name, {"style": '"invis"', "label": '""', "shape": '"point"'}, x, y, 0, 0, "mark")
 
 
 def _legend_text(words: str) -> DotAttributes:
@@ -164,7 +177,7 @@ def _lay_out_entries(entries: Sequence[tuple[Scene, str]], width: float) -> Scen
     scenes: list[Scene] = []
     x, y = 0.0, -_ROW_HEIGHT / 2
     for at, ((sample, _), text, size) in enumerate(zip(entries, texts, measure_nodes(texts), strict=True)):
-        entry_width = _SAMPLE_SIZE[0] + 5 + size[0] + 16
+        entry_width = _SAMPLE_SIZE[0] + 5 + size[0] * _WIDEST_FACE + 10
         if x and x + entry_width > width:
             x, y = 0.0, y - _ROW_HEIGHT
         words_part = ScenePart(f"legend{at}", text, x + _SAMPLE_SIZE[0] + 5 + size[0] / 2, y, *size, kind="label")
@@ -185,7 +198,7 @@ def _prefix_names(scene: Scene, prefix: str) -> Scene:
 
 
 def _lay_out_notes(sentences: Iterable[str], width: float, distance: float) -> Scene:
-    rows = [row for words in sentences for row in wrap_text(words, max(40, int(width / 4.4)), 12)]
+    rows = [row for words in sentences for row in wrap_text(words, max(40, int(width / (4.4 * _WIDEST_FACE))), 12)]
     if not rows:
         return Scene()
     text = _legend_text('<BR ALIGN="LEFT"/>'.join(escape_label(row) for row in rows) + '<BR ALIGN="LEFT"/>')

@@ -21,8 +21,10 @@ ScenePoint = tuple[float, float]
 Rectangle = tuple[float, float, float, float]
 """Left, bottom, right, top; in points."""
 
-FONT_NAME = "Inter,DejaVu Sans,sans-serif"
-"""Inter as in the site; DejaVu Sans has the letters and signs that it lacks. Both ship with archgen."""
+FONT_NAME = "Inter,Arial,Liberation Sans,Helvetica,DejaVu Sans,sans-serif"
+"""Inter as in the site; DejaVu Sans has the letters and signs that it lacks, and both ship with archgen. Where a picture is opened without
+them, those between are no wider than Inter, so that text stays in its box; DejaVu Sans is wider by an eighth.
+"""
 DOT_DEFAULTS = (
     f'node [fontname="{FONT_NAME}" fontsize="9" fontcolor="#1b2127"]; edge [fontname="{FONT_NAME}" fontsize="8"];'
 )

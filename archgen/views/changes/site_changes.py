@@ -54,12 +54,17 @@ class SiteChanges:
 
     @cached_property
     def changes_by_page(self) -> Mapping[str, tuple[Change, ...]]:
-        """The changes of each page's element and its ports, by the page's anchor; removed elements have no page."""
+        """The changes of each page's element and its ports, by the page's anchor; removed elements have no page.
+
+        What partners give each other has those of its output, as `interface:OUTPUT`.
+        """
         changes_by_page: dict[str, list[Change]] = {}
         for change in self.comparison.changes:
             anchor = _find_page(change)
             if anchor:
                 changes_by_page.setdefault(anchor, []).append(change)
+            if change.element_kind == "output":
+                changes_by_page.setdefault(f"interface:{change.element_id}", []).append(change)
         return {anchor: tuple(changes) for anchor, changes in changes_by_page.items()}
 
     @cached_property
@@ -83,6 +88,11 @@ class SiteChanges:
         own = (anchor for anchor in self.kinds_by_page if anchor.startswith("group:"))
         return frozenset((*own, *(f"group:{name}" for name in (*names, *removed))))
 
+    @cached_property
+    def kinds_in_pictures(self) -> Mapping[str, ElementChange]:
+        """How the element of each box changed: groups, too, in which something did."""
+        return {**dict.fromkeys(sorted(self.changed_groups), "changed"), **self.kinds_by_page}
+
 
 def _find_page(change: Change) -> str:
     """Return the anchor of the page that shows what changed, empty where there is none."""
@@ -90,6 +100,11 @@ def _find_page(change: Change) -> str:
         return f"component:{change.element_id.rpartition('.')[0]}"
     is_gone = change.kind == "removed"
     return f"{change.element_kind}:{change.element_id}" if change.element_kind in _PAGE_KINDS and not is_gone else ""
+
+
+def _name_changes(page: Page) -> str:
+    """Return the name that the changes of a page have: its anchor, without the two partners of an interface."""
+    return page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
 
 
 def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
@@ -104,9 +119,24 @@ def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
     return "renamed" if own_kinds & {"renamed", "moved"} else "changed"
 
 
+def mark_page(page: Page, site_changes: SiteChanges) -> Page:
+    """Mark a page whose element changed, and the elements that its tables list."""
+    section = page.section
+    if page.kind in _LISTING_KINDS:
+        section = _mark_lists(section, site_changes.kinds_by_page)
+    anchor = _name_changes(page)
+    kind = site_changes.kinds_by_page.get(anchor)
+    if kind is not None:
+        table = _compare_versions(anchor, site_changes)
+        section = replace(section, blocks=(*((table,) if table else ()), *section.blocks))
+        page = replace(page, verdict=(*page.verdict, *_make_chip(kind, site_changes.since)))
+    is_changed = page.is_changed or kind is not None or page.anchor in site_changes.changed_groups
+    return replace(page, section=section, is_changed=is_changed)
+
+
 def add_changes(pages: Iterable[Page], site_changes: SiteChanges, drawings: Mapping[str, Drawing]) -> tuple[Page, ...]:
     """Return the pages with marks and with both versions of what changed, and behind the first one the page of changes."""
-    first_page, *other_pages = (_mark_page(page, site_changes) for page in pages)
+    first_page, *other_pages = (mark_page(page, site_changes) for page in pages)
     anchors = {page.anchor for page in other_pages}
     return (first_page, _make_changes_page(site_changes, first_page, drawings, anchors), *other_pages)
 
@@ -154,20 +184,6 @@ def _link_block(block: Block, link: Callable[[Inlines], Inlines]) -> Block:
     if isinstance(block, Table):
         return replace(block, rows=tuple(tuple(map(link, row)) for row in block.rows))
     return block
-
-
-def _mark_page(page: Page, site_changes: SiteChanges) -> Page:
-    """Mark a page whose element changed, and the elements that its tables list."""
-    section = page.section
-    if page.kind in _LISTING_KINDS:
-        section = _mark_lists(section, site_changes.kinds_by_page)
-    kind = site_changes.kinds_by_page.get(page.anchor)
-    if kind is not None:
-        table = _compare_versions(page.anchor, site_changes)
-        section = replace(section, blocks=(*((table,) if table else ()), *section.blocks))
-        page = replace(page, verdict=(*page.verdict, *_make_chip(kind, site_changes.since)))
-    is_changed = page.is_changed or kind is not None or page.anchor in site_changes.changed_groups
-    return replace(page, section=section, is_changed=is_changed)
 
 
 def _make_chip(kind: ElementChange, since: str = "") -> Inlines:
@@ -278,17 +294,15 @@ def _list_lines(value: object, depth: int = 0) -> Iterator[str]:
 
 def mark_drawings(drawings: Mapping[str, Drawing], site_changes: SiteChanges) -> dict[str, Drawing]:
     """Return drawings in which what is new or changed stands out as in the pictures of a comparison, and those pictures."""
-    kinds: Mapping[str, ElementChange] = {
-        **dict.fromkeys(sorted(site_changes.changed_groups), "changed"),
-        **site_changes.kinds_by_page,
-    }
-    marked = {
-        name: _mark_graph(drawing, kinds)
-        if isinstance(drawing, Graph) and drawing.kind in _MARKED_PICTURES
-        else drawing
-        for name, drawing in drawings.items()
-    }
+    marked = {name: mark_drawing(drawing, site_changes) for name, drawing in drawings.items()}
     return marked | {graph.id: graph for graph in site_changes.document.graphs}
+
+
+def mark_drawing(drawing: Drawing, site_changes: SiteChanges) -> Drawing:
+    """Return a drawing in which what is new or changed stands out."""
+    if not isinstance(drawing, Graph) or drawing.kind not in _MARKED_PICTURES:
+        return drawing
+    return _mark_graph(drawing, site_changes.kinds_in_pictures)
 
 
 def _mark_graph(graph: Graph, kinds: Mapping[str, ElementChange]) -> Graph:

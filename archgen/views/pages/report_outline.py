@@ -191,7 +191,7 @@ class _ChapterMaker:
                 architecture_tables.make_host_table(self.lookup), architecture_tables.make_link_table(self.lookup)
             ),
         ]
-        return [Section("page:hosts", "Deployment", tuple(blocks), page_break=True)] if blocks else []
+        return [Section("page:hosts", "Hosts and links", tuple(blocks), page_break=True)] if blocks else []
 
     def make_timing(self) -> list[Section]:
         """Make the chapter of figures of timing."""
@@ -248,9 +248,7 @@ class _ChapterMaker:
     def make_open_points(self) -> list[Section]:
         """Make the appendix of findings."""
         summary = Paragraph(
-            inline_text.to_inlines(
-                f"archgen finds {architecture_tables.describe_severities(self.lookup.findings)} in this architecture."
-            )
+            inline_text.to_inlines(f"The check finds {architecture_tables.describe_severities(self.lookup.findings)}.")
         )
         return self._make_appendix(
             "findings",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
+from archgen.views.changes.site_changes import mark_page
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages, matrix_pages, page_marks, page_places, partner_pages
 from archgen.views.pages.report_outline import DocumentEdition
@@ -17,7 +18,12 @@ def make_page(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page | N
     is none.
     """
     page = next((page for page in _list_candidates(PageMaker(lookup, edition), anchor) if page.anchor == anchor), None)
-    return page_places.place_pages(lookup, page_marks.mark_pages(lookup, (page,)))[0] if page else None
+    if page is None:
+        return None
+    marked_pages = page_marks.mark_pages(lookup, (page,))
+    if edition.changes:
+        marked_pages = tuple(mark_page(each, edition.changes) for each in marked_pages)
+    return page_places.place_pages(lookup, marked_pages)[0]
 
 
 def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # noqa: PLR0911 - one for each kind

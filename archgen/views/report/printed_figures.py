@@ -21,14 +21,15 @@ _WORDS = {
     "terms of the bound": "parts of the bound",
     "Where rates differ": "Where a reader is slower than its source",
     "Edges that lose samples or beat": "Topics that are read less often than published",
-    "archgen finds": "The check of the architecture finds",
     "Where the rate is from": "Source of the rate",
-    "any scheduler that never idles": "any order that never idles",
+    "any scheduler that never idles": "any order of execution",
     "lose samples or beat": "are read less often than published, or in another rhythm",
     "not decided by load alone": "open: load alone does not decide",
 }
 """Words of the analysis that a reader of a deliverable takes for faults, or does not know."""
 _COLUMN_WORDS = {"Lost": "Not read", "Come at once": "Burst"}
+_FACT_WORDS = {"Links": "See also"}
+"""On paper nothing shows that these are links to pages elsewhere, and hosts have links too."""
 
 
 def print_section_figures(section: Section) -> Section:
@@ -48,7 +49,9 @@ def _print_block(block: Block) -> Block:
         case Bullets():
             return replace(block, items=tuple(print_inlines(item) for item in block.items))
         case Facts():
-            return replace(block, rows=tuple((name, print_inlines(value)) for name, value in block.rows))
+            return replace(
+                block, rows=tuple((_FACT_WORDS.get(name, name), print_inlines(value)) for name, value in block.rows)
+            )
         case Table():
             return _print_table(block)
         case Markdown():

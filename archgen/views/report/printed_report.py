@@ -73,7 +73,9 @@ class _ReportPrinter:
             return (self._print_group(section),)
         if section.anchor == "page:timing":
             return tuple(self._split_timing(section))
-        return (self._print_others(section),)
+        printed_section = self._print_others(section)
+        # All of it may be pictures that only large paper has.
+        return (printed_section,) if printed_section.blocks or printed_section.sections else ()
 
     def _print_others(self, section: Section) -> Section:
         blocks = tuple(_flatten(self._keep_legible(section.blocks)))

@@ -24,3 +24,12 @@ def test_only_the_widths_of_the_picture_are_explained(counts: tuple[int, ...], s
     scene = add_graph_legend(Scene(), Graph("g", "G", "overview", (), arrows, kind="overview", legend=("width",)))
     names = {found[1] for part in scene.parts if (found := re.fullmatch(r"k[0-9]+(width[0-9])[0-9]", part.name))}
     assert sorted(names) == samples
+
+
+def test_a_picture_reaches_as_far_as_its_legend_in_the_widest_face() -> None:
+    graph = Graph("g", "G", "overview", (), (), kind="overview", legend=("count",))
+    drawn = add_graph_legend(Scene(), graph)
+    (words,) = (part for part in drawn.parts if part.name == "notes")
+    left, _, right, _ = drawn.bounds()
+    # DejaVu Sans needs 15 % more than Inter for this sentence.
+    assert right - left >= words.width * 1.15

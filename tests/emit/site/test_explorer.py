@@ -124,8 +124,23 @@ def test_boxes_do_not_cover_one_another_when_all_is_open(visit: OpenPage) -> Non
     assert overlapping == 0
 
 
-def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: OpenPage) -> None:
-    page = visit("#level=groups")
+@pytest.mark.parametrize(
+    ("hash_", "back", "forth"),
+    [
+        (
+            "#level=groups",
+            "Robot Action Planner → Hardware at the Boundary",
+            "Hardware at the Boundary → Robot Action Planner",
+        ),
+        (
+            "#level=components&open=robot_action_planner",
+            "Base Controller → Hardware at the Boundary",
+            "Robot State → Base Controller",
+        ),
+    ],
+)
+def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: OpenPage, hash_: str, back: str, forth: str) -> None:
+    page = visit(hash_)
     below = page.evaluate(
         """() => {
           const bottom = Math.max(...[...document.querySelectorAll("g[data-box] .shell")].map((box) => box.getBoundingClientRect().bottom));
@@ -134,8 +149,8 @@ def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: OpenPage)
             .map((arrow) => arrow.querySelector("title").textContent.split("\\n")[0]);
         }"""
     )
-    assert "Robot Action Planner → Hardware at the Boundary" in below
-    assert "Hardware at the Boundary → Robot Action Planner" not in below
+    assert back in below
+    assert forth not in below
 
 
 def test_the_panel_says_where_a_thing_is_written(visit: OpenPage) -> None:

@@ -154,3 +154,24 @@ def test_a_project_that_did_not_change_says_so(tmp_path: Path) -> None:
     assert result.exit_code == 0
     assert "No change of the architecture." in text_of(read(tmp_path / "site", "changes.html"))
     assert "mark changed" not in read(tmp_path / "site", "index.html")
+
+
+def test_the_page_of_an_interface_tells_what_changed_of_it(tmp_path: Path) -> None:
+    old = """\
+archgen: 1
+partners: {p: {title: Giver}, q: {title: Taker}}
+groups:
+  g:
+    components:
+      eye: {owner: p, outputs: {seen: Seen, same: Same}}
+      brain: {owner: q, inputs: {a: eye.seen, b: eye.same}}
+"""
+    root = repositories.repository(tmp_path / "robot", {"archgen.yaml": old})
+    (root / "archgen.yaml").write_text(old.replace("seen: Seen", "seen: Heard"))
+    result = CliRunner().invoke(main, ["site", str(root), "-o", str(tmp_path / "site"), "--since", "HEAD"])
+    assert result.exit_code == 0, result.output
+    pages = {path.stem: text_of(path.read_text()) for path in (tmp_path / "site" / "partners").glob("*/*/*.html")}
+    changed = [name for name, text in pages.items() if "Changed since HEAD" in text]
+    assert sorted(pages) == ["g.eye.same", "g.eye.seen"]
+    assert changed == ["g.eye.seen"]
+    assert "Seen Heard" in pages["g.eye.seen"]

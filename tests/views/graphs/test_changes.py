@@ -115,6 +115,19 @@ def test_added_removed_and_changed_stand_in_one_picture(found: Compared) -> None
     assert "None: \u2212 lidar (removed)" in boxes(nodes)
 
 
+def test_ports_without_a_connection_are_named_in_the_box(found: Compared) -> None:
+    (graph,) = draw_changes(
+        found(
+            ("outputs: {grid: Grid}", "outputs: {grid: Grid, cost: Grid}"),
+            ("inputs: {image: camera.image}", "inputs: {scan: lidar.scan}"),
+        )
+    )[:1]
+    lines = {box.title: box.lines for box in graph.boxes}
+    assert lines["~ Map"] == ("+ output cost",)
+    # The arrows show that it reads something else now.
+    assert lines["~ Finder"] == ()
+
+
 def test_a_rename_is_no_removal(found: Compared) -> None:
     (components,) = draw_changes(
         found(

@@ -24,6 +24,8 @@ class ConnectionLine:
     change: ElementChange | None
     sentence: str
     optional: bool = False
+    ports: tuple[str, str] = ("", "")
+    """The output and the input that it connects."""
     broken_partners: tuple[str, ...] = ()
     """What people call the partners for whom it breaks."""
 

@@ -26,6 +26,8 @@ from archgen.views.lookup import Lookup, make_lookup
 
 GRAPH_ID = "changes/components"
 _MAX_NAMES = 12
+_MAX_LINES = 4
+"""Ports without a connection that a box names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +39,8 @@ class _OverlaidComponents:
     new_lookup: Lookup
     change_notes: ChangeNotes
     lines: Sequence[ConnectionLine]
+    loose_ports: Mapping[str, tuple[str, ...]]
+    """The outputs and inputs that came or went without a connection, with signs, by component."""
 
     @property
     def broken_components(self) -> Mapping[str, tuple[str, ...]]:
@@ -59,16 +63,39 @@ class _OverlaidComponents:
         return item.group if item else self.comparison.matched_ids.common_id("group", name.partition(".")[0])
 
 
+def _find_loose_ports(comparison: Comparison, lines: Sequence[ConnectionLine]) -> Mapping[str, tuple[str, ...]]:
+    """Return the outputs and inputs that came or went without a connection, with signs, by component."""
+    connected_ports = {port for line in lines for port in line.ports}
+    ports: dict[str, list[str]] = {}
+    for change in comparison.changes:
+        is_port = change.element_kind in {"output", "input"} and change.kind in {"added", "removed"}
+        if is_port and change.element_id not in connected_ports:
+            component, _, name = change.element_id.rpartition(".")
+            if change.kind == "removed":
+                component = comparison.matched_ids.common_id("component", component)
+            ports.setdefault(component, []).append(f"{CHANGE_SIGNS[change.kind]} {change.element_kind} {name}")
+    return {name: _shorten_list(words) for name, words in ports.items()}
+
+
+def _shorten_list(words: Sequence[str]) -> tuple[str, ...]:
+    """Return a few lines; the last one counts those that are left out."""
+    if len(words) <= _MAX_LINES:
+        return tuple(words)
+    return (*words[: _MAX_LINES - 1], f"{len(words) - _MAX_LINES + 1} more ports")
+
+
 def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Graph | None:
     """Draw what changed and its surroundings; None if no component and no connection changed."""
     before, after = comparison.before.architecture, comparison.after.architecture
     change_notes = collect_change_notes(comparison)
+    lines = tuple(_connection_lines(comparison, change_notes))
     overlay = _OverlaidComponents(
         comparison,
         make_lookup(before),
         make_lookup(after, comparison.new_findings),
         change_notes,
-        tuple(_connection_lines(comparison, change_notes)),
+        lines,
+        _find_loose_ports(comparison, lines),
     )
     ends = {end for line in overlay.lines if line.change or line.broken_partners for end in line.ends}
     changed_ids = {name for name in overlay.changed_components | ends if _component_exists(overlay, name)}
@@ -163,8 +190,9 @@ def _connection_lines(comparison: Comparison, change_notes: ChangeNotes) -> Iter
 
 def _connection_line(edge: MergedEdge, change: ElementChange | None, sentences: tuple[str, ...]) -> ConnectionLine:
     connection_text = f"{edge.output_id} → {edge.input_id}" + (f" ({edge.label})" if edge.label else "")
+    ports = edge.output_id, edge.input_id
     sentence = "\n".join((f"{CHANGE_SIGNS[change]} {connection_text}" if change else connection_text, *sentences))
-    return ConnectionLine(edge.tail, edge.head, edge.style, edge.label, change, sentence, optional=edge.optional)
+    return ConnectionLine(edge.tail, edge.head, edge.style, edge.label, change, sentence, edge.optional, ports)
 
 
 def _draw_boxes(overlay: _OverlaidComponents, shown_components: set[str]) -> Iterator[Box]:
@@ -201,6 +229,8 @@ def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
             return replace(plain_box, title=f"{sign} {component_box.title}", badge=None)
     if change is None:
         return replace(plain_box, emphasis="neighbour", badge=None)
+    # No arrow shows these.
+    plain_box = replace(plain_box, lines=(*plain_box.lines, *overlay.loose_ports.get(name, ())))
     tooltip_lines = (*overlay.change_notes.sentences.get(name, ()), component_box.tooltip)
     return replace(
         plain_box,

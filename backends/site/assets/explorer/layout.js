@@ -7,7 +7,7 @@ archgenExplorer.layOut = (function () {
   const PITCHES = [92, 160]; // px from one row of the closed map to the next: as far apart as a screen's height allows
   const HEIGHT_SHARE = 0.5;
   const INNER = { pitch: 76, gap: 26, channel: 92 };
-  const FRAME = { top: 62, side: 20, bottom: 20 };
+  const FRAME = { top: 62, side: 20, bottom: 20, lane: 9 };
   const FONT = '600 13px Inter, system-ui, sans-serif';
   const pen = document.createElement("canvas").getContext("2d");
   const widths = new Map();
@@ -104,6 +104,11 @@ archgenExplorer.layOut = (function () {
     box.height = BOX.height + (box.lines.length - 1) * BOX.line;
   }
 
+  // How many arrows run back inside of a home past whole columns: they stand below its boxes.
+  function countFeedback(scene, home) {
+    return scene.arrows.filter(({ tail, head }) => tail.parent === home && head.parent === home && tail.column - head.column > 1).length;
+  }
+
   return Object.assign(function layOut(scene, level) {
     const outer = scene.boxes.filter((box) => !box.parent);
     const inside = new Map(outer.map((box) => [box, []]));
@@ -118,7 +123,7 @@ archgenExplorer.layOut = (function () {
       home.inner = size;
       home.lines = wrap(home.title, Math.max(BOX.width, size.width) - 40, 1);
       home.width = Math.max(BOX.width + 40, size.width + 2 * FRAME.side);
-      home.height = (members.length ? size.bottom - size.top : 0) + FRAME.top + FRAME.bottom;
+      home.height = (members.length ? size.bottom - size.top : 0) + FRAME.top + FRAME.bottom + countFeedback(scene, home) * FRAME.lane;
     }
     const known = outer.map((box) => box.element && level.homePlaceOf(box.element)).filter(Boolean);
     const below = findEnd(known);

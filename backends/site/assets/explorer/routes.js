@@ -5,7 +5,7 @@ archgenExplorer.routeArrows = (function () {
   const SPREAD = 9; // px between two ends on one side
   const MARGIN = 13; // px between a line and a box that it passes
   const LOOP = 46; // px that a line between boxes of one column swings out
-  const OUTSIDE = { first: 30, lane: 9, channel: 5, corner: 14 }; // px below all boxes, between two lines there, and beside columns
+  const OUTSIDE = { first: 30, lane: 9, channel: 5, corner: 14, inner: 16 }; // px below all boxes, between two lines there, and beside columns
   const TURN = [26, 80]; // px that a curve takes before it is level again: more, the higher it climbs
 
   const middle = (box) => box.y + box.height / 2;
@@ -17,8 +17,16 @@ archgenExplorer.routeArrows = (function () {
     arrow.turn = right(tail) <= head.x ? "forward" : right(head) <= tail.x ? "back" : "loop";
     arrow.tailSide = arrow.turn === "back" ? "left" : "right";
     arrow.headSide = arrow.turn === "forward" ? "left" : "right";
-    // Back past whole columns: round the outside, where it crosses no box.
-    arrow.isOutside = arrow.turn === "back" && !tail.parent && !head.parent && tail.column - head.column > 1;
+    // Back past whole columns: round the outside of the map, or below what is in the same home, where it crosses no box.
+    arrow.isOutside = arrow.turn === "back" && passesColumns(arrow);
+  }
+
+  const homeOf = (box) => box.parent ?? box;
+  const isWithin = ({ tail, head }) => Boolean(tail.parent) && tail.parent === head.parent;
+
+  function passesColumns(arrow) {
+    const [tail, head] = isWithin(arrow) ? [arrow.tail, arrow.head] : [homeOf(arrow.tail), homeOf(arrow.head)];
+    return tail.column - head.column > 1;
   }
 
   function spreadEnds(arrows) {
@@ -117,26 +125,52 @@ archgenExplorer.routeArrows = (function () {
     return path;
   }
 
+  // A line through points, level or upright from one to the next, with round corners.
+  function roundCorners(points, radius) {
+    const length = ([x1, y1], [x2, y2]) => Math.abs(x2 - x1) + Math.abs(y2 - y1);
+    const toward = ([x1, y1], [x2, y2], way) => [x1 + Math.sign(x2 - x1) * way, y1 + Math.sign(y2 - y1) * way];
+    const text = ([x, y]) => `${num(x)} ${num(y)}`;
+    let path = `M${text(points[0])}`;
+    for (let at = 1; at < points.length - 1; at += 1) {
+      const [last, here, next] = points.slice(at - 1, at + 2);
+      const before = length(last, here) / (at === 1 ? 1 : 2), after = length(here, next) / (at === points.length - 2 ? 1 : 2);
+      const r = Math.min(radius, before, after);
+      path += `L${text(toward(here, last, r))}Q${text(here)} ${text(toward(here, next, r))}`;
+    }
+    return path + `L${text(points.at(-1))}`;
+  }
+
+  // From a box that is inside of an open home: down between the columns there, and below the home to its side.
+  function leaveHome([x, y], box, at, side) {
+    if (!box.parent) return [[x, y]];
+    const between = (side < 0 ? box.columnX - OUTSIDE.inner : box.columnX + box.columnWidth + OUTSIDE.inner) + side * (at % 6) * 4;
+    const below = box.parent.y + box.parent.height + 7 + (at % 6) * 4;
+    return [[x, y], [between, y], [between, below]];
+  }
+
   // Feedback: down beside the column that it leaves, to the left below all boxes, up beside the column that it reaches. Short
-  // ways run inside of long ones. The map grows by what they take.
+  // ways run inside of long ones. The map grows by what they take; a home has grown by it already (see `layOut`).
   function routeOutside(arrows, bounds) {
     const outside = arrows.filter((arrow) => arrow.isOutside);
-    const span = ({ tail, head }) => tail.column - head.column;
+    const span = ({ tail, head }) => tail.columnX - head.columnX;
     outside.sort((a, b) => span(a) - span(b) || b.start[1] - a.start[1] || (a.id < b.id ? -1 : 1));
     const bottom = bounds.bottom;
-    const step = Math.min(OUTSIDE.channel, 60 / Math.max(1, outside.length));
-    outside.forEach((arrow, at) => {
-      const { start, stop, tail, head } = arrow;
-      const y = bottom + OUTSIDE.first + at * OUTSIDE.lane;
+    const counts = new Map();
+    const total = (place) => outside.filter((arrow) => (isWithin(arrow) ? arrow.tail.parent : null) === place).length;
+    for (const arrow of outside) {
+      const within = isWithin(arrow) ? arrow.tail.parent : null;
+      const at = counts.get(within) ?? 0, step = Math.min(OUTSIDE.channel, 60 / Math.max(1, total(within)));
+      counts.set(within, at + 1);
+      const y = within ? within.y + within.height - OUTSIDE.inner - (total(within) - 1 - at) * OUTSIDE.lane : bottom + OUTSIDE.first + at * OUTSIDE.lane;
+      const [tail, head] = within ? [arrow.tail, arrow.head] : [homeOf(arrow.tail), homeOf(arrow.head)];
       const [from, to] = [tail.columnX - 22 - at * step, head.columnX + head.columnWidth + 22 + at * step];
-      const r = OUTSIDE.corner;
+      const leave = within ? [arrow.start] : leaveHome(arrow.start, arrow.tail, at, -1);
+      const reach = within ? [arrow.stop] : leaveHome(arrow.stop, arrow.head, at, 1);
       arrow.direction = -1;
       arrow.points = [[from, y], [to, y]];
-      arrow.path = `M${num(start[0])} ${num(start[1])}L${num(from + r)} ${num(start[1])}Q${num(from)} ${num(start[1])} ${num(from)} ${num(start[1] + r)}` +
-        `L${num(from)} ${num(y - r)}Q${num(from)} ${num(y)} ${num(from - r)} ${num(y)}L${num(to + r)} ${num(y)}Q${num(to)} ${num(y)} ${num(to)} ${num(y - r)}` +
-        `L${num(to)} ${num(stop[1] + r)}Q${num(to)} ${num(stop[1])} ${num(to - r)} ${num(stop[1])}L${num(stop[0])} ${num(stop[1])}`;
-      bounds.bottom = Math.max(bounds.bottom, y + OUTSIDE.lane);
-    });
+      arrow.path = roundCorners([...leave, [from, leave.at(-1)[1]], [from, y], [to, y], [to, reach.at(-1)[1]], ...reach.reverse()], OUTSIDE.corner);
+      if (!within) bounds.bottom = Math.max(bounds.bottom, y + OUTSIDE.lane);
+    }
   }
 
   // Where the name of what flows stands: in the widest free piece of the line, off both ends.
