@@ -56,14 +56,14 @@ def lay_out_group(styled_graph: StyledGraph) -> Scene:
 
     # dot takes longest for lines, and those of a layout that is going to be wrapped are thrown away.
     looks_wide = _count_ranks(styled_graph, inside_boxes) * _RANK_WIDTH > _WIDEST_FRAME
-    scene = _lay_out_framed_boxes(styled_graph, inside_boxes, splines="none" if looks_wide else "spline")
+    scene = _lay_out_framed_boxes(styled_graph, splines="none" if looks_wide else "spline")
     wrapped_scene = None
     if graph.direction != "top-bottom" and (wrapped := _wrap_wide_frame(scene, inside_names)):
-        rows = _lay_out_framed_boxes(styled_graph, inside_boxes, wrapped)
+        rows = _lay_out_framed_boxes(styled_graph, wrapped)
         wrapped_scene = finish(route_between_rows(rows, wrapped))
         if _is_complete(styled_graph, wrapped_scene):
             return wrapped_scene
-    finished_scene = finish(_lay_out_framed_boxes(styled_graph, inside_boxes) if looks_wide else scene)
+    finished_scene = finish(_lay_out_framed_boxes(styled_graph) if looks_wide else scene)
     # dot loses a line now and then where many run back, and a label may find no place.
     if wrapped_scene and _count_contents(wrapped_scene) >= _count_contents(finished_scene):
         return wrapped_scene
@@ -95,7 +95,6 @@ def _count_contents(scene: Scene) -> tuple[int, int]:
 
 def _lay_out_framed_boxes(
     styled_graph: StyledGraph,
-    inside_boxes: Sequence[Box],
     wrapped: WrappedRanks | None = None,
     *,
     splines: str = "spline",
