@@ -12,6 +12,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products import full_build, product_inputs, project_outputs
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_table import PRODUCTS
+from archgen.views import drawing_set
 
 
 @pytest.fixture
@@ -43,7 +44,7 @@ def list_component_pictures(site: Path) -> list[str]:
 def test_a_large_site_has_no_picture_of_each_component(
     *, project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
 ) -> None:
-    monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
+    monkeypatch.setattr(drawing_set, "MAX_PICTURED_COMPONENTS", most)
     options = OutputOptions(show_history=False, component_pictures=wish)
     project_outputs.write_site(project, options, tmp_path / "site")
     assert list_component_pictures(tmp_path / "site") == []
@@ -59,7 +60,7 @@ def test_a_large_site_has_no_picture_of_each_component(
 def test_a_site_has_pictures_of_components_up_to_a_number_or_as_asked(
     *, project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
 ) -> None:
-    monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
+    monkeypatch.setattr(drawing_set, "MAX_PICTURED_COMPONENTS", most)
     project_outputs.write_site(project, OutputOptions(show_history=False, component_pictures=wish), tmp_path / "site")
     assert list_component_pictures(tmp_path / "site")[:2] == [
         "figures/components/g.a.svg",

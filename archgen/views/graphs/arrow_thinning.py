@@ -27,7 +27,9 @@ def thin_graph(graph: Graph, max_arrows: int) -> Graph:
     chosen_ids = {arrow.id for arrow in _rank_arrows(arrows)[:max_arrows]}
     drawn_arrows = tuple(arrow for arrow in arrows if arrow.id in chosen_ids)
     used_frames = {box.cluster for box in boxes} | {end for arrow in drawn_arrows for end in (arrow.tail, arrow.head)}
-    note = " ".join((*_describe_cuts(graph, boxes, drawn_arrows), "The explorer, the matrices and the tables have all."))
+    note = " ".join(
+        (*_describe_cuts(graph, boxes, drawn_arrows), "The explorer, the matrices and the tables have all.")
+    )
     thinned_graph = replace(
         graph,
         boxes=tuple(boxes),
