@@ -21,7 +21,7 @@ MAX_LISTED = 60
 Of 41,133 pages (10,000 components in 200 groups) a tree of all groups made two thirds of each page, 700 MB in all.
 """
 MAX_TREE_PAGES = 10_000
-"""With more pages, those in long lists show only their own branch of the tree; the start page has all of it.
+"""With more pages, those in and below long lists show only their own branch of the tree; the start page has all of it.
 
 Of 42,000 pages the tree made 2.3 of 8 kB each.
 """
@@ -88,8 +88,9 @@ class SiteNavigation:
 
     def _shows_branch(self, ancestry: tuple[str, ...]) -> bool:
         """Return whether a page shows only its own branch of the tree."""
-        own_list = self._list_of(self.pages[ancestry[0]])
-        return len(self.pages) > MAX_TREE_PAGES and len(self.children.get(own_list, ())) > MAX_LISTED
+        return len(self.pages) > MAX_TREE_PAGES and any(
+            len(self.children.get(self._list_of(self.pages[anchor]), ())) > MAX_LISTED for anchor in ancestry
+        )
 
     def _visible_pages(self, list_name: str, ancestry: tuple[str, ...]) -> Sequence[Page]:
         """Return a list as the tree shows it: all of it, or if it is too long, what leads to the reader's page."""
