@@ -50,6 +50,6 @@ def test_the_same_picture_comes_out_each_time() -> None:
 def test_nothing_is_left_out_of_what_somebody_chose_or_agreed_upon() -> None:
     ends = [(tail, head, 1) for tail, head in permutations(range(20), 2)]
     for kind in ("view", "agreement"):
-        graph = fold_graph(whole(20, ends, kind))  # type: ignore[arg-type]
+        graph = fold_graph(whole(20, ends, kind))
         assert len(graph.arrows) == len(ends)
         assert graph.notes == ("This picture is larger than 70 boxes and 160 arrows: select a part to see it well.",)
