@@ -2,9 +2,8 @@
 
 A ratio holds where seconds do not: machines differ, and so do their moods. Each figure is the median of several whole
 processes, after one that is not counted; one that fails ends the run. Usage: python benchmarks/run.py [NAME ...], to run
-only some of `example`, `check1000`, `since1000`, `check10000`, `diff1000`, `build1000`, `site`,
-`site1000`. README.md has the figures of one
-machine.
+only some of `example`, `check1000`, `since1000`, `check10000`, `diff1000`, `build1000`, `site`, `site1000`,
+`site10000`. README.md has the figures of one machine.
 """
 
 from __future__ import annotations
@@ -146,10 +145,14 @@ def site(folder: Path) -> None:
         text = file.read_text(encoding="utf-8")
         file.write_text(text.replace("title: ", "title: New ", 1), encoding="utf-8")
         changed = _processor_seconds(archgen("site", copy, "-o", out))
-        sizes = [path.stat().st_size for path in out.rglob("*") if path.is_file()]
+        # Without the list of the files, which no page loads.
+        sizes = [path.stat().st_size for path in out.rglob("*") if path.is_file() and path.name != ".archgen-files"]
+        memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024
         print(f"{f'site, {folder.name}':44} {cold:8.3f} s   {cold / check:8.1f} x check   processor time")
         print(f"{'site, after one change':44} {changed:8.3f} s   {changed / check:8.1f} x check   processor time")
-        print(f"{'site, bytes':44} {sum(sizes) / 1e6:8.1f} MB  largest file {max(sizes) / 1e6:.2f} MB")
+        print(
+            f"{'site, bytes':44} {sum(sizes) / 1e6:8.1f} MB  largest file {max(sizes) / 1e6:.2f} MB, largest process so far {memory} MB"
+        )
 
 
 def _processor_seconds(command: list[str]) -> float:
@@ -179,6 +182,7 @@ def main() -> None:
         "build1000": lambda: scale("build", 1_000),
         "site": lambda: site(_EXAMPLE),
         "site1000": lambda: generated_site(1_000),
+        "site10000": lambda: generated_site(10_000),
     }
     with tempfile.TemporaryDirectory() as cache:
         _ENVIRONMENT["XDG_CACHE_HOME"] = str(Path(cache) / "pictures")

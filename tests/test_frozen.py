@@ -93,3 +93,26 @@ def test_copies_and_pickles() -> None:
     for other in (copy.deepcopy(place), pickle.loads(pickle.dumps(place))):  # noqa: S301 - our own
         assert other == place
         assert other.words == ["x"]
+
+
+@dataclass(frozen=True, slots=True)
+class Wide:
+    """So many fields that `__init__` fills an object of a second class."""
+
+    one: int
+    two: str = "b"
+    three: tuple[int, ...] = ()
+    four: list[str] = field(default_factory=list)
+    five: bool = False
+    six: str = field(default="f", kw_only=True)
+
+
+def test_objects_of_many_fields_are_frozen_and_of_their_own_class() -> None:
+    wide = Wide(1, six="g")
+    assert type(wide) is Wide
+    assert (wide.one, wide.two, wide.three, wide.four, wide.five, wide.six) == (1, "b", (), [], False, "g")
+    assert repr(wide) == "Wide(one=1, two='b', three=(), four=[], five=False, six='g')"
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        wide.one = 2  # type: ignore[misc]
+    assert type(dataclasses.replace(wide, one=2)) is Wide
+    assert pickle.loads(pickle.dumps(wide)) == copy.deepcopy(wide) == wide  # noqa: S301 - our own

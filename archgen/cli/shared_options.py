@@ -58,7 +58,7 @@ history_option = click.option(
 component_pictures_option = click.option(
     "--component-pictures/--no-component-pictures",
     default=None,
-    help="Draw a picture of each component for the site, or leave them to its map.  [default: up to 300 components]",
+    help="Draw a picture of each component and group for the site, or leave them to its map.  [default: up to 300 components and 200 groups]",
 )
 
 trust_option = click.option(

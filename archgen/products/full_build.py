@@ -57,7 +57,7 @@ def build_outputs(
     inputs = replace(
         inputs,
         options=replace(inputs.options, revision=revision),
-        draws_components=shows_components or inputs.pictures_components,
+        undrawn_kinds=frozenset() if shows_components else inputs.site_undrawn_kinds,
     )
     stamp_keys = _make_stamp_keys(inputs, products)
     fresh_names = {

@@ -33,6 +33,6 @@ class OutputOptions:
     trusted_revision: TrustedRevision | None = None
     """Decides which backends of the project itself may run; None allows all of them."""
     component_pictures: bool | None = None
-    """Whether the site has a picture of each component; None: up to `product_inputs.MAX_PICTURED_COMPONENTS` of them."""
+    """Whether the site has a picture of each component and group; None: as `drawing_set.list_undrawn_kinds` says."""
     changes: SiteChanges | None = None
     """What changed since an earlier version, where the site is to show it."""

@@ -15,16 +15,12 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews
 from archgen.views import drawing_set
 from archgen.views.chart_shapes import Drawing
+from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition, RosPlace
 from archgen.views.report.printed_report import make_printed_report, walk_sections
 from archgen.views.report.report_drawings import make_report_drawings
 from archgen.views.shapes import Figure, Outline, Page
-
-MAX_PICTURED_COMPONENTS = 300
-"""With more, the site has no picture of each component unless it is asked for: of 1,000 they take minutes to draw, and
-the map shows the same at once.
-"""
 
 
 # Without slots: `cached_property` stores its values in the object's dictionary.
@@ -36,14 +32,15 @@ class ProductInputs:
     options: OutputOptions
     template: Path | None = None
     """The user's template of the Word report."""
-    draws_components: bool = True
-    """Whether any product shows the pictures of single components."""
+    undrawn_kinds: frozenset[GraphKind] = frozenset()
+    """The kinds of pictures that no product shows."""
 
     @property
-    def pictures_components(self) -> bool:
-        """Whether the site has a picture of each component."""
-        wish = self.options.component_pictures
-        return len(self._list_shown_components()) <= MAX_PICTURED_COMPONENTS if wish is None else wish
+    def site_undrawn_kinds(self) -> frozenset[GraphKind]:
+        """The kinds of pictures that the site leaves to its map, since there are too many of them."""
+        components = self._list_shown_components()
+        groups = {name.partition(".")[0] for name in components}
+        return drawing_set.list_undrawn_kinds(len(components), len(groups), wish=self.options.component_pictures)
 
     def _list_shown_components(self) -> Collection[str]:
         selection = self.options.selection
@@ -52,15 +49,17 @@ class ProductInputs:
     @cached_property
     def views(self) -> ProjectViews:
         """The look-ups and drawings."""
-        return project_views.make_views(self.checked_project, self.options, draws_components=self.draws_components)
+        return project_views.make_views(self.checked_project, self.options, undrawn_kinds=self.undrawn_kinds)
 
     @cached_property
     def site_drawings(self) -> Mapping[str, Drawing]:
         """The drawings that the site shows, by id."""
-        drawings = self.views.drawings
-        if self.pictures_components:
-            return drawings
-        return {name: each for name, each in drawings.items() if not drawing_set.is_component_drawing(each)}
+        undrawn_kinds = self.site_undrawn_kinds
+        return {
+            name: each
+            for name, each in self.views.drawings.items()
+            if not (isinstance(each, Graph) and each.kind in undrawn_kinds)
+        }
 
     @cached_property
     def outline(self) -> Outline:
@@ -101,7 +100,7 @@ class ProductInputs:
     @cached_property
     def pages(self) -> tuple[Page, ...]:
         """The site's pages."""
-        edition = replace(self.views.edition, drawings=self.site_drawings)
+        edition = replace(self.views.edition, drawings=self.site_drawings, undrawn_kinds=self.site_undrawn_kinds)
         return tuple(site_pages.make_pages(self.views.lookup, edition))
 
 

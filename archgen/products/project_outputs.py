@@ -63,7 +63,7 @@ def write_report_workbook(checked_project: CheckedProject, options: OutputOption
 def write_site(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
     """Write the static site into a folder."""
     inputs = ProductInputs(checked_project, options)
-    write_product(replace(inputs, draws_components=inputs.pictures_components), SITE, target)
+    write_product(replace(inputs, undrawn_kinds=inputs.site_undrawn_kinds), SITE, target)
 
 
 def write_diagrams(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -76,11 +76,11 @@ class ProjectViews:
 
 
 def make_views(
-    checked_project: CheckedProject, options: OutputOptions, *, draws_components: bool = True
+    checked_project: CheckedProject, options: OutputOptions, *, undrawn_kinds: Collection[str] = ()
 ) -> ProjectViews:
     """Make the views: look-ups with timing, drawings, history, and what the documents contain.
 
-    Without `draws_components` there is no drawing of a single component.
+    There is no drawing of the `undrawn_kinds`.
     """
     lookup = replace(
         make_scoped_lookup(checked_project, options),
@@ -89,7 +89,7 @@ def make_views(
     )
     project_history = read_history(checked_project, options)
     all_drawings = drawing_set.make_drawings(
-        lookup, options.selection, options.level or "implementation", draws_components=draws_components
+        lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds
     )
     all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
     if options.changes:

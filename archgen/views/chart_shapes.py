@@ -5,9 +5,9 @@ Why a shape of its own and not a layout of Graph: docs/decisions/0003-charts.md.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.views.graph_shapes import Graph
 
 SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Literal
 
 from archgen.model.selector_evaluation import Selection
 from archgen.views import graphs
 from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Graph
+from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.timing import chain_charts
+
+COMPONENT_KINDS: frozenset[GraphKind] = frozenset({"component", "implementation"})
+"""The kinds of pictures of which there is one for each component."""
+GROUP_KINDS: frozenset[GraphKind] = frozenset({"group", "group-timing"})
+"""The kinds of which there is one for each group."""
+MAX_PICTURED_COMPONENTS = 300
+"""With more, the site has no picture of each component unless it is asked for: of 1,000 they take minutes to draw, and
+the map shows the same at once.
+"""
+MAX_PICTURED_GROUPS = 200
+"""The same for groups: a picture takes as long as five checks of its components."""
 
 
 def make_drawings(
@@ -17,14 +29,14 @@ def make_drawings(
     selection: Selection | None,
     level: Literal["functional", "implementation"],
     *,
-    draws_components: bool = True,
+    undrawn_kinds: Collection[str] = (),
 ) -> dict[str, Drawing]:
     """Make the drawings of one level, or of a selection; of charts only those that show something selected.
 
-    Without `draws_components` there is none of a single component.
+    There are none of the `undrawn_kinds`.
     """
     element_graphs = graphs.make_all_graphs(
-        lookup.architecture, selection, lookup.findings, lookup.timing, draws_components=draws_components
+        lookup.architecture, selection, lookup.findings, lookup.timing, undrawn_kinds=undrawn_kinds
     )
     timing_charts = chain_charts.make_timing_charts(lookup)
     drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs} | {
@@ -42,9 +54,13 @@ def make_drawings(
     )
 
 
-def is_component_drawing(drawing: Drawing) -> bool:
-    """Whether a drawing shows a single component, with its neighbours or its nodes."""
-    return isinstance(drawing, Graph) and drawing.kind in {"component", "implementation"}
+def list_undrawn_kinds(components: int, groups: int, *, wish: bool | None) -> frozenset[GraphKind]:
+    """Return the kinds of pictures that a site of so many components and groups has none of, unless it is wished."""
+    leaves_out_components = components > MAX_PICTURED_COMPONENTS if wish is None else not wish
+    leaves_out_groups = groups > MAX_PICTURED_GROUPS and not wish
+    return (COMPONENT_KINDS if leaves_out_components else frozenset()) | (
+        GROUP_KINDS if leaves_out_groups else frozenset()
+    )
 
 
 def _is_implementation_drawing(drawing: Drawing) -> bool:

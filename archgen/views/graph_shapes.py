@@ -6,8 +6,9 @@ Class and field names are a public interface: templates read them (docs/backends
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
 from typing import Literal
+
+from archgen.frozen import dataclass
 
 ElementChange = Literal["added", "removed", "changed", "renamed"]
 """What happened to an element of a picture that shows two versions; its text and its line style show it."""

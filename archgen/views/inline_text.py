@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import lru_cache
 from itertools import chain
 
 from archgen.model.architecture import Architecture
@@ -32,9 +33,15 @@ ENDPOINT_USE_WORDS = {"publishes": "publishes", "subscribes": "subscribes to", "
 UNKNOWN_INLINES: Inlines = (Text("not known yet", muted=True),)
 
 
+@lru_cache(65536)
+def share_text(text: str, ref: str | None = None, *, code: bool = False) -> Text:
+    """Return a run of text, the same object for the same words: most runs of a site are links to the same elements."""
+    return Text(text, ref=ref, code=code)
+
+
 def to_inlines(*parts: str | Text) -> Inlines:
     """Turn strings and ready `Text` runs into one sequence of inlines."""
-    return tuple(Text(part) if isinstance(part, str) else part for part in parts)
+    return tuple([share_text(part) if isinstance(part, str) else part for part in parts])
 
 
 def message_to_inlines(message: str, *, muted: bool = False) -> Inlines:
@@ -49,7 +56,7 @@ _BACKTICKED = re.compile(r"`([^`]+)`")
 
 def value_or_unknown(value: str | None) -> Inlines:
     """Return the value as inlines, or "not known yet"."""
-    return (Text(value),) if value else UNKNOWN_INLINES
+    return (share_text(value),) if value else UNKNOWN_INLINES
 
 
 def quantity_to_inlines(quantity: Quantity | None) -> Inlines:
@@ -64,8 +71,8 @@ def count_to_inlines(count: int | None) -> Inlines:
 
 def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     """Join inlines with a separator, as `str.join` does."""
-    runs = list(items)
-    return tuple(chain.from_iterable((Text(separator), *run) if index else run for index, run in enumerate(runs)))
+    between = share_text(separator)
+    return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(items)]))
 
 
 def join_lines(items: Iterable[Inlines]) -> Inlines:
@@ -85,17 +92,17 @@ def _with_line_break(part: Text) -> Text:
 
 def group_link(architecture: Architecture, group_id: str) -> Text:
     """Link to a group, by its title."""
-    return Text(architecture.groups[group_id].title, ref=f"group:{group_id}")
+    return share_text(architecture.groups[group_id].title, f"group:{group_id}")
 
 
 def component_link(component: Component) -> Text:
     """Link to a component, by its title."""
-    return Text(component.title, ref=f"component:{component.id}")
+    return share_text(component.title, f"component:{component.id}")
 
 
 def node_link(node: Node) -> Text:
     """Link to a node, by its id."""
-    return Text(node.id, ref=f"node:{node.id}", code=True)
+    return share_text(node.id, f"node:{node.id}", code=True)
 
 
 def host_link(architecture: Architecture, host_id: str | None) -> Inlines:
@@ -108,12 +115,12 @@ def host_link(architecture: Architecture, host_id: str | None) -> Inlines:
 
 def type_link(type_name: str | None) -> Inlines:
     """Link to a conceptual type; "not known yet" for None."""
-    return (Text(type_name, ref=f"type:{type_name}"),) if type_name else UNKNOWN_INLINES
+    return (share_text(type_name, f"type:{type_name}"),) if type_name else UNKNOWN_INLINES
 
 
 def topic_link(topic_name: str) -> Text:
     """Link to a topic, service or action."""
-    return Text(topic_name, ref=f"topic:{topic_name}", code=True)
+    return share_text(topic_name, f"topic:{topic_name}", code=True)
 
 
 def requirement_link(architecture: Architecture, requirement_id: str) -> Inlines:
@@ -130,7 +137,7 @@ def partner_link(architecture: Architecture, partner_id: str | None) -> Inlines:
     if partner_id is None:
         return UNKNOWN_INLINES
     declared_partner = architecture.partners.get(partner_id)
-    return (Text(declared_partner.title if declared_partner else partner_id, ref=f"partner:{partner_id}"),)
+    return (share_text(declared_partner.title if declared_partner else partner_id, f"partner:{partner_id}"),)
 
 
 def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
@@ -141,7 +148,7 @@ def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
 def port_link(architecture: Architecture, port: Input | Output) -> Inlines:
     """Link to a port's component, followed by the port's own name: ports have no page of their own."""
     component = architecture.components[port.component]
-    return (component_link(component), Text(" · "), Text(port.name, code=True))
+    return (component_link(component), share_text(" · "), share_text(port.name, code=True))
 
 
 def describe_source(architecture: Architecture, connection: Connection) -> Inlines:

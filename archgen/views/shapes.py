@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal
 
+from archgen.frozen import dataclass
 from archgen.views.matrix_shapes import Matrix
 
 Record = Mapping[str, Any]

@@ -12,6 +12,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products import full_build, product_inputs, project_outputs
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_table import PRODUCTS
+from archgen.views import drawing_set
 
 
 @pytest.fixture
@@ -43,7 +44,7 @@ def list_component_pictures(site: Path) -> list[str]:
 def test_a_large_site_has_no_picture_of_each_component(
     *, project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
 ) -> None:
-    monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
+    monkeypatch.setattr(drawing_set, "MAX_PICTURED_COMPONENTS", most)
     options = OutputOptions(show_history=False, component_pictures=wish)
     project_outputs.write_site(project, options, tmp_path / "site")
     assert list_component_pictures(tmp_path / "site") == []
@@ -59,12 +60,51 @@ def test_a_large_site_has_no_picture_of_each_component(
 def test_a_site_has_pictures_of_components_up_to_a_number_or_as_asked(
     *, project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wish: bool | None, most: int
 ) -> None:
-    monkeypatch.setattr(product_inputs, "MAX_PICTURED_COMPONENTS", most)
+    monkeypatch.setattr(drawing_set, "MAX_PICTURED_COMPONENTS", most)
     project_outputs.write_site(project, OutputOptions(show_history=False, component_pictures=wish), tmp_path / "site")
     assert list_component_pictures(tmp_path / "site")[:2] == [
         "figures/components/g.a.svg",
         "figures/components/g.b.svg",
     ]
+
+
+def test_pages_say_that_their_picture_is_left_out_for_its_number(
+    project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drawing_set, "MAX_PICTURED_COMPONENTS", 1)
+    monkeypatch.setattr(drawing_set, "MAX_PICTURED_GROUPS", 0)
+    project_outputs.write_site(project, OutputOptions(show_history=False), tmp_path / "site")
+    assert not (tmp_path / "site" / "figures" / "groups").exists()
+    for page in ("groups/g.html", "components/g.a.html"):
+        html = (tmp_path / "site" / page).read_text()
+        assert html.count("No picture is drawn here") == 1
+        assert '<a href="../explorer.html">explorer</a>' in html
+        assert "could not be drawn" not in html
+    # Who asks for them gets them, and no such words.
+    options = OutputOptions(show_history=False, component_pictures=True)
+    project_outputs.write_site(project, options, tmp_path / "all")
+    assert (tmp_path / "all" / "figures" / "groups" / "g.svg").exists()
+    assert "No picture" not in (tmp_path / "all" / "groups" / "g.html").read_text()
+
+
+def test_a_site_with_kept_pictures_has_the_bytes_of_a_fresh_one(
+    project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "kept"))
+    options = OutputOptions(show_history=False)
+    project_outputs.write_site(project, options, tmp_path / "site")
+    file = tmp_path / "archgen.yaml"
+    file.write_text(file.read_text().replace("a: {", "a: {title: Eye, description: It sees., "))
+    changed_project = check_project(tmp_path)
+    project_outputs.write_site(changed_project, options, tmp_path / "site")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "empty"))
+    project_outputs.write_site(changed_project, options, tmp_path / "fresh")
+    kept, fresh = (
+        {f.relative_to(top): f.read_bytes() for f in top.rglob("*") if f.is_file()}
+        for top in (tmp_path / "site", tmp_path / "fresh")
+    )
+    assert kept == fresh
+    assert b"Eye" in kept[Path("components/g.a.html")]
 
 
 def test_a_picture_that_nobody_knows_is_an_error_and_nothing_is_written(

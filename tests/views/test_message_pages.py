@@ -9,6 +9,7 @@ import pytest
 from archgen.pipeline import check_project
 from archgen.views import used_messages
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.pages import message_pages
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table
 
@@ -119,3 +120,13 @@ def test_messages_inside_of_messages_are_used_where_these_are(lookup: Lookup) ->
         "builtin_interfaces/msg/Time",
         "geometry_msgs/msg/Point",
     }
+
+
+def test_of_many_topics_the_list_names_the_first_and_leads_to_all(
+    lookup: Lookup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(message_pages, "_MAX_NAMED_TOPICS", 0)
+    table = make_messages(lookup).make_list()
+    assert table is not None
+    (cell,) = (row[-1] for row in table.rows if read(row[0]) == "my_msgs/msg/Fall")
+    assert [(run.text, run.ref, run.code) for run in cell] == [("1 more", "message:my_msgs/msg/Fall", False)]

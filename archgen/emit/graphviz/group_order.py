@@ -7,7 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 FlowWeights = Mapping[tuple[str, str], int]
 GroupRows = tuple[tuple[str, ...], ...]
+RowJudge = Callable[[GroupRows, float], float]
+"""Returns the cost of rows; of what costs as much as the limit or more it need not be exact."""
 _ROW_COUNTS = range(2, 8)
+_MAX_TRIED_CUTS = 3
+"""Of a long order: dot takes 20 to 50 ms for each. In short ones the estimate is too coarse to leave one out."""
 _MAX_EXACT = 12
 """Up to this many items the best order is found over all subsets (2 to this power)."""
 
@@ -68,19 +72,22 @@ def _order_greedily(items: Sequence[str], weights: FlowWeights) -> tuple[str, ..
     return tuple(order)
 
 
-def fold_order(order: Sequence[str], judge_rows: Callable[[GroupRows], float]) -> list[GroupRows]:
-    """Cut an order into two to seven rows. Return the best cut for each number of rows; long orders are cut evenly
-    only.
+def fold_order(order: Sequence[str], judge_rows: RowJudge) -> list[GroupRows]:
+    """Cut an order into two to seven rows. Return the best cut for each number of rows; long orders are cut evenly only,
+    and only the cuts that are judged best are worth a layout.
     """
     count = len(order)
     if count > _MAX_EXACT:
-        return [_cut_evenly(order, rows) for rows in _ROW_COUNTS]
+        cuts = [_cut_evenly(order, rows) for rows in _ROW_COUNTS]
+        tried = sorted(cuts, key=lambda rows: judge_rows(rows, math.inf))[:_MAX_TRIED_CUTS]
+        return [rows for rows in cuts if rows in tried]
     best: dict[int, tuple[float, GroupRows]] = {}
     # Bit i cuts after item i: at most 2,047 ways of cutting, since longer orders went another way.
     for cut_bits in range(1, 1 << max(count - 1, 0)):
-        rows = _cut_order(order, cut_bits)
-        if len(rows) in _ROW_COUNTS and (score := judge_rows(rows)) < best.get(len(rows), (math.inf,))[0]:
-            best[len(rows)] = (score, rows)
+        row_count = cut_bits.bit_count() + 1
+        least = best.get(row_count, (math.inf,))[0]
+        if row_count in _ROW_COUNTS and (score := judge_rows(rows := _cut_order(order, cut_bits), least)) < least:
+            best[row_count] = (score, rows)
     return [best[rows][1] for rows in sorted(best)]
 
 

@@ -2,8 +2,8 @@
 them.
 
 No graph that dot gets has frames and labels at once: it cannot lay these out. The outer graph is tried in several ways:
-as dot likes it, downwards and to the right (one of them, where the project says which), and folded into two to seven rows or columns in the order in which least
-flows backwards. The scene that reads best on a page is taken: large text, few crossings, short arrows. On an
+as dot likes it, downwards and to the right (one of them, where the project says which), and folded into rows or columns
+in the order in which least flows backwards. The scene that reads best on a page is taken: large text, few crossings, short arrows. On an
 architecture of RAMCIP's shape (61 components, 138 connections) one run of dot with clusters gave about 340 crossings,
 two steps, with merged arrows, 3.
 """
@@ -66,10 +66,11 @@ def lay_out_two_step(styled_graph: StyledGraph) -> Scene:
     order = order_forward(tuple(tiles), _sum_weights(frame_arrows))
     tiles = {name: tiles[name] for name in order}  # dot breaks circles in the order in which it meets boxes
     scenes = [
-        _compose_scene(styled_graph, tiles, frame_arrows, statements)
+        _lay_out_tiles(styled_graph, tiles, frame_arrows, statements)
         for statements in _candidate_layouts(styled_graph, tiles, frame_arrows)
     ]
-    return declutter_labels(place_labels_on_lines(styled_graph, _best_scene(scenes, frame_arrows)))
+    scene = _fill_tiles(_best_scene(scenes, frame_arrows), tiles)
+    return declutter_labels(place_labels_on_lines(styled_graph, scene))
 
 
 def _sum_weights(arrows: Sequence[tuple[int, Arrow]]) -> dict[tuple[str, str], int]:
@@ -101,6 +102,8 @@ def _make_tiles(
     graph = styled_graph.graph
     headings = [title_attributes(cluster) for cluster in graph.clusters]
     sizes = measure_nodes(headings)
+    # All boxes in one call of Graphviz: what follows asks for them one by one, and the sizes are kept.
+    measure_nodes(list(styled_graph.box_attributes.values()))
     for at, cluster in enumerate(graph.clusters):
         scene = lay_out_inside(styled_graph, [box for box in graph.boxes if home_frames[box.id] == cluster.id], arrows)
         _, _, right, top = scene.bounds()
@@ -150,21 +153,24 @@ def _candidate_layouts(
 
 
 def _estimate_cost(
-    sizes: dict[str, tuple[float, ...]], ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows
+    sizes: dict[str, tuple[float, ...]], ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows, limit: float
 ) -> float:
     """Estimate the cost of rows before they are laid out: how large it gets, and how many arrows must pass a box.
 
-    `sizes` are along and across the rows.
+    `sizes` are along and across the rows. What costs the limit or more need not be exact.
     """
     along_rows = max(math.fsum(sizes[item][0] + 30 for item in row) for row in rows)
     across = math.fsum(max(sizes[item][1] for item in row) + 40 for row in rows)
     total_width, total_height = (along_rows, across) if direction == "TB" else (across, along_rows)
+    overflow = _page_overflow(total_width, total_height)
+    if overflow >= limit:
+        return overflow
     positions = {item: (at, to) for at, row in enumerate(rows) for to, item in enumerate(row)}
     passed_boxes = 0
     for tail, head in ends:
         (row, column), (other, to) = positions[tail], positions[head]
         passed_boxes += max(abs(column - to) - 1, 0) if row == other else abs(row - other) - 1
-    return _page_overflow(total_width, total_height) * (1 + 0.05 * passed_boxes)
+    return overflow * (1 + 0.05 * passed_boxes)
 
 
 def _page_overflow(width: float, height: float) -> float:
@@ -189,13 +195,13 @@ def _line_attributes(styled_graph: StyledGraph, index: int) -> str:
     )
 
 
-def _compose_scene(
+def _lay_out_tiles(
     styled_graph: StyledGraph,
     tiles: dict[str, LayoutTile],
     arrows: Sequence[tuple[int, Arrow]],
     candidate: tuple[str, list[str]],
 ) -> Scene:
-    """Lay out the outer graph and set the insides into its boxes."""
+    """Lay out the outer graph: a mark at the middle of each tile, a frame of the tile's size, and the lines."""
     settings, statements = candidate
     tile_of_node = {f"o{at}": tile for at, tile in enumerate(tiles.values())}
     boxes = {
@@ -213,12 +219,16 @@ def _compose_scene(
     outer_scene = read_scene(
         layout_engine.lay_out_dot(write_dot(settings, [*nodes, *statements])), boxes, edge_attributes
     )
-    scenes = [
-        tile_of_node[part.name].scene.moved(part.x - part.width / 2, part.y - part.height / 2)
-        for part in outer_scene.parts
-    ]
     anchors = tuple(replace(part, attributes=_INVISIBLE_NODE, kind="mark") for part in outer_scene.parts)
-    return Scene(lines=outer_scene.lines, parts=anchors).joined(*scenes)
+    frames = tuple(SceneFrame(part.name, {}, part.rectangle) for part in outer_scene.parts)
+    return Scene(frames, outer_scene.lines, anchors)
+
+
+def _fill_tiles(outer_scene: Scene, tiles: dict[str, LayoutTile]) -> Scene:
+    """Set the insides into the frames of the outer graph. Done for the best layout only: moving takes long."""
+    tile_of_node = {f"o{at}": tile for at, tile in enumerate(tiles.values())}
+    insides = [tile_of_node[part.name].scene.moved(*part.rectangle[:2]) for part in outer_scene.parts]
+    return replace(outer_scene, frames=()).joined(*insides)
 
 
 def _best_scene(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) -> Scene:

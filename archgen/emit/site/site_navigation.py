@@ -20,6 +20,11 @@ MAX_LISTED = 60
 
 Of 41,133 pages (10,000 components in 200 groups) a tree of all groups made two thirds of each page, 700 MB in all.
 """
+MAX_TREE_PAGES = 10_000
+"""With more pages, those in and below long lists show only their own branch of the tree; the start page has all of it.
+
+Of 42,000 pages the tree made 2.3 of 8 kB each.
+"""
 UNCOUNTED_KINDS = frozenset({"rules", "timing"})
 """Kinds of pages that are no elements: how many there are says nothing about the architecture."""
 NEWLINE = "\n"
@@ -42,14 +47,15 @@ class SiteNavigation:
     pages: Mapping[str, Page]
     cached_html: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
     cached_entries: dict[tuple[str, str], str] = field(default_factory=dict)
-    cached_kinds: dict[tuple[str, str], str] = field(default_factory=dict)
+    cached_kinds: dict[tuple[str, str, bool], str] = field(default_factory=dict)
     cached_counts: dict[str, str] = field(default_factory=dict)
 
     def write_tree(self, page: Page, root: str) -> str:
         """Write the tree for a page. Trees that differ only in the marked page are made once."""
         ancestry = self._ancestry_of(page.anchor)
         # Without long lists a tree depends on the page right below the start page only, and hundreds of pages share it.
-        key = (root, ancestry if any(map(self._is_long, self._visible_lists(ancestry))) else ancestry[-1:])
+        has_long_list = any(self._is_long(name, ancestry) for name in self._visible_lists(ancestry))
+        key = (root, ancestry if has_long_list else ancestry[-1:])
         if key not in self.cached_html:
             self.cached_html[key] = "\n".join(
                 self._write_kind(kind, title, ancestry, root) for kind, title in self.kinds
@@ -75,12 +81,20 @@ class SiteNavigation:
         """Return the names of the lists that the tree shows to a reader here."""
         return (*(f"kind {kind}" for kind, _ in self.kinds), ancestry[-1])
 
-    def _is_long(self, list_name: str) -> bool:
-        return len(self.children.get(list_name, ())) > MAX_LISTED
+    def _is_long(self, list_name: str, ancestry: tuple[str, ...]) -> bool:
+        """Return whether a list is too long to be shown in full to a reader here."""
+        length = len(self.children.get(list_name, ()))
+        return length > MAX_LISTED or (length > 1 and self._shows_branch(ancestry))
+
+    def _shows_branch(self, ancestry: tuple[str, ...]) -> bool:
+        """Return whether a page shows only its own branch of the tree."""
+        return len(self.pages) > MAX_TREE_PAGES and any(
+            len(self.children.get(self._list_of(self.pages[anchor]), ())) > MAX_LISTED for anchor in ancestry
+        )
 
     def _visible_pages(self, list_name: str, ancestry: tuple[str, ...]) -> Sequence[Page]:
         """Return a list as the tree shows it: all of it, or if it is too long, what leads to the reader's page."""
-        if not self._is_long(list_name):
+        if not self._is_long(list_name, ancestry):
             return self.children.get(list_name, ())
         return [page for anchor in ancestry if self._list_of(page := self.pages[anchor]) == list_name]
 
@@ -93,7 +107,7 @@ class SiteNavigation:
         """Write the list of a kind. It is the same for all readers in a folder who are not below one of its pages."""
         if any(self._list_of(self.pages[anchor]) == f"kind {kind}" for anchor in ancestry):
             return self._write_new_kind(kind, title, ancestry, root)
-        key = (root, kind)
+        key = (root, kind, self._shows_branch(ancestry))
         if key not in self.cached_kinds:
             self.cached_kinds[key] = self._write_new_kind(kind, title, ancestry, root)
         return self.cached_kinds[key]
@@ -101,7 +115,7 @@ class SiteNavigation:
     def _write_new_kind(self, kind: str, title: str, ancestry: tuple[str, ...], root: str) -> str:
         list_name = f"kind {kind}"
         items = [self._write_entry(page, ancestry, root) for page in self._visible_pages(list_name, ancestry)]
-        if self._is_long(list_name):
+        if self._is_long(list_name, ancestry):
             hidden_count = len(self.children[list_name]) - len(items)
             items.append(f'<li><a href="{root}{self.start}">{hidden_count} more on the start page</a></li>')
         heading = f"<h2>{escape_html(title)}</h2>\n" if title else ""

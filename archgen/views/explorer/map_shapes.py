@@ -7,7 +7,9 @@ here, and in `assets/explorer/data.js`, which reads them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from archgen.frozen import dataclass
 
 Row = tuple[object, ...]
 """Texts, numbers and tuples of them."""

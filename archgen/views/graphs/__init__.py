@@ -17,7 +17,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
@@ -56,17 +56,17 @@ def make_all_graphs(
     findings: Iterable[Diagnostic] = (),
     timed: TimingLookup | None = None,
     *,
-    draws_components: bool = True,
+    undrawn_kinds: Collection[str] = (),
 ) -> tuple[Graph, ...]:
     """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out.
 
-    Without `draws_components` there is none of a single component.
+    Without those of the `undrawn_kinds`.
     """
     lookup = make_lookup(architecture, findings, timing_lookup=timed)
-    return tuple(graph for graph in _iterate_graphs(lookup, selection, draws_components) if graph.boxes)
+    return tuple(graph for graph in _iterate_graphs(lookup, selection, undrawn_kinds) if graph.boxes)
 
 
-def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_components: bool) -> Iterator[Graph]:  # noqa: FBT001 - private
+def _iterate_graphs(lookup: Lookup, selection: Selection | None, undrawn_kinds: Collection[str]) -> Iterator[Graph]:
     architecture = lookup.architecture
     shown_components = list(architecture.components.values())
     if selection is None:
@@ -77,9 +77,10 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_component
         # The same ids as without a selection (`overview` here, `ros` below), since pages and reports refer to graphs by
         # id.
         yield selection_graphs.draw_functional_part(lookup, "overview", "The selected part", selection.components)
-    for name in dict.fromkeys(each.group for each in shown_components):
+    groups = dict.fromkeys(each.group for each in shown_components)
+    for name in groups if "group" not in undrawn_kinds else ():
         yield fold_graph(draw_group(lookup, name))
-    for each in shown_components if draws_components else ():
+    for each in shown_components if "component" not in undrawn_kinds else ():
         yield draw_component(lookup, each.id)
         yield draw_implementation(lookup, each.id)
     if selection is None:
@@ -89,9 +90,9 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_component
     else:
         yield selection_graphs.draw_implementation_part(lookup, "ros", "Nodes of the selected part", selection.nodes)
     if lookup.timing is not None:
-        groups = dict.fromkeys(each.group for each in shown_components)
+        timed_groups = groups if "group-timing" not in undrawn_kinds else ()
         yield from timing_graphs.draw_timing_graphs(
-            lookup, lookup.timing, groups, selection.nodes if selection else None
+            lookup, lookup.timing, timed_groups, selection.nodes if selection else None
         )
     selecting = SelectorEvaluator(architecture)
     # Views of the project show what they say, whatever is selected.

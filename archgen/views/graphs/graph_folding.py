@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.graphs.arrow_thinning import MAX_DRAWN_BOXES, WHOLE_KINDS, thin_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 
@@ -21,7 +22,9 @@ _MAX_LIST_ROWS = 14
 
 
 def fold_graph(graph: Graph, max_arrows: int = MAX_ARROWS) -> Graph:
-    """Fold a graph until it fits the budget. One that still does not fit gets a note that says so."""
+    """Fold a graph until it fits the budget. One that still does not fit is thinned out where it shows the whole; another
+    gets a note that says so.
+    """
     if _fits_budget(graph, max_arrows):
         return graph
     members = Counter(box.cluster for box in graph.boxes)
@@ -34,12 +37,18 @@ def fold_graph(graph: Graph, max_arrows: int = MAX_ARROWS) -> Graph:
             folded = _fold_clusters(graph, cluster_ids, max_arrows)
             if _fits_budget(folded, max_arrows):
                 return folded
+    if graph.kind in WHOLE_KINDS and _needs_thinning(folded, max_arrows):
+        return thin_graph(folded, max_arrows)
     note = f"This picture is larger than {MAX_BOXES} boxes and {max_arrows} arrows: select a part to see it well."
     return replace(folded, notes=(*folded.notes, note))
 
 
 def _fits_budget(graph: Graph, max_arrows: int) -> bool:
     return len(graph.boxes) <= MAX_BOXES and len(graph.arrows) <= max_arrows
+
+
+def _needs_thinning(graph: Graph, max_arrows: int) -> bool:
+    return len(graph.boxes) > MAX_DRAWN_BOXES or len(graph.arrows) > max_arrows
 
 
 def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Graph:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import TypeVar
 
 from archgen.model.component import Output
@@ -33,6 +34,7 @@ T = TypeVar("T")
 
 _KIND_TITLES = {"topic": "Message", "service": "Service", "action": "Action"}
 _PART_TITLES = {"request": "Request", "response": "Answer", "goal": "Goal", "result": "Result", "feedback": "Feedback"}
+_MAX_NAMED_TOPICS = 20
 _LIST_CRUMB = ("Messages", "page:messages")
 
 
@@ -52,6 +54,14 @@ class MessagePages:
             if "/" in inner
         )
 
+    def _topic_cell(self, message: str) -> Inlines:
+        """Link to what carries a message; of many to the first, and to the message's page, which lists all."""
+        topics = self._topics_by_message.get(message, ())
+        links: list[Inlines] = [(inline_text.topic_link(each.name),) for each in topics[:_MAX_NAMED_TOPICS]]
+        if hidden_count := len(topics) - len(links):
+            links.append((replace(message_link(message), text=f"{hidden_count:,} more", code=False),))
+        return inline_text.join_inlines(links)
+
     def make_list(self) -> Table | None:
         """List all messages by name; None where there are none."""
         rows = tuple(
@@ -61,9 +71,7 @@ class MessagePages:
                 _count_cell(len(fields)) if (fields := self._fields_of(message)) is not None else (),
                 self._size_cell(message),
                 inline_text.join_inlines(inline_text.type_link(each.name) for each in self._types_of(message)),
-                inline_text.join_inlines(
-                    (inline_text.topic_link(each.name),) for each in self._topics_by_message.get(message, ())
-                ),
+                self._topic_cell(message),
             )
             for message in sorted(self._users)
         )

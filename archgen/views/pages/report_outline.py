@@ -17,6 +17,7 @@ from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -41,6 +42,8 @@ class DocumentEdition:
     chapter_names: tuple[str, ...] = GENERATED_CHAPTERS
     project_chapters: Mapping[str, Chapter] = field(default_factory=dict)
     drawings: Mapping[str, Drawing] = field(default_factory=dict)
+    undrawn_kinds: frozenset[GraphKind] = frozenset()
+    """The kinds of pictures that are left out since there are too many of them; the pages say so."""
     statistics: tuple[Table, ...] = ()
     history: History = field(default_factory=History)
     rule_pages: Mapping[str, str] = field(default_factory=dict)

@@ -23,6 +23,7 @@ from archgen.views.pages import (
     page_places,
     partner_pages,
     timing_chapter,
+    undrawn_pictures,
 )
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
@@ -102,8 +103,10 @@ class PageMaker:
         return self.lookup.architecture
 
     def keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
-        """Drop figures that are not among this site's drawings: of another level, or outside of the selection."""
-        return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
+        """Drop figures that are not among this site's drawings: of another level, or outside of the selection. Of those
+        that are left out for their number a note says so.
+        """
+        return undrawn_pictures.keep_drawn(blocks, self.edition)
 
     def message_pages(self) -> MessagePages:
         """Return the maker of the pages on messages: those of shown types and, with the ROS side, of shown topics."""
@@ -293,7 +296,10 @@ class PageMaker:
         graphs = self.edition.drawings
         if self.lookup.timing is not None and self.edition.level == "implementation":
             blocks = timing_chapter.make_timing_blocks(self.lookup, self.lookup.timing, graphs)
-            sections = timing_chapter.make_timing_sections(self.lookup, self.lookup.timing, graphs)
+            sections = (
+                *undrawn_pictures.make_timing_note(self.edition),
+                *timing_chapter.make_timing_sections(self.lookup, self.lookup.timing, graphs),
+            )
             links = Bullets(tuple(inline_text.to_inlines(Text(s.title, ref=s.anchor)) for s in sections))
             # The links come before the picture of the whole, which is tall.
             figures = [block for block in blocks if isinstance(block, Figure)]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+
+from archgen.frozen import dataclass
 
 _MARKS = re.compile(r"[*`#>|]+|\]\([^)]*\)|[\[\]]")
 

@@ -13,7 +13,7 @@ import pytest
 
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
-from archgen.emit.site import build_site
+from archgen.emit.site import build_site, site_navigation
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -227,6 +227,24 @@ def test_long_lists_are_not_repeated_on_each_page() -> None:
         shown = html[html.index("<nav id") : html.index("</nav>")]
         assert [re.sub(r"<[^>]*>", "", entry) for entry in re.findall(r"<a .*?</a>", shown)] == entries
         assert shown.count("aria-current") == 1
+
+
+def test_very_large_sites_show_long_lists_their_own_branch_of_the_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(site_navigation, "MAX_TREE_PAGES", 60)
+    start = (("Overview", "page:index"),)
+    spanning = [
+        Page(f"{i}.html", f"page:{i}", f"S{i}", "spanning", Section(f"page:{i}", "S", ()), start) for i in range(3)
+    ]
+    crumbs = (*start, ("S1", "page:1"))
+    topics = [Page(f"t/{i}.html", f"t:{i}", f"/t{i}", "topics", Section(f"t:{i}", "T", ()), crumbs) for i in range(61)]
+    tree = tree_of(page(), *spanning, *topics, other())
+    for name, entries in (
+        ("t/7.html", ["Overview", "Sensing", "S1 61", "/t7", "2 more on the start page"]),
+        ("2.html", ["Overview", "Sensing", "S0", "S1 61", "S2"]),
+    ):
+        html = tree.files[name].decode()
+        shown = html[html.index("<nav id") : html.index("</nav>")]
+        assert [re.sub(r"<[^>]*>", "", entry) for entry in re.findall(r"<a .*?</a>", shown)] == entries
 
 
 def test_a_picture_stands_in_the_page_with_its_links(draw: Draw) -> None:
