@@ -161,7 +161,8 @@ def _list_arguments(names: Iterable[str | None]) -> Iterator[str]:
 def _list_used_messages(architecture: Architecture) -> frozenset[str]:
     """Return the messages that ports, nodes and fields name by themselves: a type with fields may define one of them."""
     interfaces = architecture.interfaces
-    project_names = [name for name in interfaces.names if name.partition("/")[0] in interfaces.project_packages]
+    packages = interfaces.project_packages
+    project_names = [name for name in interfaces.names if name.partition("/")[0] in packages] if packages else []
     definitions = filter(None, map(interfaces.definitions.get, project_names))
     return frozenset(
         {
