@@ -159,6 +159,7 @@ CARD_ONLY = {
     "group": "the beginning of the id",
     "component": "the beginning of the id",
     "message": "that of the type",
+    "values": "the kind `message`",
 }
 ROBOT = """\
 archgen: 1
