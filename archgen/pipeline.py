@@ -33,14 +33,13 @@ from archgen.link import (
     parameter_files,
     parameter_reading,
     report_chapters,
-    shipped_types,
     slice_merging,
     title_guesses,
 )
-from archgen.link.data_types.field_types import TypeSources
-from archgen.link.declare import section_declaration, type_declaration
+from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.interface_sources import TypeMessages
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
+from archgen.link.project_types import declare_project_types
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
@@ -228,7 +227,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     )
     expansion = compose.expand_project(merged_table)
     outline = element_outline.build_outline(expansion)
-    declared_types = _declare_types(loaded_project, merged_table, outline, damaged_elements)
+    declared_types = declare_project_types(loaded_project, merged_table, outline, damaged_elements)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
         expansion,
@@ -336,27 +335,8 @@ def _find_silenced(
     return tuple(finding for finding in all_findings if finding not in shown_findings)
 
 
-def _declare_types(
-    loaded_project: LoadedProject,
-    merged_table: MappingNode,
-    outline: element_outline.ElementOutline,
-    damaged_elements: frozenset[str],
-) -> type_declaration.DeclaredTypes:
-    """Return the types: those of the project, and those that ship and are used."""
-    distro = guess_distro(loaded_project.distro)
-    sources = TypeSources(
-        section_declaration.declare_project(merged_table, loaded_project.id, loaded_project.title).id,
-        shipped_types.load_shipped_types(distro),
-        distro,
-        loaded_project.lost_keys,
-        damaged_elements,
-        loaded_project.partial,
-    )
-    return type_declaration.declare_types(merged_table, outline, sources)
-
-
 def _load_interfaces(
-    loaded_project: LoadedProject, merged_table: MappingNode, declared_types: type_declaration.DeclaredTypes
+    loaded_project: LoadedProject, merged_table: MappingNode, declared_types: DeclaredTypes
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
     """Read the project's own interface definitions, which override the shipped ones: files, `ros.definitions`, types."""
     texts, diagnostics = read_interface_files(loaded_project)

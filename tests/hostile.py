@@ -35,6 +35,8 @@ ELEMENTS = {
     "performance": "indicator",
     "nodes": "node",
     "types": "type",
+    "fields": "field",
+    "constants": "constant",
     "hosts": "host",
     "containers": "container",
     "links": "link",
@@ -69,7 +71,13 @@ def project(text: str) -> dict[str, Any]:
             "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
             "m": {"implements": "b.y", "host": "h"},
         },
-        "types": {kind: {"message": "std_msgs/msg/String"}},
+        "types": {
+            kind: {"message": "std_msgs/msg/String"},
+            "Fields": {
+                "fields": {"x": {"type": "float64"}, "y": {"type": kind}},
+                "constants": {"A": {"type": "uint8", "value": "1"}},
+            },
+        },
         "hosts": {"h": {}, "i": {}},
         "containers": {"c": {"host": "i"}},
         "links": {"l": {"connects": ["h", "i"]}},

@@ -135,10 +135,12 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
         used_types |= {type_.request, type_.response, type_.feedback}
         used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)
     used_types |= set(_list_arguments(used_types))
+    used_messages = _list_used_messages(architecture)
     # An unused mapping beside a used type without one is most likely a misspelt name.
     unmapped_names = {name for name in used_types if name and not _is_mapped(architecture, name)}
     for type_ in architecture.types.values():
-        if type_.origin == "project" and type_.at != NO_SPAN and type_.name not in used_types:
+        is_definition = type_.has_content and type_.message in used_messages
+        if type_.origin == "project" and type_.at != NO_SPAN and type_.name not in used_types and not is_definition:
             yield Diagnostic(
                 "unused-type",
                 f"nothing has the type `{type_.name}`",
@@ -156,6 +158,21 @@ def _list_arguments(names: Iterable[str | None]) -> Iterator[str]:
         if arguments:
             yield from (base, *arguments)
             pending_names += arguments
+
+
+def _list_used_messages(architecture: Architecture) -> frozenset[str]:
+    """Return the messages that ports, nodes and fields name by themselves: a type with fields may define one of them."""
+    interfaces = architecture.interfaces
+    packages = interfaces.project_packages
+    project_names = [name for name in interfaces.names if name.partition("/")[0] in packages] if packages else []
+    definitions = filter(None, map(interfaces.definitions.get, project_names))
+    return frozenset(
+        {
+            *(type_.message for type_ in architecture.types.values() if type_.message and type_.origin == "message"),
+            *(use.message for node in architecture.nodes.values() for use in node.uses if use.message),
+            *(field.type for definition in definitions for part in definition.parts for field in part),
+        }
+    )
 
 
 def _is_mapped(architecture: Architecture, name: str) -> bool:

@@ -1,6 +1,7 @@
 """Merge what three versions of a slice say: mappings key by key, so that each element is merged by its id.
 
-Only meaning counts here: neither order of keys nor style of writing. The text is merged by `slice_merge`.
+Only meaning counts here: neither style of writing nor the order of keys, but for that of a message's fields. The text is
+merged by `slice_merge`.
 """
 
 from __future__ import annotations
@@ -26,6 +27,11 @@ _CHAIN_SECTION = "chains"
 _PORT_SECTION = "inputs"
 """Its keys are ids of inputs, and a list is the short form of `from`."""
 
+_FIELD_KEYS = frozenset({"fields", "request", "response", "feedback"})
+"""Keys of a type below which order counts: fields stand in a message as they are written."""
+_FIELD_ORDER = "(order)"
+"""The key under which the order of fields is merged; no field has such a name."""
+
 
 class ScalarValue(NamedTuple):
     """A scalar by what it means: `1.10` and `1.1` are two versions, `"a"` and `a` are one text."""
@@ -47,7 +53,7 @@ class ItemList(NamedTuple):
 
 
 class MappingValue(NamedTuple):
-    """A mapping: its keys, sorted, and their values."""
+    """A mapping: its keys, sorted, and their values; the order of fields is the value of a key of its own."""
 
     items: tuple[tuple[str, MergedValue], ...]
 
@@ -72,9 +78,12 @@ def read_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
     if isinstance(node, ScalarNode):
         return ScalarValue(type(node.value).__name__, node.value if isinstance(node.value, str) else node.text)
     if isinstance(node, MappingNode):
-        return MappingValue(tuple(sorted((entry.key, read_value(entry.value, (*path, entry.key))) for entry in node)))
-    items = tuple(read_value(item, path) for item in node.items)
-    return ItemSet(tuple(sorted(items, key=repr))) if _is_unordered(path) else ItemList(items)
+        items = [(entry.key, read_value(entry.value, (*path, entry.key))) for entry in node]
+        if len(path) == 3 and path[0] == "types" and path[2] in _FIELD_KEYS:  # noqa: PLR2004 - section, type, key
+            items.append((_FIELD_ORDER, ItemList(tuple(ScalarValue("str", entry.key) for entry in node))))
+        return MappingValue(tuple(sorted(items, key=lambda item: item[0])))
+    list_items = tuple(read_value(item, path) for item in node.items)
+    return ItemSet(tuple(sorted(list_items, key=repr))) if _is_unordered(path) else ItemList(list_items)
 
 
 def _is_unordered(path: tuple[str, ...]) -> bool:

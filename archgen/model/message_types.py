@@ -45,8 +45,9 @@ class DataField:
 
     @property
     def meaning(self) -> str:
-        """What is said of the field, its unit in front, as comments in definitions say it."""
-        return " ".join(filter(None, (f"[{self.unit}]" if self.unit else "", self.comment)))
+        """What is said of the field on one line, its unit in front, as comments in definitions say it."""
+        unit = f"[{self.unit}]" if self.unit else ""
+        return " ".join(f"{unit} {self.comment or ''}".split())
 
 
 @dataclass(frozen=True, slots=True)

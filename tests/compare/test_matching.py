@@ -55,9 +55,9 @@ EXPECTED = {
     "output g.cam.im": ("name 2: ^i im m$", "type 4: T", "topics 3: /im", "text 1: a on paper picture", "readers 5: g.eye"),
     "input g.eye.im": ("name 2: ^i im m$", "type 4: T", "topics 3:", "text 1: it", "sources 5: g.cam.im"),
     "type T": (
-        "name 2: ^t t$", "message 3: own_msgs/msg/M", "users 5: g.cam.im g.eye.im", "text 1: here words", "size 1: 1 kB", "inside 2:",
+        "name 2: ^t t$", "message 3: own_msgs/msg/M", "users 5: g.cam.im g.eye.im", "text 1: here words", "size 1: 1 kB", "inside 2:", "fields 3:",
     ),
-    "type S": ("name 2: ^s s$", "message 3:", "users 5:", "text 1:", "size 1:", "inside 2: T"),
+    "type S": ("name 2: ^s s$", "message 3:", "users 5:", "text 1:", "size 1:", "inside 2: T", "fields 3:"),
     "message own_msgs/msg/M": ("name 2: ^m m$", "package 1: own_msgs/msg", "fields 5: a int8 b int8", "users 4: T"),
     "node n": (
         "name 2: ^n n$", "title 2: node the", "implements 4: g.cam", "package 2: p", "program 2: e", "ports 2: publishes im",

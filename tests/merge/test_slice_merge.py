@@ -316,3 +316,16 @@ def _merge_or_conflict(base: MergedValue, ours: MergedValue, theirs: MergedValue
         return merge_values(base, ours, theirs)
     except MergeConflictError as conflict:
         return UnmergedSlice(conflict.path)
+
+
+TYPE = "types:\n  Pose:\n    fields:\n      x: float64\n      y: float64\n"
+
+
+def test_the_order_of_fields_is_merged_and_nothing_of_it_is_guessed() -> None:
+    turned = "types:\n  Pose:\n    fields:\n      y: float64\n      x: float64\n"
+    commented = TYPE.replace("x: float64", "x: {type: float64, unit: m}")
+    assert merge(TYPE, turned, commented) == turned.replace("x: float64", "x: {type: float64, unit: m}")
+    added = TYPE.replace("      x:", "      before: bool\n      x:")
+    appended = TYPE + "      after: bool\n"
+    assert merge(TYPE, added, appended) == added + "      after: bool\n"
+    assert merge(TYPE, appended, TYPE + "      other: bool\n") == UnmergedSlice(("types", "Pose", "fields", "(order)"))

@@ -77,7 +77,7 @@ class DefinitionMaker:
     def _make_message_part(self, conceptual_type: ConceptualType) -> _Part:
         written = self._make_part(conceptual_type.fields or (), conceptual_type)
         constants = tuple(
-            InterfaceConstant(each.name, each.type, each.value, each.comment or "")
+            InterfaceConstant(each.name, each.type, each.value, " ".join((each.comment or "").split()))
             for each in conceptual_type.constants
         )
         if not conceptual_type.values:

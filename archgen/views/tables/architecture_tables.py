@@ -155,6 +155,8 @@ def message_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
     """Return the message of a type, or that it needs none, or that it is not known yet."""
     if conceptual_type.message:
         return inline_text.to_inlines(element_references.message_link(conceptual_type.message))
+    if conceptual_type.generic:
+        return inline_text.to_inlines(Text("none: generic", muted=True))
     return (
         inline_text.to_inlines(Text("none: physical", muted=True))
         if conceptual_type.name in lookup.physical_types

@@ -139,7 +139,9 @@ def test_boxes_do_not_cover_one_another_when_all_is_open(visit: OpenPage) -> Non
         ),
     ],
 )
-def test_what_runs_back_past_whole_columns_runs_below_all_boxes(visit: OpenPage, hash_: str, back: str, forth: str) -> None:
+def test_what_runs_back_past_whole_columns_runs_below_all_boxes(
+    visit: OpenPage, hash_: str, back: str, forth: str
+) -> None:
     page = visit(hash_)
     below = page.evaluate(
         """() => {
