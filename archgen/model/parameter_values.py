@@ -185,8 +185,8 @@ def _infer_type(value: object) -> str | None:
     if isinstance(value, str) and _SUBSTITUTION_MARK not in value:
         return "string"
     if isinstance(value, list) and value:
-        types = {_infer_type(item) for item in value}
-        return f"{next(iter(types))}[]" if len(types) == 1 and None not in types else None
+        first_type, *other_types = dict.fromkeys(_infer_type(item) for item in value)
+        return None if other_types or first_type is None else f"{first_type}[]"
     return None
 
 
