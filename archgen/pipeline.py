@@ -27,8 +27,8 @@ from archgen.findings import (
 )
 from archgen.frozen import dataclass
 from archgen.link import (
-    element_outline,
     chapter_pictures,
+    element_outline,
     interface_sources,
     parameter_files,
     parameter_reading,
