@@ -35,6 +35,9 @@ class PathWork:
         }
         self.calm_window = min(self.calm_windows.values(), default=0)
         self.calm_times: dict[int, int] = {}
+        self.longest_window = 0
+        """The longest window of which somebody said that it was looked at."""
+        self._lanes_of_path: dict[int, dict[Origin, list[int]]] = {}
 
     def note_delay(self, key: WayKey, delay: int) -> bool:
         """Note how long a way takes, unless it was longer before; return whether it grew."""
@@ -44,6 +47,10 @@ class PathWork:
         self.delays[key] = delay
         self.longest_delay = max(self.longest_delay, delay)
         return True
+
+    def is_calm(self) -> bool:
+        """Whether nothing came twice in any window, with all that may be pending: then it makes nothing longer."""
+        return self.longest_window + self.longest_delay <= self.calm_window
 
     def find_time_beside(self, path: CorePath, window: int, spend: Callable[[int], None]) -> int:
         """Return how long all takes in a window but the last step's activations: A + B."""
@@ -103,12 +110,18 @@ class PathWork:
         pending_works: list[int] = []
         pending_by_origin: dict[Origin, int] = {}
         held_work = 0
+        jobs, delays, calm_windows = self.cores.jobs, self.delays, self.calm_windows
         for lane in path.other_lanes:
             lane_work = pending_work = 0
             for number in lane:
-                key, origin, work, _, _ = self.cores.jobs[number]
-                lane_work += work * arrivals[origin]
-                count = self.count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                key, origin, work, _, _ = jobs[number]
+                arrived = arrivals[origin]
+                lane_work += work * arrived
+                delay = delays.get(key, 0)
+                # As in `count_pending`: this is the innermost loop of all that is found on several cores.
+                if not delay or window + delay <= calm_windows[origin]:
+                    continue
+                count = max_arrivals(self.streams[origin], window + delay) - arrived
                 if count:
                     pending_work += work * count
                     if number in path.held_jobs:
@@ -153,11 +166,22 @@ class PathWork:
 
     def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""
-        waiting_works = [0] * path.lane_count
+        waiting_works = [0] * len(path.waiting_lanes)
+        lanes_of_origin = self._look_up_lanes(path)
         for origin, work in work_by_origin.items():
-            for lane in path.lanes_of_origin[origin]:
+            for lane in lanes_of_origin.get(origin, ()):
                 waiting_works[lane] += work
         return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
+
+    def _look_up_lanes(self, path: CorePath) -> Mapping[Origin, Sequence[int]]:
+        """Return the other threads, or containers, for which what comes of each origin may wait."""
+        lanes_of_origin = self._lanes_of_path.get(id(path))
+        if lanes_of_origin is None:
+            lanes_of_origin = self._lanes_of_path[id(path)] = {}
+            for lane, origins in enumerate(path.waiting_lanes):
+                for origin in origins:
+                    lanes_of_origin.setdefault(origin, []).append(lane)
+        return lanes_of_origin
 
 
 def split_lanes(path: CorePath, lane_works: Sequence[int]) -> Sequence[int]:
