@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from heapq import nlargest
 
 from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.cascade_demand import CascadeDemand
@@ -14,6 +13,8 @@ from archgen.timing.load.shared_cores import SharedCores, WayKey
 
 _ENDLESS = 1 << 200
 """Longer than any window, in ticks."""
+PendingTerm = tuple[Origin, int, int, int, EventStreams, bool]
+"""What a job may have pending: its origin, work, delay, the longest window in which nothing is, its streams, whether held."""
 
 
 class PathWork:
@@ -38,6 +39,9 @@ class PathWork:
         self.longest_window = 0
         """The longest window of which somebody said that it was looked at."""
         self._lanes_of_path: dict[int, dict[Origin, list[int]]] = {}
+        # By the path's identity; they rest on no window, only on the delays.
+        self._most_pending: dict[int, int] = {}
+        self._terms_of_path: dict[int, list[list[PendingTerm]]] = {}
 
     def note_delay(self, key: WayKey, delay: int) -> bool:
         """Note how long a way takes, unless it was longer before; return whether it grew."""
@@ -45,6 +49,8 @@ class PathWork:
             self.delays.setdefault(key, delay)
             return False
         self.delays[key] = delay
+        self._most_pending.clear()
+        self._terms_of_path.clear()
         self.longest_delay = max(self.longest_delay, delay)
         return True
 
@@ -110,21 +116,23 @@ class PathWork:
         pending_works: list[int] = []
         pending_by_origin: dict[Origin, int] = {}
         held_work = 0
-        jobs, delays, calm_windows = self.cores.jobs, self.delays, self.calm_windows
-        for lane in path.other_lanes:
+        # As in `count_pending`, but written out: this is the innermost loop of all that is found on several cores.
+        for lane_terms in self._look_up_terms(path):
             lane_work = pending_work = 0
-            for number in lane:
-                key, origin, work, _, _ = jobs[number]
+            for origin, work, delay, calm_window, streams, is_held in lane_terms:
                 arrived = arrivals[origin]
                 lane_work += work * arrived
-                delay = delays.get(key, 0)
-                # As in `count_pending`: this is the innermost loop of all that is found on several cores.
-                if not delay or window + delay <= calm_windows[origin]:
+                if window <= calm_window:
                     continue
-                count = max_arrivals(self.streams[origin], window + delay) - arrived
+                count = -arrived
+                for period, jitter, distance, per_period, batch in streams:
+                    batches = -(-(window + delay + jitter) * per_period // period)
+                    if distance:
+                        batches = min(batches, -(-(window + delay) // distance))
+                    count += batch * batches
                 if count:
                     pending_work += work * count
-                    if number in path.held_jobs:
+                    if is_held:
                         held_work += work * count
                     else:
                         pending_by_origin[origin] = pending_by_origin.get(origin, 0) + work * count
@@ -146,11 +154,32 @@ class PathWork:
             )
         return blocked_time
 
+    def _look_up_terms(self, path: CorePath) -> Sequence[Sequence[PendingTerm]]:
+        """Return the jobs of the other threads with their delays as they are now."""
+        terms = self._terms_of_path.get(id(path))
+        if terms is None:
+            terms = self._terms_of_path[id(path)] = [
+                [self._build_term(number, is_held=number in path.held_jobs) for number in lane]
+                for lane in path.other_lanes
+            ]
+        return terms
+
+    def _build_term(self, number: int, *, is_held: bool) -> PendingTerm:
+        key, origin, work, _, _ = self.cores.jobs[number]
+        delay = self.delays.get(key, 0)
+        calm_window = self.calm_windows[origin] - delay if delay else _ENDLESS
+        return (origin, work, delay, calm_window, self.streams[origin], is_held)
+
     def find_most_pending(self, path: CorePath) -> int:
         """Return the most work that can be pending at t0 at all.
 
         The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
         """
+        if id(path) not in self._most_pending:
+            self._most_pending[id(path)] = self._sum_most_pending(path)
+        return self._most_pending[id(path)]
+
+    def _sum_most_pending(self, path: CorePath) -> int:
         pending_by_origin: dict[Origin, int] = {}
         held_work = 0
         for lane in path.other_lanes:
@@ -171,7 +200,8 @@ class PathWork:
         for origin, work in work_by_origin.items():
             for lane in lanes_of_origin.get(origin, ()):
                 waiting_works[lane] += work
-        return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
+        waiting_works.sort(reverse=True)
+        return min(sum(waiting_works[: self.cores.core_count - 1]), sum(work_by_origin.values()))
 
     def _look_up_lanes(self, path: CorePath) -> Mapping[Origin, Sequence[int]]:
         """Return the other threads, or containers, for which what comes of each origin may wait."""
@@ -186,7 +216,7 @@ class PathWork:
 
 def split_lanes(path: CorePath, lane_works: Sequence[int]) -> Sequence[int]:
     """Return the work of each lane that one core at a time may do: what is reentrant counts as several lanes."""
-    if all(width == 1 for width in path.lane_widths):
+    if not path.lane_widths or max(path.lane_widths) == 1:
         return lane_works
     return [
         part for work, width in zip(lane_works, path.lane_widths, strict=True) for part in [-(-work // width)] * width
