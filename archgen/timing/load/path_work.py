@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.cascade_demand import CascadeDemand
@@ -15,6 +16,15 @@ _ENDLESS = 1 << 200
 """Longer than any window, in ticks."""
 PendingTerm = tuple[Origin, int, int, int, EventStreams, bool]
 """What a job may have pending: its origin, work, delay, the longest window in which nothing is, its streams, whether held."""
+
+
+class LaneSums(NamedTuple):
+    """What comes for each of the other threads, and what may have been pending: in each, by origin, and of what is held."""
+
+    lane_works: list[int]
+    pending_works: list[int]
+    pending_by_origin: dict[Origin, int]
+    held_work: int
 
 
 class PathWork:
@@ -112,6 +122,25 @@ class PathWork:
         own.
         """
         core_count = self.cores.core_count
+        lane_works, pending_works, pending_by_origin, held_work = self._sum_lanes(path, window, arrivals)
+        if not any(pending_works) and not path.crowds:
+            return divide_among_cores(split_lanes(path, lane_works), 0, core_count)
+        most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
+        blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
+        if path.crowds:
+            return blocked_time
+        # All that each thread may have in the end: less, where a single one has most of it.
+        all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
+        blocked_time = min(blocked_time, divide_among_cores(split_lanes(path, all_works), 0, core_count))
+        if max(lane_works) > blocked_time:
+            most_pending = self.find_most_pending(path)
+            blocked_time = min(
+                blocked_time, divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
+            )
+        return blocked_time
+
+    def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> LaneSums:
+        """Add up what comes for each of the other threads, and what was pending."""
         lane_works: list[int] = []
         pending_works: list[int] = []
         pending_by_origin: dict[Origin, int] = {}
@@ -138,21 +167,7 @@ class PathWork:
                         pending_by_origin[origin] = pending_by_origin.get(origin, 0) + work * count
             lane_works.append(lane_work)
             pending_works.append(pending_work)
-        if not any(pending_works) and not path.crowds:
-            return divide_among_cores(split_lanes(path, lane_works), 0, core_count)
-        most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
-        blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
-        if path.crowds:
-            return blocked_time
-        # All that each thread may have in the end: less, where a single one has most of it.
-        all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
-        blocked_time = min(blocked_time, divide_among_cores(split_lanes(path, all_works), 0, core_count))
-        if max(lane_works) > blocked_time:
-            most_pending = self.find_most_pending(path)
-            blocked_time = min(
-                blocked_time, divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
-            )
-        return blocked_time
+        return LaneSums(lane_works, pending_works, pending_by_origin, held_work)
 
     def _look_up_terms(self, path: CorePath) -> Sequence[Sequence[PendingTerm]]:
         """Return the jobs of the other threads with their delays as they are now."""
