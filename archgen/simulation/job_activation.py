@@ -48,10 +48,15 @@ def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample
     With a declared response the job begins at once and ends on time; only its load is queued.
     """
     activities = run.activities
-    previous = activities.last_activation[activity]
-    if previous >= 0 and now - previous > activities.activation_gap[activity]:
-        activities.activation_gap[activity] = now - previous
-    activities.last_activation[activity] = now
+    start_up = run.start_up
+    if not start_up.awaited_wires[activity]:
+        previous = activities.last_activation[activity]
+        if previous < 0:
+            start_up.first_counted[activity] = start_up.activation_count[activity]
+        elif now - previous > activities.activation_gap[activity]:
+            activities.activation_gap[activity] = now - previous
+        activities.last_activation[activity] = now
+    start_up.activation_count[activity] += 1
     if wire >= 0:
         callback = run.wires.callback[wire]
     else:

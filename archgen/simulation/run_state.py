@@ -47,7 +47,7 @@ class ActivityStates:
         self.phase = [dice.randrange(planned.period) if planned.kind == PERIODIC else 0 for planned in activities]
         self.every_counter = [dice.randrange(planned.every) for planned in activities]
         self.last_activation = [-1] * count
-        """When it was last activated."""
+        """When it was last activated, its start-up aside."""
         self.last_passed = [-1] * count
         """When its gates last let an activation through, before jitter."""
         self.filled_slots = [sum(1 << slot for slot in planned.constant_slots) for planned in activities]

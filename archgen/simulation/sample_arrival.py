@@ -22,6 +22,8 @@ def deliver_sample(run: SimulationRun, now: int, wire: int, sample: int) -> None
     """Deliver a sample at time `now`: fire its reader, fill a slot of an all-of trigger, or keep it."""
     wires, activities = run.wires, run.activities
     slot = wires.slot[wire]
+    if run.start_up.awaited_wires[wires.target[wire]]:
+        run.start_up.note_sample(wires.source[wire], wires.target[wire], wire, sample)
     if slot == SLOT_SAMPLED:
         if wires.is_request[wire]:
             wires.newest_job[wire] = sample
@@ -31,22 +33,28 @@ def deliver_sample(run: SimulationRun, now: int, wire: int, sample: int) -> None
         else:
             store_sample(run, wire, sample)
     elif slot == SLOT_ANY:
-        activity = wires.target[wire]
-        if wires.is_request[wire]:
-            fire_activity(run, now, activity, wire, sample)
-        # `every` and `throttle` come before jitter: a throttle measures from what it let through, not from when jitter
-        # released it.
-        elif activities.is_gated[activity] and not passes_gate(run, now, activity):
-            if run.plan.activities[activity].keeps_dropped:
-                keep_dropped(run, wire, sample)
-        elif activities.jitter[activity]:
-            hold_firing(run, now, activity, wire, sample)
-        else:
-            enqueue_sample(run, now, wire, sample)
+        _fire_by_any(run, now, wire, sample)
     elif activities.matchers[wires.target[wire]] is not None:
         _match_sample(run, now, wire, slot, sample)
     else:
         _fill_slot(run, now, wire, slot, sample)
+
+
+def _fire_by_any(run: SimulationRun, now: int, wire: int, sample: int) -> None:
+    """Fire a reader that any of its inputs fires, if its gates let the sample pass."""
+    wires, activities = run.wires, run.activities
+    activity = wires.target[wire]
+    if wires.is_request[wire]:
+        fire_activity(run, now, activity, wire, sample)
+    # `every` and `throttle` come before jitter: a throttle measures from what it let through, not from when jitter
+    # released it.
+    elif activities.is_gated[activity] and not passes_gate(run, now, activity):
+        if run.plan.activities[activity].keeps_dropped:
+            keep_dropped(run, wire, sample)
+    elif activities.jitter[activity]:
+        hold_firing(run, now, activity, wire, sample)
+    else:
+        enqueue_sample(run, now, wire, sample)
 
 
 def store_sample(run: SimulationRun, wire: int, sample: int) -> None:

@@ -15,6 +15,7 @@ from archgen.simulation.executor_state import (
 )
 from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, SimulationPlan
+from archgen.simulation.start_up import StartUp
 
 JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
 """The order of events at one moment; two bits of the heap's keys."""
@@ -47,6 +48,7 @@ class SimulationRun:
         "publish_share",
         "resources",
         "sequence",
+        "start_up",
         "threads",
         "wires",
         "woken_executors",
@@ -62,6 +64,7 @@ class SimulationRun:
         self.is_critical = seed % CRITICAL_INTERVAL == 0
         self.activities = ActivityStates(plan, dice, watched)
         self.wires = WireStates(plan, logged)
+        self.start_up = StartUp(plan)
         last_turn = find_last_turn(seed)
         self.callbacks = CallbackStates(plan)
         self.executors = ExecutorStates(plan, dice, last_turn)

@@ -17,6 +17,7 @@ from archgen.timing.chains.chain_bounds import bound_chain, find_data_age
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_system
+from tests.simulation.systems import arc, event, system, timed
 from tests.timing.exceeded import bounded
 from tests.timing.random_uses import random_use_system, random_walks
 
@@ -45,6 +46,24 @@ def test_no_simulation_exceeds_a_bound_where_a_newer_message_is_overtaken(seed: 
     pairs = [(what, seen, bounded(value)) for what, seen, value in _list_pairs(seed) if seen is not None]
     assert [(what, seen, bound) for what, seen, bound in pairs if bound is not None and seen > bound] == []
     assert len(pairs) >= 8
+
+
+def test_gaps_count_once_all_that_fires_an_element_has_sent() -> None:
+    """A slow source fires first, while the first message of the fast one is on its way; behind it, all is as late."""
+    late = arc("fast", "reader", best=60, worst=60)
+    of = system(
+        [
+            timed("fast", 10, 1, outputs=("out",)),
+            timed("slow", 40, 1, outputs=("out",)),
+            event("reader", 1, "fast", "slow", outputs=("out",)),
+            event("behind", 1, "reader"),
+        ],
+        [late, arc("slow", "reader"), arc("reader", "behind")],
+    )
+    analysis, seen = analyse_system(of), simulate_system(of, 1, 40)
+    assert analysis.paces["reader"].gap.value == seen.activities["reader"].activation_gap == 10_000_000
+    assert (behind_gap := seen.activities["behind"].activation_gap) is not None
+    assert 10_000_000 <= behind_gap <= (analysis.paces["behind"].gap.value or 0) == 11_000_000
 
 
 def _list_pairs(seed: int) -> Iterator[Held]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from archgen.timing.figures.timing_values import UnknownCause, sum_fractions
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios
 from archgen.timing.load.busy_windows import ActivityWork, DemandFunction, GrowingLoad, add_demands
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.level_cascades import ONCE_ORIGIN, LevelCascades, Origin
@@ -34,7 +34,6 @@ class CascadeDemand:
                     self.causes.append(model)
                 else:
                     self._streams[origin] = model
-                    self._rates[origin] = sum_fractions(stream.max_rate for stream in model) if model else Fraction(0)
 
     def _find_used_origins(self) -> dict[Origin, None]:
         """Return the origins that work rests on, directly or through gates."""
@@ -52,13 +51,25 @@ class CascadeDemand:
 
     def share(self) -> Fraction:
         """Return the share of a core that all this takes in the long run; what is unknown of it counts as nothing."""
-        return sum_fractions(
-            [Fraction(0), *(volume * self.rate_of(origin) for origin, volume in self.level.volumes.items() if volume)]
-        )
+        ratios = [
+            (volume * numerator, denominator)
+            for origin, volume in self.level.volumes.items()
+            if volume
+            for numerator, denominator in [self._find_ratio(origin)]
+        ]
+        return Fraction(*sum_ratios(ratios))
+
+    def _find_ratio(self, origin: Origin) -> tuple[int, int]:
+        """Return the rate of an origin as numerator and denominator, which may have common factors."""
+        if origin.kind == "gate":
+            return self.rate_of(origin).as_integer_ratio()
+        return sum_ratios([stream.max_rate_ratio for stream in self._streams.get(origin, ())])
 
     def rate_of(self, origin: Origin) -> Fraction:
         """Return the most events of an origin per tick in the long run; 0 where that is not known."""
-        rate = self._rates.get(origin, None if origin.kind == "gate" else Fraction(0))
+        rate = self._rates.get(origin)
+        if rate is None and origin.kind != "gate":
+            rate = self._rates[origin] = Fraction(*self._find_ratio(origin))
         if rate is None:
             rule = self.level.gate_rules[int(origin.key)]
             rate = rule.limit_rate(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
+from typing import NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.timing.load.inner_core import urgency_of
@@ -34,8 +35,8 @@ class CorePath:
     from other threads: what is pending of it can only be on that way. `crowds` are the jobs of each container whose threads
     the steps wait for, with the number of those that can work at once. Of the other threads only those count that may be
     as urgent. `held_jobs` are the jobs among theirs that may wait though a core is idle: of what is foreign, and behind
-    something less urgent. `lanes_of_origin` says which of the other threads, or containers, what comes of an origin may wait
-    for; `lane_widths`, how many cores each of them may use at once. `own_cost` is the work of steps that is in no thread's
+    something less urgent. `waiting_lanes` says what comes of which origins may wait for each of the other threads, or
+    containers; `lane_widths`, how many cores each of them may use at once. `own_cost` is the work of steps that is in no thread's
     jobs: of one that works only at the start, and so has no events, and of those that are reentrant.
     """
 
@@ -47,8 +48,7 @@ class CorePath:
     other_lanes: tuple[list[int], ...]
     lane_widths: tuple[int, ...]
     held_jobs: frozenset[int]
-    lanes_of_origin: Mapping[Origin, list[int]]
-    lane_count: int
+    waiting_lanes: tuple[frozenset[Origin], ...]
 
     def list_jobs(self) -> Iterator[int]:
         """Yield the jobs that come in the way."""
@@ -57,11 +57,19 @@ class CorePath:
             yield from lane
 
 
+class ThreadUrgencies(NamedTuple):
+    """How urgent the threads that do anything may be, and the least urgent thread on the way to each job: -2 if foreign."""
+
+    of_units: tuple[tuple[ThreadUnit, int], ...]
+    of_jobs: tuple[int, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class CorePaths:
     """The paths on some cores, each built when it is first asked for."""
 
     cores: SharedCores
+    _urgencies: list[ThreadUrgencies] = field(default_factory=list)
     _paths: dict[tuple[str, ...], CorePath] = field(default_factory=dict)
     _way_works: dict[WayKey, WayWork] = field(default_factory=dict)
 
@@ -87,20 +95,16 @@ class CorePaths:
         units = {unit: None for unit in all_units if unit not in cores.reentrant_units}
         crowds = self._find_crowds(steps, units)
         # What holds the threads of a container does so k at a time, with k threads: that counts for more than the cores.
+        urgency_of_units, urgency_of_jobs = self._urgencies[0] if self._urgencies else self._find_urgencies()
+        least_urgency = urgency_of(level)
         other_units = [
             unit
-            for unit, numbers in cores.job_numbers.items()
-            if unit not in all_units
-            and (numbers or cores.origins_of_unit[unit])
-            and self._counts_at(unit, level)
-            and cores.crowd_of.get(unit[0]) not in crowds
+            for unit, urgency in urgency_of_units
+            if urgency >= least_urgency
+            and unit not in all_units
+            and not (crowds and cores.crowd_of.get(unit[0]) in crowds)
         ]
         other_jobs = tuple(number for unit in other_units for number in cores.job_numbers[unit])
-        waiting_lanes = self._list_waiting_lanes(other_units)
-        lanes_of_origin: dict[Origin, list[int]] = {cores.jobs[number].origin: [] for number in other_jobs}
-        for lane, origins in enumerate(waiting_lanes):
-            for origin in origins:
-                lanes_of_origin.setdefault(origin, []).append(lane)
         last_step = self._find_last_step(steps, units)
         costs = [cores.system.activities[step].wcet or 0 for step in steps]
         return CorePath(
@@ -116,10 +120,34 @@ class CorePaths:
             tuple((numbers, min(threads, cores.core_count)) for (_, threads), numbers in crowds.items()),
             tuple(cores.job_numbers[unit] for unit in other_units if cores.job_numbers[unit]),
             tuple(cores.reentrant_units.get(unit, 1) for unit in other_units if cores.job_numbers[unit]),
-            frozenset(number for number in other_jobs if self._is_held(number, units, level)),
-            lanes_of_origin,
-            len(waiting_lanes),
+            frozenset(
+                number
+                for number in other_jobs
+                if urgency_of_jobs[number] < least_urgency and self._is_held(number, units, level)
+            ),
+            self._list_waiting_lanes(other_units),
         )
+
+    def _find_urgencies(self) -> ThreadUrgencies:
+        """Find what all paths have in common."""
+        cores = self.cores
+        urgencies = {unit: urgency_of(thread.highest_priority) for unit, thread in cores.threads.items()}
+        self._urgencies.append(
+            ThreadUrgencies(
+                tuple(
+                    (unit, urgencies[unit])
+                    for unit, numbers in cores.job_numbers.items()
+                    if numbers or cores.origins_of_unit[unit]
+                ),
+                tuple(
+                    -2
+                    if job.key[0] in cores.foreign_ids
+                    else min([urgencies[cores.unit_of[step]] for step in job.steps])
+                    for job in cores.jobs
+                ),
+            )
+        )
+        return self._urgencies[0]
 
     def _find_last_step(self, steps: tuple[str, ...], units: Mapping[ThreadUnit, None]) -> LastStep | None:
         """Return the last step where its activations can be looked at one by one; the first is that of the first event."""

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from heapq import nlargest
 from itertools import islice
 from typing import NamedTuple
@@ -90,7 +91,9 @@ class IdleBacklog:
         self.streams: dict[Origin, EventStreams] = {
             origin: demand.streams_of(origin) for origin, volume in cores.cascades.volumes.items() if volume
         }
-        self.work_within, self.term_count, _, _ = demand.demand_function()
+        work_within, self.term_count, _, _ = demand.demand_function()
+        # Many ways are looked at for the same windows.
+        self.work_within = cache(work_within)
         volumes = cores.cascades.volumes
         # Whole numbers, rounded up: a search from above may begin a little higher.
         self.scaled_rates = {origin: _round_up(demand.rate_of(origin)) for origin in self.streams}
@@ -101,20 +104,20 @@ class IdleBacklog:
         # With as many threads as cores, none waits for a thread while a core is idle.
         self.small_crowds = {crowd for crowd in cores.crowd_of.values() if crowd[1] < cores.core_count}
         self.delays: dict[WayKey, int] = dict.fromkeys(way_works, 0)
+        self.growths: dict[WayKey, int] = {}
         self.pending_shares: tuple[PendingShare, ...] = ()
-
-    @property
-    def pending_work(self) -> int:
-        """Return K."""
-        return _sum_works(self.pending_shares)
+        self.pending_work = 0
+        """K."""
 
     def find(self) -> None:
         """Find all of it, by repetition where some thread serves several ways."""
-        if any(self._find_growth(way_work) >= _WHOLE_SHARE for way_work in self.way_works.values()):
+        self.growths = {key: self._find_growth(way_work) for key, way_work in self.way_works.items()}
+        if any(growth >= _WHOLE_SHARE for growth in self.growths.values()):
             raise DivergedError
         is_shared = any(way_work.others or way_work.crowds for way_work in self.way_works.values())
         for _ in range(_MAX_ROUNDS):
             self.pending_shares = self._find_pending()
+            self.pending_work = _sum_works(self.pending_shares)
             delays = {key: max(self.delays[key], self.find_delay(way_work)) for key, way_work in self.way_works.items()}
             is_settled = not is_shared or delays == self.delays
             self.delays = delays
@@ -133,10 +136,14 @@ class IdleBacklog:
         """
         whole_window = self.find_busy_window(way_work)
         delay = window = 0
-        for count, arrival in enumerate(self._list_arrivals(way_work, whole_window)):
+        arrivals = self._list_arrivals(way_work, whole_window)
+        for count, arrival in enumerate(arrivals):
             if whole_window - arrival <= delay:
                 break
-            window = self.find_window(way_work, count, max(window, arrival))
+            if count == len(arrivals) - 1 and not way_work.behind:
+                window = whole_window  # nothing of this event, nor of another one, comes after it
+            else:
+                window = self.find_window(way_work, count, max(window, arrival))
             delay = max(delay, window - arrival)
             yield count, arrival, window
 
@@ -181,7 +188,9 @@ class IdleBacklog:
     def _find_need(self, way_work: WayWork, count: int, window: int, work: int) -> int:
         """Return A (1 - 1/m) + G (1 - k/m) + work / m, rounded up."""
         self.spend(self.term_count + len(way_work.others))
-        own_work = way_work.cost + count * way_work.slowest + self._count_shared(way_work.others, window)
+        own_work = way_work.cost + count * way_work.slowest
+        if way_work.others:
+            own_work += self._count_shared(way_work.others, window)
         total = own_work * (self.core_count - 1) + work
         for members, threads in way_work.crowds:
             total += -(-self._count_shared(members, window) * (self.core_count - threads) // threads)
@@ -244,10 +253,14 @@ class IdleBacklog:
         """Return for how long an event may have been on a way at an idle instant before which less was pending."""
         window = self._find_greatest_window(way_work, None)
         age = 0
-        for count, arrival in enumerate(self._list_arrivals(way_work, window)):
+        arrivals = self._list_arrivals(way_work, window)
+        for count, arrival in enumerate(arrivals):
             if window - arrival <= age:
                 break
-            age = max(age, self._find_greatest_window(way_work, count, window) - arrival)
+            # Of the last one the window is known: all others came before it.
+            is_last = count == len(arrivals) - 1
+            greatest = window if is_last else self._find_greatest_window(way_work, count, window)
+            age = max(age, greatest - arrival)
         return age
 
     def _find_greatest_window(self, way_work: WayWork, count: int | None, window: int | None = None) -> int:
@@ -268,7 +281,7 @@ class IdleBacklog:
 
     def _find_window_above(self, way_work: WayWork) -> int:
         """Return a window in which less is needed than it lasts, as in all longer ones."""
-        growth, core_count = self._find_growth(way_work), self.core_count
+        growth, core_count = self.growths[way_work.key], self.core_count
         own_burst = way_work.cost + way_work.slowest * self.bursts.get(way_work.origin, 0)
         burst = (own_burst + self._sum_bursts(way_work.others)) * (core_count - 1) + self.whole_burst + core_count
         for members, threads in way_work.crowds:

@@ -95,7 +95,7 @@ def longest_queueing(state: PropagationState, link: str, arcs: Iterable[Arc]) ->
         return UnknownCause((link,))
     # Ticks per byte. A bandwidth is in B/s here: one byte takes 1 / bandwidth seconds.
     ticks_numerator, ticks_denominator = (NS_PER_SECOND / (bandwidth * state.system.tick)).as_integer_ratio()
-    works: list[ActivityWork] = []
+    work_of: dict[int, ActivityWork] = {}
     causes: list[UnknownCause] = []
     for arc in arcs:
         event_model = sent_model(state, arc)
@@ -104,7 +104,11 @@ def longest_queueing(state: PropagationState, link: str, arcs: Iterable[Arc]) ->
         elif arc.size is None and event_model:
             causes.append(UnknownCause((arc.topic,)))
         elif arc.size:
-            works.append(ActivityWork(-(-arc.size * ticks_numerator // ticks_denominator), event_model))
+            # All readers of an output have its one event model. (Each model is kept, so that no other has its identity.)
+            cost = -(-arc.size * ticks_numerator // ticks_denominator)
+            same_work = work_of.get(id(event_model))
+            work_of[id(event_model)] = ActivityWork(cost + same_work.cost if same_work else cost, event_model)
+    works = list(work_of.values())
     sent_numerator, sent_denominator = sum_ratios(
         (stream.max_rate_ratio[0] * work.cost, stream.max_rate_ratio[1]) for work in works for stream in work.streams
     )

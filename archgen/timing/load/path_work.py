@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from heapq import nlargest
+from typing import NamedTuple
 
 from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.cascade_demand import CascadeDemand
@@ -14,6 +14,17 @@ from archgen.timing.load.shared_cores import SharedCores, WayKey
 
 _ENDLESS = 1 << 200
 """Longer than any window, in ticks."""
+PendingTerm = tuple[Origin, int, int, int, EventStreams, bool]
+"""What a job may have pending: its origin, work, delay, the longest window in which nothing is, its streams, whether held."""
+
+
+class LaneSums(NamedTuple):
+    """What comes for each of the other threads, and what may have been pending: in each, by origin, and of what is held."""
+
+    lane_works: list[int]
+    pending_works: list[int]
+    pending_by_origin: dict[Origin, int]
+    held_work: int
 
 
 class PathWork:
@@ -35,6 +46,12 @@ class PathWork:
         }
         self.calm_window = min(self.calm_windows.values(), default=0)
         self.calm_times: dict[int, int] = {}
+        self.longest_window = 0
+        """The longest window of which somebody said that it was looked at."""
+        self._lanes_of_path: dict[int, dict[Origin, list[int]]] = {}
+        # By the path's identity; they rest on no window, only on the delays.
+        self._most_pending: dict[int, int] = {}
+        self._terms_of_path: dict[int, list[list[PendingTerm]]] = {}
 
     def note_delay(self, key: WayKey, delay: int) -> bool:
         """Note how long a way takes, unless it was longer before; return whether it grew."""
@@ -42,8 +59,14 @@ class PathWork:
             self.delays.setdefault(key, delay)
             return False
         self.delays[key] = delay
+        self._most_pending.clear()
+        self._terms_of_path.clear()
         self.longest_delay = max(self.longest_delay, delay)
         return True
+
+    def is_calm(self) -> bool:
+        """Whether nothing came twice in any window, with all that may be pending: then it makes nothing longer."""
+        return self.longest_window + self.longest_delay <= self.calm_window
 
     def find_time_beside(self, path: CorePath, window: int, spend: Callable[[int], None]) -> int:
         """Return how long all takes in a window but the last step's activations: A + B."""
@@ -99,24 +122,7 @@ class PathWork:
         own.
         """
         core_count = self.cores.core_count
-        lane_works: list[int] = []
-        pending_works: list[int] = []
-        pending_by_origin: dict[Origin, int] = {}
-        held_work = 0
-        for lane in path.other_lanes:
-            lane_work = pending_work = 0
-            for number in lane:
-                key, origin, work, _, _ = self.cores.jobs[number]
-                lane_work += work * arrivals[origin]
-                count = self.count_pending(origin, window, self.delays.get(key, 0), arrivals)
-                if count:
-                    pending_work += work * count
-                    if number in path.held_jobs:
-                        held_work += work * count
-                    else:
-                        pending_by_origin[origin] = pending_by_origin.get(origin, 0) + work * count
-            lane_works.append(lane_work)
-            pending_works.append(pending_work)
+        lane_works, pending_works, pending_by_origin, held_work = self._sum_lanes(path, window, arrivals)
         if not any(pending_works) and not path.crowds:
             return divide_among_cores(split_lanes(path, lane_works), 0, core_count)
         most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
@@ -133,11 +139,62 @@ class PathWork:
             )
         return blocked_time
 
+    def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> LaneSums:
+        """Add up what comes for each of the other threads, and what was pending."""
+        lane_works: list[int] = []
+        pending_works: list[int] = []
+        pending_by_origin: dict[Origin, int] = {}
+        held_work = 0
+        # As in `count_pending`, but written out: this is the innermost loop of all that is found on several cores.
+        for lane_terms in self._look_up_terms(path):
+            lane_work = pending_work = 0
+            for origin, work, delay, calm_window, streams, is_held in lane_terms:
+                arrived = arrivals[origin]
+                lane_work += work * arrived
+                if window <= calm_window:
+                    continue
+                count = -arrived
+                for period, jitter, distance, per_period, batch in streams:
+                    batches = -(-(window + delay + jitter) * per_period // period)
+                    if distance:
+                        batches = min(batches, -(-(window + delay) // distance))
+                    count += batch * batches
+                if count:
+                    pending_work += work * count
+                    if is_held:
+                        held_work += work * count
+                    else:
+                        pending_by_origin[origin] = pending_by_origin.get(origin, 0) + work * count
+            lane_works.append(lane_work)
+            pending_works.append(pending_work)
+        return LaneSums(lane_works, pending_works, pending_by_origin, held_work)
+
+    def _look_up_terms(self, path: CorePath) -> Sequence[Sequence[PendingTerm]]:
+        """Return the jobs of the other threads with their delays as they are now."""
+        terms = self._terms_of_path.get(id(path))
+        if terms is None:
+            terms = self._terms_of_path[id(path)] = [
+                [self._build_term(number, is_held=number in path.held_jobs) for number in lane]
+                for lane in path.other_lanes
+            ]
+        return terms
+
+    def _build_term(self, number: int, *, is_held: bool) -> PendingTerm:
+        key, origin, work, _, _ = self.cores.jobs[number]
+        delay = self.delays.get(key, 0)
+        calm_window = self.calm_windows[origin] - delay if delay else _ENDLESS
+        return (origin, work, delay, calm_window, self.streams[origin], is_held)
+
     def find_most_pending(self, path: CorePath) -> int:
         """Return the most work that can be pending at t0 at all.
 
         The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
         """
+        if id(path) not in self._most_pending:
+            self._most_pending[id(path)] = self._sum_most_pending(path)
+        return self._most_pending[id(path)]
+
+    def _sum_most_pending(self, path: CorePath) -> int:
         pending_by_origin: dict[Origin, int] = {}
         held_work = 0
         for lane in path.other_lanes:
@@ -153,16 +210,28 @@ class PathWork:
 
     def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""
-        waiting_works = [0] * path.lane_count
+        waiting_works = [0] * len(path.waiting_lanes)
+        lanes_of_origin = self._look_up_lanes(path)
         for origin, work in work_by_origin.items():
-            for lane in path.lanes_of_origin[origin]:
+            for lane in lanes_of_origin.get(origin, ()):
                 waiting_works[lane] += work
-        return min(sum(nlargest(self.cores.core_count - 1, waiting_works)), sum(work_by_origin.values()))
+        waiting_works.sort(reverse=True)
+        return min(sum(waiting_works[: self.cores.core_count - 1]), sum(work_by_origin.values()))
+
+    def _look_up_lanes(self, path: CorePath) -> Mapping[Origin, Sequence[int]]:
+        """Return the other threads, or containers, for which what comes of each origin may wait."""
+        lanes_of_origin = self._lanes_of_path.get(id(path))
+        if lanes_of_origin is None:
+            lanes_of_origin = self._lanes_of_path[id(path)] = {}
+            for lane, origins in enumerate(path.waiting_lanes):
+                for origin in origins:
+                    lanes_of_origin.setdefault(origin, []).append(lane)
+        return lanes_of_origin
 
 
 def split_lanes(path: CorePath, lane_works: Sequence[int]) -> Sequence[int]:
     """Return the work of each lane that one core at a time may do: what is reentrant counts as several lanes."""
-    if all(width == 1 for width in path.lane_widths):
+    if not path.lane_widths or max(path.lane_widths) == 1:
         return lane_works
     return [
         part for work, width in zip(lane_works, path.lane_widths, strict=True) for part in [-(-work // width)] * width

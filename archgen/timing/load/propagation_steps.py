@@ -133,7 +133,9 @@ class PropagationSteps:
 
     def _models_of(self, step: str) -> Mapping[str, EventStreams | UnknownCause]:
         """Return the event models as a resource sees them."""
-        roaming_ids = self.roaming_ids.get(step, frozenset())
+        roaming_ids = self.roaming_ids.get(step)
+        if not roaming_ids:
+            return self.state.event_models  # not copied: there are as many resources as hosts
         return {**self.state.event_models, **{name: self._model_of_roaming(name) for name in roaming_ids}}
 
     def _model_of_roaming(self, name: str) -> EventStreams | UnknownCause:

@@ -28,6 +28,15 @@ class SharedCoreLimits:
         """Begin without a backlog."""
         self.ways_to, self.of_host = ways_to, of_host
         self.backlog: IdleBacklog | None = None
+        # Each sweep asks for all of them.
+        self._delays: dict[WayKey, int | None] = {}
+        self._responses: dict[str, int | None] = {}
+
+    def note_backlog(self, backlog: IdleBacklog | None) -> None:
+        """Take the limits of a backlog."""
+        self.backlog = backlog
+        self._delays.clear()
+        self._responses.clear()
 
     def has_limit(self, name: str) -> bool:
         """Whether an activity has a limit."""
@@ -35,20 +44,24 @@ class SharedCoreLimits:
 
     def limit_delay(self, key: WayKey) -> int | None:
         """Return the limit of a way."""
-        limit = self.of_host.get(key[0])
-        delays = [limit.delay] if limit else []
-        if self.backlog and key in self.backlog.delays:
-            delays.append(self.backlog.delays[key])
-        return min(delays, default=None)
+        if key not in self._delays:
+            limit = self.of_host.get(key[0])
+            delays = [limit.delay] if limit else []
+            if self.backlog and key in self.backlog.delays:
+                delays.append(self.backlog.delays[key])
+            self._delays[key] = min(delays, default=None)
+        return self._delays[key]
 
     def limit_response(self, name: str) -> int | None:
         """Return the limit of a response."""
-        limit = self.of_host.get(name)
-        responses = [limit.response] if limit else []
-        if self.backlog and (name, 0) in self.backlog.delays:
-            ways = enumerate(self.ways_to[name])
-            responses.append(max(self.backlog.delays[name, number] - way.best_before for number, way in ways))
-        return min(responses, default=None)
+        if name not in self._responses:
+            limit = self.of_host.get(name)
+            responses = [limit.response] if limit else []
+            if self.backlog and (name, 0) in self.backlog.delays:
+                ways = enumerate(self.ways_to[name])
+                responses.append(max(self.backlog.delays[name, number] - way.best_before for number, way in ways))
+            self._responses[name] = min(responses, default=None)
+        return self._responses[name]
 
 
 def has_priorities(cores: SharedCores) -> bool:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 
 from archgen.timing.analysis import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
@@ -104,6 +105,8 @@ class SharedCoreSolver:
             self.way_before.items(), key=lambda pair: -len(self.cores.ways_to[pair[0][0]][pair[0][1]].steps)
         )
         self.last_windows: dict[tuple[int, int], int] = {}
+        self.busy_windows: dict[int, int] = {}
+        """The longest window of each path (by identity): in each shorter one there was more to do than it lasts."""
 
     def _find_way_before(self, way: EntryWay) -> WayKey:
         """Return the way to the step before the last one of a way."""
@@ -179,7 +182,7 @@ class SharedCoreSolver:
         """Look for what may be pending, if it can be said, and cut down what may be spent on bounds that are smaller."""
         if self._can_have_backlog():
             way_works, budget = self.paths.way_works, self.whole_budget
-            self.limits.backlog = find_idle_backlog(self.cores, way_works, self.demand, budget)
+            self.limits.note_backlog(find_idle_backlog(self.cores, way_works, self.demand, budget))
             self.budget = open_refining_budget(budget, self.paths, self.limits.backlog)
 
     def _wants_backlog_late(self) -> bool:
@@ -272,6 +275,8 @@ class SharedCoreSolver:
                 if key in delays and delays[key] < delays[way_before]:
                     delays[way_before] = delays[key]
             grown_names = [key[0] for key, delay in delays.items() if self.work.note_delay(key, delay)]
+            if self.work.is_calm():
+                return []  # the next sweep would find the same
             if not grown_names or self._has_run_away(grown_names):
                 break
         return grown_names
@@ -369,8 +374,11 @@ class SharedCoreSolver:
             needed = max(last_work + self.work.find_time_beside(path, window, spend), path.cost)
             if needed <= window:
                 self.last_windows[key] = window
+                self.busy_windows[id(path)] = max(window, self.busy_windows.get(id(path), 0))
+                self.work.longest_window = max(window, self.work.longest_window)
                 return needed if window == 1 else window
             window = needed
+        self.work.longest_window = max(limit, self.work.longest_window)
         return limit
 
     def _build_responses(self) -> CoreResponses:
@@ -424,10 +432,11 @@ class SharedCoreSolver:
         if last_step is None:
             return self.find_window(path, 0, max(path.cost, 1), spend, None)
         return hold_beside_others(
-            lambda window: self.work.find_time_beside(path, window, spend),
+            cache(lambda window: self.work.find_time_beside(path, window, spend)),
             last_step.cost,
             self.find_activation_streams(last_step),
             spend,
+            self.busy_windows.get(id(path), 1),
         )
 
     def _build_response(self, name: str, ways: Sequence[EntryWay]) -> WorstResponse:

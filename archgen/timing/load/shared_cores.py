@@ -63,10 +63,14 @@ def prepare_shared_cores(
     """Find the threads of some cores, and the cascades of what enters them."""
     all_units = (*resource.units, *resource.foreign_units)
     foreign_ids = tuple(name for unit in resource.foreign_units for name in unit)
-    inner_triggers = _cut_crowded_ways(system, inner_triggers)
     arc_numbers, entering_arcs = number_arcs(inner_triggers)
-    cascades = build_level_cascades(system, inner_triggers, arc_numbers, (*resource.members, *foreign_ids), foreign_ids)
     ways_to = find_entry_ways(system, inner_triggers, arc_numbers)
+    crowded_ids = _find_crowded_ids(inner_triggers, ways_to)
+    if crowded_ids:
+        inner_triggers = _begin_anew(inner_triggers, crowded_ids)
+        arc_numbers, entering_arcs = number_arcs(inner_triggers)
+        ways_to = find_entry_ways(system, inner_triggers, arc_numbers)
+    cascades = build_level_cascades(system, inner_triggers, arc_numbers, (*resource.members, *foreign_ids), foreign_ids)
     unit_of = {name: unit for unit in all_units for name in unit}
     jobs = tuple(_list_jobs(system, cascades, ways_to, unit_of, foreign_ids))
     job_numbers: dict[ThreadUnit, list[int]] = {unit: [] for unit in all_units}
@@ -99,14 +103,17 @@ def prepare_shared_cores(
     )
 
 
-def _cut_crowded_ways(system: TimingSystem, inner_triggers: InnerTriggers) -> InnerTriggers:
-    """Let activities to which too many ways lead begin ways of their own, with their own event models."""
-    ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
-    crowded_ids = frozenset(
+def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple[EntryWay, ...]]) -> frozenset[str]:
+    """Return the activities to which too many ways lead: they begin ways of their own, with their own event models."""
+    return frozenset(
         name
         for name, ways in ways_to.items()
         if ways[0].entry == Origin("activity", name) and name not in inner_triggers.entry_ids
     )
+
+
+def _begin_anew(inner_triggers: InnerTriggers, crowded_ids: frozenset[str]) -> InnerTriggers:
+    """Let some activities be fired as their own event models say."""
     return replace(
         inner_triggers,
         entry_ids=inner_triggers.entry_ids | crowded_ids,

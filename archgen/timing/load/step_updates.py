@@ -1,5 +1,6 @@
 """One step of a propagation at a time: the event model of an activity, or the responses of what a resource runs."""
 
+from collections import ChainMap
 from collections.abc import Callable
 
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
@@ -151,7 +152,7 @@ class StepUpdates(PropagationSteps):
             limit_responses(solve_inner_core(self.inner_cores[step], find_model, budget), limits)
             if step in self.inner_cores
             else solve_shared_cores(
-                self.shared_cores[step], find_model, ({**state.responses, **state.work_ends}, limits), budget
+                self.shared_cores[step], find_model, (ChainMap(state.work_ends, state.responses), limits), budget
             )
         )
         old_ends = dict(self.state.single_ends)

@@ -9,7 +9,7 @@ than can come in so long a window. The wait is no longer than the longest such w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
@@ -20,6 +20,8 @@ from archgen.timing.load.busy_windows import (
     longest_wait_for_turn,
 )
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
+from archgen.timing.load.inner_core import urgency_of
+from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -50,10 +52,18 @@ def hold_before_activation(
 
 
 def hold_beside_others(
-    find_time_beside: Callable[[int], int], own_cost: int, own_streams: EventStreams, spend: Callable[[int], None]
+    find_time_beside: Callable[[int], int],
+    own_cost: int,
+    own_streams: EventStreams,
+    spend: Callable[[int], None],
+    lower_bound: int = 1,
 ) -> int:
-    """Return the same for a thread on several cores, of which others take so much time in a window."""
-    window = 1  # what is stored takes no time, as a rule: it waits on where something comes as the last work ends
+    """Return the same for a thread on several cores, of which others take so much time in a window.
+
+    In each window shorter than `lower_bound` there must be at least as much work as it lasts.
+    """
+    # What is stored takes no time, as a rule: it waits on where something comes as the last work ends.
+    window = lower_bound
     while (work := find_time_beside(window) + own_cost * max_arrivals(own_streams, window)) >= window:
         window = work + 1
     return longest_busy_window(
@@ -92,33 +102,57 @@ def find_core_waits(
         event_models,
     )
     thread_of = {name: thread for thread in threads for name in thread.unit}
-    return {name: _find_core_wait(resource, threads, thread_of[name], name, budget) for name in reader_ids}
-
-
-def _find_core_wait(
-    resource: ProcessingResource, threads: Iterable[ThreadWork], thread: ThreadWork, name: str, budget: SearchBudget
-) -> WorstResponse:
-    level = thread.lowest_priority
-    counting_threads = [
-        each
-        for each in threads
-        if level is None or (each.highest_priority is not None and each.highest_priority >= level)
-    ]
-    causes = [each.cause for each in counting_threads if each.cause]
+    reader_list = list(reader_ids)
     if resource.missing:
-        return WorstResponse(None, "unknown", unite_causes((*causes, UnknownCause(resource.missing))))
-    share = sum_fractions([each.share for each in counting_threads])
-    if share > 1:
-        return WorstResponse(None, "host", OVERLOAD_CAUSE)
-    if causes:
-        return WorstResponse(None, "host", unite_causes(causes))
-    works = [work for each in counting_threads for work in each.works]
-    own_work = thread.works[thread.unit.index(name)]
-    demand = GrowingLoad(works).demand_function()
-    try:
-        busy_period = longest_wait_for_turn(demand, budget)
-        return WorstResponse(
-            hold_before_activation(demand, own_work.cost, own_work.streams, busy_period, budget), "host"
-        )
-    except DivergedError:
-        return WorstResponse(None, "host", OVERLOAD_CAUSE if share == 1 else DIVERGED_CAUSE)
+        return {name: _leave_wait_open(resource, threads, thread_of[name]) for name in reader_list}
+    core = _SearchedCore(threads, budget)
+    # By falling priority: what is found for one level is where the search of the next begins.
+    ranked_readers = sorted(reader_list, key=lambda name: urgency_of(thread_of[name].lowest_priority), reverse=True)
+    waits = {name: core.find_wait(thread_of[name], name) for name in ranked_readers}
+    return {name: waits[name] for name in reader_list}
+
+
+def _leave_wait_open(resource: ProcessingResource, threads: Iterable[ThreadWork], thread: ThreadWork) -> WorstResponse:
+    """Return that a wait is unknown, as nobody wrote how many cores there are."""
+    causes = _list_causes(threads, thread.lowest_priority)
+    return WorstResponse(None, "unknown", unite_causes((*causes, UnknownCause(resource.missing))))
+
+
+def _list_causes(threads: Iterable[ThreadWork], level: int | None) -> list[UnknownCause]:
+    """Return what is missing of the threads that count at a level."""
+    return [
+        each.cause
+        for each in threads
+        if each.cause and (level is None or (each.highest_priority is not None and each.highest_priority >= level))
+    ]
+
+
+class _SearchedCore:
+    """A core of which waits are found, those of urgent threads first."""
+
+    def __init__(self, threads: Sequence[ThreadWork], budget: SearchBudget) -> None:
+        self.threads, self.budget = threads, budget
+        self.ranked = RankedThreads(threads)
+        self.longest_wait = 0
+
+    def find_wait(self, thread: ThreadWork, name: str) -> WorstResponse:
+        """Return the wait of a reader, which is not less urgent than those before."""
+        level, ranked = thread.lowest_priority, self.ranked
+        if level is None:
+            share = sum_fractions([each.share for each in self.threads])
+            demand = GrowingLoad([work for each in self.threads for work in each.works]).demand_function()
+        else:
+            count = ranked.count_down_to(level)
+            share, demand = ranked.share_of_first(count), ranked.demand_of_first(count)
+        if share > 1:
+            return WorstResponse(None, "host", OVERLOAD_CAUSE)
+        causes = _list_causes(self.threads, level)
+        if causes:
+            return WorstResponse(None, "host", unite_causes(causes))
+        own_work = thread.works[thread.unit.index(name)]
+        try:
+            self.longest_wait = longest_wait_for_turn(demand, self.budget, self.longest_wait)
+            hold = hold_before_activation(demand, own_work.cost, own_work.streams, self.longest_wait, self.budget)
+        except DivergedError:
+            return WorstResponse(None, "host", OVERLOAD_CAUSE if share == 1 else DIVERGED_CAUSE)
+        return WorstResponse(hold, "host")

@@ -130,7 +130,7 @@ def _sending_rate(rates: RateTable, arc: Arc) -> TimingValue:
 def _largest_burst(state: PropagationState, arcs: Sequence[Arc], bandwidth: Fraction | None) -> TimingValue:
     """Return the most bytes that can wait in front of a link, over its longest busy period."""
     missing: dict[str, None] = {}
-    sized_models: list[tuple[int, EventStreams]] = []
+    size_of: dict[int, tuple[int, EventStreams]] = {}
     for arc in arcs:
         event_model = sent_model(state, arc)
         if isinstance(event_model, UnknownCause):
@@ -138,7 +138,10 @@ def _largest_burst(state: PropagationState, arcs: Sequence[Arc], bandwidth: Frac
         elif arc.size is None:
             missing |= dict.fromkeys((arc.topic,) if event_model else ())
         else:
-            sized_models.append((arc.size, event_model))
+            # All readers of an output have its one event model.
+            size, _ = size_of.get(id(event_model), (0, event_model))
+            size_of[id(event_model)] = (size + arc.size, event_model)
+    sized_models = list(size_of.values())
     if missing or bandwidth is None:
         # Not all is known: what all come with at once at the start is a bound from below.
         first_burst = Fraction(sum(size * max_arrivals(event_model, 1) for size, event_model in sized_models))

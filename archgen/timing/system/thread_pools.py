@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from archgen.timing.system.timing_system import Activity, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 
 
 class ThreadPool(NamedTuple):
@@ -30,12 +30,15 @@ def find_pool(system: TimingSystem, activity: Activity) -> ThreadPool | None:
 def name_lane(system: TimingSystem, activity: Activity) -> str:
     """Return a name that activities share exactly where one of them waits for the other: a thread's, or a group's."""
     # Keys are prefixed, since an activity, a group and a container may have the same id.
-    pool = find_pool(system, activity)
-    if pool is not None and pool.threads == 1:
-        return pool.key
-    if pool is None or activity.executor not in system.executors or activity.callback_group is None:
+    executor = system.executors.get(activity.executor)
+    if executor is None:
+        pool = find_pool(system, activity)
+        return pool.key if pool is not None and pool.threads == 1 else f"activity {activity.id}"
+    if executor.threads == 1:
+        return executor.id
+    if activity.callback_group is None:
         return f"activity {activity.id}"
-    return f"group {activity.callback_group} in {pool.key}"
+    return f"group {activity.callback_group} in {executor.id}"
 
 
 def is_reentrant(system: TimingSystem, activity: Activity) -> bool:
@@ -51,20 +54,25 @@ def works_in_order(system: TimingSystem, activity: Activity) -> bool:
     """
     if is_reentrant(system, activity):
         return False
-    return activity.executor not in system.executors or count_entities(system, activity) <= 1
+    if activity.executor not in system.executors or activity.behaviour == "periodic":
+        return True
+    # Whether there are several is all that is asked, and this is asked often.
+    entities = ((arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity))
+    first_entity = next(entities, None)
+    return all(entity == first_entity for entity in entities)
 
 
 def count_entities(system: TimingSystem, activity: Activity) -> int:
     """Return how many callbacks of an activity wait for their turn: its clock, or each subscription and service."""
     if activity.behaviour == "periodic":
         return 1
-    return len(
-        {
-            (arc.role, arc.input, arc.topic)
-            for arc in system.arcs_into.get(activity.id, ())
-            if arc.role == "request" or arc.input in activity.triggers
-        }
-    )
+    return len({(arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity)})
+
+
+def _list_waiting_arcs(system: TimingSystem, activity: Activity) -> Iterator[Arc]:
+    for arc in system.arcs_into.get(activity.id, ()):
+        if arc.role == "request" or arc.input in activity.triggers:
+            yield arc
 
 
 def find_thread_count(system: TimingSystem, name: str) -> int | None:
@@ -80,6 +88,9 @@ def find_crowded_pools(system: TimingSystem, activities: Iterable[Activity]) -> 
     """
     members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
     for activity in activities:
+        executor = system.executors.get(activity.executor)
+        if executor is not None and executor.threads == 1:
+            continue  # as nearly everywhere
         pool = find_pool(system, activity)
         if pool is not None and pool.threads is not None and pool.threads > 1:
             members_by_pool[pool].append(activity)
