@@ -5,6 +5,7 @@
 | `overview` | `overview` | the groups |
 | `components` | `components` | all groups with their components |
 | `groups/G` | `group` | a group with its neighbours |
+| `composed/G.C` | `composed` | a composed component, open, with what is inside |
 | `components/G.C` | `component` | a component with its ports |
 | `implementation/G.C` | `implementation` | a component's nodes and topics |
 | `ros` | `ros` | all nodes |
@@ -24,6 +25,7 @@ from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.component_graph import draw_component
+from archgen.views.graphs.composed_graph import draw_composed
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.group_graph import draw_group
 from archgen.views.graphs.host_graph import draw_hosts
@@ -36,6 +38,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 __all__ = [
     "draw_component",
     "draw_components",
+    "draw_composed",
     "draw_group",
     "draw_hosts",
     "draw_implementation",
@@ -76,6 +79,10 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_component
         yield selection_graphs.draw_functional_part(lookup, "overview", "The selected part", selection.components)
     for name in dict.fromkeys(each.group for each in shown_components):
         yield fold_graph(draw_group(lookup, name))
+    shown_ids = {component.id for component in shown_components}
+    for shell in architecture.shells.values():
+        if not shown_ids.isdisjoint(architecture.leaves_of(shell.id)):
+            yield draw_composed(lookup, shell.id)
     for each in shown_components if draws_components else ():
         yield draw_component(lookup, each.id)
         yield draw_implementation(lookup, each.id)
