@@ -109,7 +109,7 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
             return fold_graph(graphs.draw_group(lookup, name))
         if family == "composed" and name in architecture.shells:
             return graphs.draw_composed(lookup, name)
-        if family == "components" and name in architecture.components:
+        if family == "components" and name in architecture.components and name not in architecture.shells:
             return graphs.draw_component(lookup, name)
         if family == "implementation" and name in architecture.components:
             return graphs.draw_implementation(lookup, name)

@@ -105,6 +105,11 @@ class Lookup:
     def _keep_shown(self, component_ids: Iterable[str]) -> list[Component]:
         return [find_component(self.architecture, name) for name in component_ids if self.shows_part(name)]
 
+    def connections_at(self, component_id: str) -> list[tuple[Input, Connection]]:
+        """Return the connections at a component, those of what is inside of a composed one included."""
+        positions = dict.fromkeys(self.connection_positions.get(component_id, ()))
+        return [self.written_connections[position] for position in positions]
+
     def shows_part(self, component_id: str) -> bool:
         """Whether a component is shown, of a composed one whether anything inside is."""
         if self.scope.components is None:

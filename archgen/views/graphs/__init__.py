@@ -84,7 +84,9 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_component
         if not shown_ids.isdisjoint(architecture.leaves_of(shell.id)):
             yield draw_composed(lookup, shell.id)
     for each in shown_components if draws_components else ():
-        yield draw_component(lookup, each.id)
+        # A composed one that is not designed to its end is among them, and has its own picture already.
+        if each.id not in architecture.shells:
+            yield draw_component(lookup, each.id)
         yield draw_implementation(lookup, each.id)
     if selection is None:
         yield draw_ros_graph(lookup)

@@ -5,14 +5,27 @@ A connection counts once, where it is written: at the port of a closed composed 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from archgen.model import component_nesting
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input
-from archgen.views.graphs.component_flows import ComponentFlow, flow_style
+from archgen.views.graphs.component_flows import ComponentFlow, FlowStyle, flow_style
 from archgen.views.lookup import Lookup
+
+
+@dataclass(frozen=True, slots=True)
+class _FlowPart:
+    """What one connection brings from one component: between which boxes, the names of the outputs, and their types."""
+
+    port: Input
+    connection: Connection
+    source: str
+    reader: str
+    style: FlowStyle
+    names: tuple[str, ...]
+    types: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,20 +61,42 @@ class DrawnLevel:
 
     def list_flows(self) -> tuple[ComponentFlow, ...]:
         """Return all flows, in the order of the connections."""
-        return tuple(
-            flow for port, connection in self.lookup.written_connections for flow in self._list_drawn(port, connection)
-        )
+        return tuple(self._join_parts(self.lookup.written_connections))
 
     def list_flows_at(self, box_ids: Collection[str]) -> list[ComponentFlow]:
         """Return the flows that begin or end at some boxes, in the order of the connections."""
         # Every group's picture asks: to go through all connections for each is quadratic.
         positions = {at for box in box_ids for at in self.lookup.connection_positions.get(box, ())}
         touching = (self.lookup.written_connections[at] for at in sorted(positions))
-        candidates = (flow for port, connection in touching for flow in self._list_drawn(port, connection))
-        return [flow for flow in candidates if flow.tail in box_ids or flow.head in box_ids]
+        return [flow for flow in self._join_parts(touching) if flow.tail in box_ids or flow.head in box_ids]
 
-    def _list_drawn(self, port: Input, connection: Connection) -> Iterator[ComponentFlow]:
-        """Yield the flows of a connection: one for each box that it comes from."""
+    def _join_parts(self, connections: Iterable[tuple[Input, Connection]]) -> Iterator[ComponentFlow]:
+        """Yield the flows of connections. What one reference brings through a composed component is one flow."""
+        parts_by_flow: dict[tuple[object, ...], list[_FlowPart]] = {}
+        for at, (port, connection) in enumerate(connections):
+            for part in self._list_parts(port, connection):
+                way = connection.shell_port or at
+                parts_by_flow.setdefault((port.id, way, part.source, part.reader, part.style), []).append(part)
+        return (self._make_flow(parts) for parts in parts_by_flow.values())
+
+    def _make_flow(self, parts: Sequence[_FlowPart]) -> ComponentFlow:
+        first = parts[0]
+        source, reader = first.source, first.reader
+        types = tuple(dict.fromkeys(name for part in parts for name in part.types))
+        names = ", ".join(dict.fromkeys(name for part in parts for name in part.names))
+        return ComponentFlow(
+            first.connection,
+            *((reader, source) if first.style in {"service", "action"} else (source, reader)),
+            first.style,
+            types,
+            first.port.optional,
+            f"{self.find_component(source).title} · {names}"
+            f"{' (' + ', '.join(types) + ')' if types else ''}"
+            f" → {self.find_component(reader).title} · {self._name_port(first.port.id, reader)}",
+        )
+
+    def _list_parts(self, port: Input, connection: Connection) -> Iterator[_FlowPart]:
+        """Yield what a connection brings, for each component that it comes from."""
         architecture = self.architecture
         if port.component in self.open_shells and port.id not in architecture.inputs:
             return
@@ -76,19 +111,10 @@ class DrawnLevel:
             if source == reader and reader in architecture.shells:
                 continue
             own_outputs = [output for output in outputs if output.component == producer]
+            names = tuple(self._name_port(output.id, source, connection) for output in own_outputs)
             types = tuple(dict.fromkeys(output.type for output in own_outputs if output.type))
             style = flow_style(architecture, own_outputs[0].id)
-            names = ", ".join(self._name_port(output.id, source, connection) for output in own_outputs)
-            yield ComponentFlow(
-                connection,
-                *((reader, source) if style in {"service", "action"} else (source, reader)),
-                style,
-                types,
-                port.optional,
-                f"{self.find_component(source).title} · {names}"
-                f"{' (' + ', '.join(types) + ')' if types else ''}"
-                f" → {self.find_component(reader).title} · {self._name_port(port.id, reader)}",
-            )
+            yield _FlowPart(port, connection, source, reader, style, names, types)
 
     def _find_source(self, connection: Connection, producer: str) -> str:
         """Return the box that a connection comes from: of a closed component that gives on what it reads, itself."""
