@@ -45,7 +45,11 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
 def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Block, ...]:
     """Describe a component type: facts, what it does, its ports and its instances."""
     blocks: list[Block] = [Facts(tuple(_list_facts(lookup, component_type)))]
-    blocks += [Markdown(text) for text in (component_type.functionality, component_type.description) if text]
+    base = lookup.architecture.component_types.get(_base_id(component_type))
+    # What a type has from another is said there.
+    known_texts = {base.functionality, base.description} if base else set()
+    texts = (component_type.functionality, component_type.description)
+    blocks += [Markdown(text) for text in texts if text and text not in known_texts]
     blocks += _make_port_table(component_type)
     blocks += _make_instance_table(lookup, component_type)
     return tuple(blocks)

@@ -98,7 +98,9 @@ def _list_output_cells(lookup: Lookup, port: Output) -> tuple[Inlines, ...]:
         for reader, connection in lookup.connections_at(port.component)
         if port.id in (connection.shell_port, *connection.outputs) and not reader.id.startswith(f"{port.component}.")
     ]
-    cells = [inline_text.port_link(architecture, reader) for reader in {reader.id: reader for reader in readers}.values()]
+    cells = [
+        inline_text.port_link(architecture, reader) for reader in {reader.id: reader for reader in readers}.values()
+    ]
     if port.external:
         cells.append(inline_text.to_inlines(Text("outside: ", muted=True), port.external))
     return (

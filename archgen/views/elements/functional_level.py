@@ -71,15 +71,15 @@ def _count_components(lookup: Lookup, group: Group) -> str:
 
 
 def make_component_table(
-    lookup: Lookup, anchor: str, caption: str, components: list[Component], *, with_places: bool = False
+    lookup: Lookup, anchor: str, caption: str, components: list[Component], *, inside_of: str | None = None
 ) -> Table:
     """List components with their purpose, role and nodes; with their types where one of them has a type.
 
-    `with_places` names what each is inside of.
+    Each is named with what it is inside of, as seen from within `inside_of`; with None, not at all.
     """
     rows = tuple(
         (
-            _make_name_cell(lookup, component, with_place=with_places),
+            _make_name_cell(lookup, component, inside_of),
             (link_type(lookup.architecture, component),) if component.component_type else (),
             inline_text.value_or_unknown(first_sentence(component.functionality)),
             inline_text.value_or_unknown(component.role),
@@ -101,10 +101,11 @@ def _make_node_cell(lookup: Lookup, component: Component) -> Inlines:
     return inline_text.join_inlines((inline_text.node_link(node),) for node in nodes) or inline_text.UNKNOWN_INLINES
 
 
-def _make_name_cell(lookup: Lookup, component: Component, *, with_place: bool) -> Inlines:
+def _make_name_cell(lookup: Lookup, component: Component, inside_of: str | None) -> Inlines:
     """Return a link to a component; of a composed one with how many are inside."""
-    around = list_surrounding(lookup.architecture, component.id) if with_place else ()
-    titles = "".join(f"{lookup.architecture.shells[name].title} · " for name in around)
+    around = list_surrounding(lookup.architecture, component.id) if inside_of is not None else ()
+    inner = around[around.index(inside_of) + 1 :] if inside_of in around else around
+    titles = "".join(f"{lookup.architecture.shells[name].title} · " for name in inner)
     link = inline_text.component_link(component)
     place = (Text(titles, muted=True),) if titles else ()
     if component.id not in lookup.architecture.shells:

@@ -13,7 +13,7 @@ from archgen.views.elements.component_type_blocks import make_own_value_fact, ma
 from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks
-from archgen.views.elements.instance_values import TypeTexts
+from archgen.views.elements.instance_values import TypeTexts, add_own_value
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter
@@ -111,20 +111,11 @@ class ComponentPages:
                 anchor = f"implementation:{component.id}"
                 sections = [Section(anchor, "Implementation", (*figures, *table))]
         sections += self.find_findings(component.id)
-        blocks = self._add_own_values(blocks, component)
+        blocks = add_own_value(blocks, make_own_value_fact(self.lookup, component, self._type_texts))
         section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
         path = f"components/{component.id}.html"
         is_on_map = not is_composed
         return Page(path, section.anchor, component.title, "components", section, crumbs, lead, is_on_map=is_on_map)
-
-    def _add_own_values(self, blocks: tuple[Block, ...], component: Component) -> tuple[Block, ...]:
-        """Add what an instance says otherwise than its type to its facts, behind the type."""
-        row = make_own_value_fact(self.lookup, component, self._type_texts)
-        facts = blocks[0]
-        if row is None or not isinstance(facts, Facts):
-            return blocks
-        at = next((at for at, (name, _) in enumerate(facts.rows, 1) if name == "Type"), 0)
-        return (Facts((*facts.rows[:at], row, *facts.rows[at:])), *blocks[1:])
 
     def list_type_pages(self) -> Iterator[Page]:
         """Yield the page that lists the component types, and one for each; nothing where there are none."""

@@ -200,7 +200,7 @@ class PageMaker:
             explorer_blocks = explorer_page.make_explorer_blocks(self.lookup, self.make_figures("overview"))
             yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
         component_table = make_component_table(
-            self.lookup, "table:components", "All components", components, with_places=True
+            self.lookup, "table:components", "All components", components, inside_of=""
         )
         yield self._spanning_page(
             "components", "Components", *self.make_figures("components"), component_table if components else None
