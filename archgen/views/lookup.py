@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -101,6 +101,13 @@ class Lookup:
     def shown_children(self, shell: Component) -> list[Component]:
         """Return the shown components that stand directly in a composed component."""
         return self._keep_shown(shell.children)
+
+    def nested_components(self) -> Iterator[Component]:
+        """Yield the shown components group by group, a composed one before what is inside."""
+        pending = [c for name in reversed(self.shown_groups()) for c in reversed(self.shown_members(name))]
+        while pending:
+            yield (component := pending.pop())
+            pending += reversed(self.shown_children(component))
 
     def _keep_shown(self, component_ids: Iterable[str]) -> list[Component]:
         return [find_component(self.architecture, name) for name in component_ids if self.shows_part(name)]

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component
 from archgen.model.node import Node
 from archgen.views import inline_text
 from archgen.views.changes.site_changes import add_changes
@@ -195,7 +194,7 @@ class PageMaker:
 
     def spanning_pages(self) -> Iterator[Page]:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
-        components = self._list_nested_components()
+        components = list(self.lookup.nested_components())
         if components or self.lookup.shown_nodes():
             explorer_blocks = explorer_page.make_explorer_blocks(self.lookup, self.make_figures("overview"))
             yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
@@ -255,17 +254,6 @@ class PageMaker:
                 architecture_tables.make_link_table(self.lookup),
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
-
-    def _list_nested_components(self) -> list[Component]:
-        """Return the shown components group by group, what is inside of a composed one behind it."""
-        pending = [
-            c for name in reversed(self.lookup.shown_groups()) for c in reversed(self.lookup.shown_members(name))
-        ]
-        components: list[Component] = []
-        while pending:
-            components.append(component := pending.pop())
-            pending += reversed(self.lookup.shown_children(component))
-        return components
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
