@@ -50,6 +50,10 @@ __all__ = [
 ]
 
 
+MAX_COMPOSED_PICTURES = 300
+"""With more composed components they have pictures only where single components have them."""
+
+
 def make_all_graphs(
     architecture: Architecture,
     selection: Selection | None = None,
@@ -60,7 +64,7 @@ def make_all_graphs(
 ) -> tuple[Graph, ...]:
     """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out.
 
-    Without `draws_components` there is none of a single component.
+    Without `draws_components` there is none of a single component; of composed ones as long as they are few.
     """
     lookup = make_lookup(architecture, findings, timing_lookup=timed)
     return tuple(graph for graph in _iterate_graphs(lookup, selection, draws_components) if graph.boxes)
@@ -80,9 +84,9 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, draws_component
     for name in dict.fromkeys(each.group for each in shown_components):
         yield fold_graph(draw_group(lookup, name))
     shown_ids = {component.id for component in shown_components}
-    for shell in architecture.shells.values():
-        if not shown_ids.isdisjoint(architecture.leaves_of(shell.id)):
-            yield draw_composed(lookup, shell.id)
+    shown_shells = [each for each in architecture.shells if not shown_ids.isdisjoint(architecture.leaves_of(each))]
+    for shell_id in shown_shells if draws_components or len(shown_shells) <= MAX_COMPOSED_PICTURES else ():
+        yield draw_composed(lookup, shell_id)
     for each in shown_components if draws_components else ():
         # A composed one that is not designed to its end is among them, and has its own picture already.
         if each.id not in architecture.shells:
