@@ -1,6 +1,6 @@
 """All stages in order, from YAML files to findings. Read this module first for an overview of archgen.
 
-project -> syntax -> schema -> link -> model -> transform -> analyses -> findings
+project -> syntax -> schema -> compose -> link -> model -> transform -> analyses -> findings
 
 `archgen.products` goes on from there: views -> emit -> files.
 """
@@ -16,8 +16,15 @@ from pathlib import Path
 from archgen import analyses, compose, findings, link, project, schema, transform
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.diagnostics.source_span import SourceTexts
-from archgen.findings import error_aftermath, finding_limit, ignore_comments, option_settings, rule_table
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.findings import (
+    error_aftermath,
+    finding_limit,
+    ignore_comments,
+    instance_findings,
+    option_settings,
+    rule_table,
+)
 from archgen.frozen import dataclass
 from archgen.link import (
     interface_sources,
@@ -231,7 +238,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         (*reading_errors, *linking_errors), loaded_project.lost_keys, is_partial=loaded_project.partial
     )
     rule_options, option_findings = option_settings.read_rule_options(loaded_project.rule_options, _RULES_BY_NAME)
-    raw_diagnostics = (
+    all_diagnostics = (
         *title_guesses.add_title_guesses(
             (*loaded_project.diagnostics, *link_findings), architecture, loaded_project.sources
         ),
@@ -244,6 +251,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         ),
         *option_findings,
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
+    )
+    raw_diagnostics = instance_findings.gather_instance_findings(
+        all_diagnostics, architecture, _list_type_spans(merged_table)
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
     # Only projects that ignore something pay for this.
@@ -276,6 +286,12 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
 
 def _list_structural_errors(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     return [d for d in diagnostics if _RULES_BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
+
+
+def _list_type_spans(merged_table: MappingNode) -> list[Span]:
+    """Return where component types are written."""
+    types = merged_table.get("component_types")
+    return [entry.value.span for entry in types] if isinstance(types, MappingNode) else []
 
 
 def _find_silenced(

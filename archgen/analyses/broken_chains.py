@@ -120,7 +120,9 @@ def _components_of_waypoint(architecture: Architecture, waypoint: Waypoint) -> s
     """Return the ids of the components that a chain's element belongs to."""
     if waypoint.kind == "node":
         return set(architecture.nodes[waypoint.id].implements)
-    return {waypoint.id if waypoint.kind == "component" else architecture.outputs[waypoint.id].component}
+    if waypoint.kind == "component":
+        return set(architecture.leaves_of(waypoint.id))
+    return {architecture.outputs[waypoint.id].component}
 
 
 RULES = ((broken_chain, Severity.WARNING),)

@@ -47,7 +47,7 @@ def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
           screen: {implements: screen}
     """
     id_by_title = _index_titles(architecture)
-    for component in architecture.components.values():
+    for component in architecture.list_described_components():
         for use in component.requirements:
             if not use.is_id:
                 yield from _check_sentence(architecture, use.text, use.at, component.id, id_by_title)
@@ -157,11 +157,11 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     if architecture.partial:
         return
-    named_ids = {use.text for c in architecture.components.values() for use in c.requirements if use.is_id}
+    named_ids = {use.text for c in architecture.list_described_components() for use in c.requirements if use.is_id}
     named_ids.update(requirement for chain in architecture.chains.values() for requirement in chain.requirements)
     # A sentence that means requirements is reported by `unknown-requirement`, too.
     id_by_title = _index_titles(architecture)
-    sentences = {use.text for c in architecture.components.values() for use in c.requirements if not use.is_id}
+    sentences = {use.text for c in architecture.list_described_components() for use in c.requirements if not use.is_id}
     for sentence in sorted(sentences):
         named_ids.update(_list_meant_requirements(architecture, sentence, id_by_title))
     # A misspelt id is reported by `unknown-requirement`; the requirement that it means is not reported once more.
@@ -216,7 +216,9 @@ def unjustified_component(architecture: Architecture) -> Iterator[Diagnostic]:
     if not architecture.requirements:
         return
     for component in architecture.components.values():
-        if not component.requirements:
+        around = (*architecture.list_around(component), *filter(None, [architecture.shells.get(component.id)]))
+        # What a composed component is there for, its parts are there for.
+        if not component.requirements and not any(shell.requirements for shell in around):
             yield Diagnostic(
                 "unjustified-component",
                 f"`{component.id}` serves no requirement",

@@ -52,6 +52,11 @@ class ArchitectureSize:
     chains: int
     views: int
     policies: int
+    composed: int = 0
+    """Components that hold others: `components` counts what is left when everything is written out."""
+    component_types: int = 0
+    made_connections: int = 0
+    """Those among `connections` that `autoconnect` made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +115,9 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         chains=len(arch.chains),
         views=len(arch.views),
         policies=len(arch.policies),
+        composed=len(arch.shells),
+        component_types=len(arch.component_types),
+        made_connections=sum(connection.is_made for connection in arch.connections),
     )
 
 

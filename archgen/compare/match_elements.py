@@ -86,7 +86,8 @@ class _Matcher:
         """Pair elements that have the same name below a matched parent: ids change when a parent is renamed."""
         new_ids = _declared_elements(kind, self.new_relations)
         for element_id in _declared_elements(kind, self.old_relations):
-            parent, _, own_name = element_id.rpartition(".")
+            # A component's path may lead through composed components: below its group it is one name.
+            parent, _, own_name = element_id.partition(".") if parent_kind == "group" else element_id.rpartition(".")
             new_parent = self.matched_ids.find_new_id(parent_kind, parent)
             new_id = f"{new_parent}.{own_name}"
             if new_parent is not None and new_id in new_ids and not self._is_settled(kind, element_id, new_id):

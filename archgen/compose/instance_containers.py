@@ -24,9 +24,7 @@ def make_instance_containers(
     ids = derive_node_ids(entries_by_path, entries_by_path, used_ids)
     for component_id, entry in bodies.items():
         _name_container(component_id, entry, ids, parents)
-    return {
-        ids[path]: MappingEntry(ids[path], entry.key_span, entry.value) for path, entry in entries_by_path.items()
-    }
+    return {ids[path]: MappingEntry(ids[path], entry.key_span, entry.value) for path, entry in entries_by_path.items()}
 
 
 def _list_containers(bodies: Mapping[str, MappingEntry]) -> Iterator[tuple[str, MappingEntry]]:
@@ -36,9 +34,7 @@ def _list_containers(bodies: Mapping[str, MappingEntry]) -> Iterator[tuple[str, 
             yield f"{component_id}.{container.key}", container
 
 
-def _name_container(
-    component_id: str, entry: MappingEntry, ids: Mapping[str, str], parents: Mapping[str, str]
-) -> None:
+def _name_container(component_id: str, entry: MappingEntry, ids: Mapping[str, str], parents: Mapping[str, str]) -> None:
     node = entry.value.entries.get("node") if isinstance(entry.value, MappingNode) else None
     reference = node.value.entries.get("container") if node and isinstance(node.value, MappingNode) else None
     if node is None or reference is None or not isinstance(reference.value, ScalarNode):

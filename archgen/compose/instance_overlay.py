@@ -41,23 +41,23 @@ class InstanceOverlay:
         self.diagnostics = diagnostics
         self._may_replace = may_replace
 
-    def lay_over_type(self, base: MappingNode, derived: MappingNode) -> MappingNode:
+    def lay_over_type(self, base: MappingNode, derived: MappingNode, type_name: str) -> MappingNode:
         """Return a type with another made from it laid over: it may add ports, components and parameters."""
-        return self._lay_component(base, derived, None)
+        return self._lay_component(base, derived, type_name, is_open=True)
 
     def lay_over_instance(self, base: MappingNode, instance: MappingNode, instance_id: str) -> MappingNode:
         """Return a type's body with an instance laid over, which adds neither ports nor components."""
-        return self._lay_component(base, instance, instance_id)
+        return self._lay_component(base, instance, instance_id, is_open=False)
 
-    def _lay_component(self, base: MappingNode, over: MappingNode, instance_id: str | None) -> MappingNode:
+    def _lay_component(self, base: MappingNode, over: MappingNode, holder_id: str, *, is_open: bool) -> MappingNode:
         entries = dict(base.entries)
         for entry in over:
             below = entries.get(entry.key)
             part_kind = _PART_KINDS.get(entry.key)
             if part_kind and isinstance(entry.value, MappingNode):
                 base_parts = below.value if below and isinstance(below.value, MappingNode) else None
-                parts = self._lay_parts(base_parts, entry.value, part_kind, instance_id)
-                if below is not None or parts.entries or instance_id is None:
+                parts = self._lay_parts(base_parts, entry.value, part_kind, holder_id, is_open=is_open)
+                if below is not None or parts.entries or is_open:
                     entries[entry.key] = MappingEntry(entry.key, (below or entry).key_span, parts)
             elif entry.key in _JOINED_LISTS and below and isinstance(below.value, SequenceNode):
                 own = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
@@ -65,29 +65,29 @@ class InstanceOverlay:
                 entries[entry.key] = MappingEntry(entry.key, entry.key_span, SequenceNode(items, entry.value.span))
             else:
                 _lay_entry(entries, entry)
-        return MappingNode(entries, over.span if instance_id else base.span)
+        return MappingNode(entries, base.span if is_open else over.span)
 
     def _lay_parts(
-        self, base: MappingNode | None, over: MappingNode, part_kind: str, instance_id: str | None
+        self, base: MappingNode | None, over: MappingNode, part_kind: str, holder_id: str, *, is_open: bool
     ) -> MappingNode:
         """Return ports or components by id; what only an instance writes is reported, and left out."""
         entries = dict(base.entries) if base else {}
         for entry in over:
             below = entries.get(entry.key)
             if below is None:
-                if instance_id is None:
+                if is_open:
                     entries[entry.key] = entry
                 else:
-                    self.diagnostics.append(_diagnose_unknown_part(entry, part_kind, instance_id, base))
+                    self.diagnostics.append(_diagnose_unknown_part(entry, part_kind, holder_id, base))
                 continue
             body = below.value if isinstance(below.value, MappingNode) else MappingNode({}, below.key_span)
             own = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
             if part_kind == "component":
-                inner_id = f"{instance_id}.{entry.key}" if instance_id else entry.key
+                inner_id = f"{holder_id}.{entry.key}"
                 own = self._keep_wider_type(body, own, inner_id)
                 # What an inner instance has is not known before its own type is laid under it: it is judged then.
                 is_instance = not {"is", "same_as"}.isdisjoint({*body.entries, *own.entries})
-                value = self._lay_component(body, own, inner_id if instance_id and not is_instance else None)
+                value = self._lay_component(body, own, inner_id, is_open=is_open or is_instance)
             else:
                 value = _lay_mapping(body, own)
             entries[entry.key] = MappingEntry(entry.key, below.key_span, value)

@@ -7,7 +7,7 @@ line. A project without types and composed components comes out as it went in.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from archgen.compose.instance_containers import make_instance_containers
@@ -124,7 +124,10 @@ class _ProjectExpander:
 
     def expand_groups(self, groups: MappingNode) -> ExpandedProject:
         sized_groups = [
-            (group, [(part, self._expand(part.value, f"{group.key}.{part.key}")) for part in _list_components(group.value)])
+            (
+                group,
+                [(part, self._expand(part.value, f"{group.key}.{part.key}")) for part in _list_components(group.value)],
+            )
             for group in groups
         ]
         total = sum(expansion.size for _, parts in sized_groups for _, expansion in parts)
@@ -132,7 +135,9 @@ class _ProjectExpander:
             sized_groups = [(group, list(self._limit_parts(group, parts))) for group, parts in sized_groups]
         group_entries = {group.key: self._flatten_group(group, parts) for group, parts in sized_groups}
         if group_entries:
-            section = MappingEntry("groups", self._root.entries["groups"].key_span, MappingNode(group_entries, groups.span))
+            section = MappingEntry(
+                "groups", self._root.entries["groups"].key_span, MappingNode(group_entries, groups.span)
+            )
             self._result.root = MappingNode({**self._root.entries, "groups": section}, self._root.span)
         self._add_containers()
         self._judge_types()
@@ -233,7 +238,11 @@ class _ProjectExpander:
             message = f"`{element_id}` stands for {_format_count(expansion.size)} components; at most {MAX_ELEMENTS:,} are written out"
             self._diagnostics.append(
                 Diagnostic(
-                    "too-many-elements", message, part.key_span, help="use fewer instances inside of one another", element=element_id
+                    "too-many-elements",
+                    message,
+                    part.key_span,
+                    help="use fewer instances inside of one another",
+                    element=element_id,
                 )
             )
             yield part, _Expansion(expansion.written, expansion.body, expansion.origin, {}, 1)
@@ -247,10 +256,12 @@ class _ProjectExpander:
         components = group.value.entries["components"]
         components_entry = MappingEntry("components", components.key_span, MappingNode(leaves, components.value.span))
         return MappingEntry(
-            group.key, group.key_span, MappingNode({**group.value.entries, "components": components_entry}, group.value.span)
+            group.key,
+            group.key_span,
+            MappingNode({**group.value.entries, "components": components_entry}, group.value.span),
         )
 
-    def _flatten_part(  # noqa: PLR0913 - what the recursion carries
+    def _flatten_part(  # noqa: PLR0913, PLR0917 - what the recursion carries
         self,
         group_id: str,
         part: MappingEntry,
@@ -311,4 +322,4 @@ def _diagnose_two_types(body: MappingNode, component_id: str) -> Diagnostic:
 
 
 def _format_count(count: int) -> str:
-    return f"{count:,}" if count < 10**12 else f"10^{len(str(count)) - 1}"  # noqa: PLR2004 - readable
+    return f"{count:,}" if count < 10**12 else f"10^{len(str(count)) - 1}"

@@ -15,7 +15,9 @@ def find_changes_of_reference(body: MappingNode, component_id: str, type_name: s
     changed = [entry for entry in body if entry.key not in _OWN_KEYS]
     inputs, node = body.get("inputs"), body.get("node")
     for port in inputs if isinstance(inputs, MappingNode) else ():
-        changed += [e for e in port.value if e.key not in _OWN_INPUT_KEYS] if isinstance(port.value, MappingNode) else []
+        changed += (
+            [e for e in port.value if e.key not in _OWN_INPUT_KEYS] if isinstance(port.value, MappingNode) else []
+        )
     changed += [e for e in node if e.key not in _OWN_NODE_KEYS] if isinstance(node, MappingNode) else []
     return [_diagnose_change(entry, component_id, type_name) for entry in changed]
 

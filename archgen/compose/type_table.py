@@ -42,7 +42,9 @@ class TypeTable:
             self.diagnostics.append(_diagnose_abstract(reference, entry, self._list_derived(entry.key), element_id))
             return None
         if len(reference.text) > MAX_TYPE_LENGTH:
-            message = f"the name of this type has {len(reference.text):,} letters; a type that holds itself grows for ever"
+            message = (
+                f"the name of this type has {len(reference.text):,} letters; a type that holds itself grows for ever"
+            )
             self.diagnostics.append(Diagnostic("too-large", message, reference.span, element=element_id))
             return None
         return expression
@@ -97,7 +99,10 @@ class TypeTable:
         base = self.find_type(base_reference, expression.name, is_base=True)
         base_body = self.get_body(base) if base else None
         self._open_names.pop()
-        return InstanceOverlay(self.diagnostics, self.may_replace).lay_over_type(base_body, own_body) if base_body else own_body
+        if base_body is None:
+            return own_body
+        overlay = InstanceOverlay(self.diagnostics, self.may_replace)
+        return overlay.lay_over_type(base_body, own_body, expression.name)
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():
@@ -147,7 +152,9 @@ def diagnose_circle(entry: MappingEntry, names: list[str], verb: str) -> Diagnos
     way = " > ".join(f"`{name}`" for name in (*names, names[0]))
     return Diagnostic(
         "circular-types",
-        f"the component type `{entry.key}` {verb} itself: {way}" if len(names) > 1 else f"the component type `{entry.key}` {verb} itself",
+        f"the component type `{entry.key}` {verb} itself: {way}"
+        if len(names) > 1
+        else f"the component type `{entry.key}` {verb} itself",
         entry.key_span,
         help="take one of them out of the circle",
         element=entry.key,

@@ -7,6 +7,12 @@ from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
 
-RULES = (*slice_merging.RULES, *reference_rules.RULES, *composition_rules.RULES, MISSING_CHAPTER, MISSING_PARAMETER_FILE)
+RULES = (
+    *slice_merging.RULES,
+    *reference_rules.RULES,
+    *composition_rules.RULES,
+    MISSING_CHAPTER,
+    MISSING_PARAMETER_FILE,
+)
 
 __all__ = ["RULES", "link_project"]

@@ -40,7 +40,7 @@ class _AutomaticConnections:
         for component_id in instances:
             self._feed_instance(component_id)
         self._sources.forget_outputs()
-        for shell in reversed(self._outline.shells.values()):
+        for shell in reversed(tuple(self._outline.shells.values())):
             mode = mapping_values.get_text(mapping_values.get_body(shell.entry), "autoconnect")
             if mode:
                 self._join_inside(shell.children, shell.id, mode)
@@ -85,7 +85,11 @@ class _AutomaticConnections:
         for child in children:
             for port in self._list_open_inputs(child):
                 mark = _name_of(port) if mode == "ports" else self._type_of(port)
-                others = [each for each in by_mark.get(mark or "", ()) if each[1].rpartition(".")[0] != child] if mark else []
+                others = (
+                    [each for each in by_mark.get(mark or "", ()) if each[1].rpartition(".")[0] != child]
+                    if mark
+                    else []
+                )
                 self._join_port(port, [each for each in others if self._agree(port, each)])
         if shell_id is not None:
             self._give_on(children, shell_id, mode)
@@ -134,7 +138,9 @@ class _AutomaticConnections:
     def _join_port(self, port: PortKey, candidates: Sequence[PortKey]) -> None:
         if len(candidates) == 1:
             kind, source_id = candidates[0]
-            self._sources.add_source(port, PortSource(ElementRef(kind, source_id), source_id, self._place_of(port), is_made=True))
+            self._sources.add_source(
+                port, PortSource(ElementRef(kind, source_id), source_id, self._place_of(port), is_made=True)
+            )
         elif candidates:
             names = [f"`{each[1]}`" for each in candidates[:_MAX_NAMED]]
             rest = [f"{len(candidates) - _MAX_NAMED} more"] if len(candidates) > _MAX_NAMED else []

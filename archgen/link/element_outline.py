@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 from archgen.compose import ExpandedProject
 from archgen.compose.project_expansion import ComponentShell
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
 from archgen.model.component import Output
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -27,6 +29,8 @@ class ElementOutline:
     """The outputs of composed components as written, by component id and name."""
     inputs: dict[str, dict[str, MappingEntry]] = field(default_factory=dict)
     """By component id and name, those of composed components included."""
+    undeclared_inputs: list[tuple[str, MappingEntry]] = field(default_factory=list)
+    """Inputs that `to` at an output names and nobody declares, with their components."""
 
     @property
     def shells(self) -> Mapping[str, ComponentShell]:
@@ -71,8 +75,27 @@ def build_outline(expansion: ExpandedProject) -> ElementOutline:
     return element_outline
 
 
+def diagnose_undeclared_inputs(outline: ElementOutline) -> Iterator[Diagnostic]:
+    """Report what `to` names and no component has."""
+    for component_id, entry in outline.undeclared_inputs:
+        yield Diagnostic(
+            "unknown-reference",
+            f"no input `{entry.key}` in `{component_id}`",
+            entry.key_span,
+            help=did_you_mean(entry.key, outline.inputs[component_id]) or "`to` declares no input: write it there",
+            element=component_id,
+        )
+
+
 def _outline_ports(element_outline: ElementOutline, component_id: str, body: MappingNode) -> None:
-    element_outline.inputs[component_id] = {e.key: e for e in mapping_values.get_mapping(body, "inputs")}
+    element_outline.inputs[component_id] = {
+        e.key: e for e in mapping_values.get_mapping(body, "inputs") if mapping_values.get_body(e).declares
+    }
+    if len(element_outline.inputs[component_id]) < len(mapping_values.get_mapping(body, "inputs").entries):
+        undeclared_entries = (
+            e for e in mapping_values.get_mapping(body, "inputs") if not mapping_values.get_body(e).declares
+        )
+        element_outline.undeclared_inputs += [(component_id, entry) for entry in undeclared_entries]
     element_outline.outputs[component_id] = {
         e.key: _declare_output(component_id, e) for e in mapping_values.get_mapping(body, "outputs")
     }

@@ -70,13 +70,15 @@ class InputWiring:
     def _make_input(self, component_id: str, entry: MappingEntry, connections: tuple[Connection, ...]) -> Input:
         body = mapping_values.get_body(entry)
         type_text = mapping_values.get_text(body, "type")
+        # What comes into a composed component from outside of the system comes so to what reads it there.
+        outside = self.sources.find_outside(("input", f"{component_id}.{entry.key}")) if self.sources else body
         return Input(
             id=f"{component_id}.{entry.key}",
             name=entry.key,
             component=component_id,
             connections=connections,
-            external=mapping_values.get_text(body, "external"),
-            physical=mapping_values.get_text(body, "medium") == "physical",
+            external=mapping_values.get_text(outside, "external"),
+            physical="physical" in {mapping_values.get_text(each, "medium") for each in (body, outside)},
             type=mapping_values.normalise_type_name(type_text) if type_text else None,
             optional=mapping_values.get_flag(body, "optional"),
             freshness=sanity_checks.read_positive(
@@ -98,11 +100,16 @@ class InputWiring:
             if len(self.edges) + len(output_ids) > MAX_PAIRS:
                 self._report_too_many(source.at, component_id)
                 output_ids = ()
-            is_plain = target.kind == "group" or target.id in self.outline.components or output_ids == (target.id,)
-            if is_plain or not output_ids:
-                kind, target_id = ("output", target.id) if target.kind == "input" else target
-                if is_plain or target.kind != "input":
-                    yield Connection(input_id, source.written, kind, target_id, output_ids, source.at, None, source.is_made)  # type: ignore[arg-type]
+            if target.kind == "group" or target.id in self.outline.components or output_ids == (target.id,):
+                yield Connection(
+                    input_id,
+                    source.written,
+                    target.kind,  # type: ignore[arg-type]
+                    target.id,
+                    output_ids,
+                    source.at,
+                    is_made=source.is_made,
+                )
                 continue
             for output_id in output_ids:
                 yield Connection(

@@ -17,7 +17,7 @@ from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SourceReferences
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.path_resolver import ElementRef
-from archgen.syntax.yaml_tree import MappingEntry
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 PortKey = tuple[str, str]
 """A port: `input` or `output`, and its complete id. An input and an output of a component may have one id."""
@@ -156,6 +156,26 @@ class PortSources:
             self._outputs_behind[port] = tuple(dict.fromkeys(behind))
             self._open_ports.remove(port)
         return self._outputs_behind[port]
+
+    def find_outside(self, port: PortKey) -> MappingNode:
+        """Return what an input of a composed component around says of where it comes from outside of the system."""
+        entry = self.find_entry(port)
+        body = mapping_values.get_body(entry) if entry else mapping_values.EMPTY_MAPPING
+        if body.get("external") is not None:
+            return body
+        for source in self.list_sources(port):
+            if source.target.kind == "input":
+                return self.find_outside(("input", source.target.id))
+        return mapping_values.EMPTY_MAPPING
+
+    def list_given_outside(self) -> dict[str, MappingNode]:
+        """Return what outputs of composed components say of who reads them outside, by the leaf's output that they give on."""
+        given: dict[str, MappingNode] = {}
+        for shell_id, bodies in self.outline.given_outputs.items():
+            for name, body in bodies.items():
+                if body.get("external") is not None:
+                    given.update(dict.fromkeys(self._follow_output(f"{shell_id}.{name}"), body))
+        return given
 
     def forget_outputs(self) -> None:
         """Forget what was followed: sources were added since."""

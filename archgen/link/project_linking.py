@@ -14,7 +14,7 @@ from archgen.link.declare.component_type_declaration import declare_component_ty
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import declare_types
-from archgen.link.element_outline import ElementOutline, build_outline
+from archgen.link.element_outline import ElementOutline, build_outline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
 from archgen.model.architecture import Architecture
@@ -48,13 +48,14 @@ def link_project(  # noqa: PLR0913 - all by name
     diagnostics: list[Diagnostic] = list(expansion.diagnostics)
     damaged_elements = damaged_elements | expansion.damaged_elements
     element_outline = build_outline(expansion)
+    diagnostics += diagnose_undeclared_inputs(element_outline)
     types = declare_types(root, element_outline.list_used_types(), shipped_types, diagnostics)
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     declared_groups = declare_groups(element_outline, resolver, types)
     components, shells = declared_groups.components, declared_groups.shells
     containers = deployment_declaration.declare_containers(root, resolver)
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(root, element_outline, expansion, written_targets, declared_groups, diagnostics)
+    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, diagnostics)
     implements = implemented.implements
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
@@ -63,7 +64,7 @@ def link_project(  # noqa: PLR0913 - all by name
     requirements = section_declaration.declare_requirements(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
-    chains = section_declaration.declare_chains(root, resolver, implements)
+    chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference

@@ -60,12 +60,13 @@ class ReferenceResolver:
         # Components inside of components have longer ids.
         self._extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
 
-    def resolve_reference(
+    def resolve_reference(  # noqa: PLR0913 - the last two by name
         self,
         reference: ScalarNode,
         kinds: Sequence[str],
         element_id: str,
         component_id: str | None = None,
+        *,
         implements: Mapping[str, Collection[str]] = _NO_NODES,
         names: PathResolver | None = None,
     ) -> ElementRef | None:

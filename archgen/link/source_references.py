@@ -62,7 +62,8 @@ class SourceReferences:
                 "unknown-reference",
                 f"no output `{reference.text}` directly inside of `{shell_id}`",
                 reference.span,
-                help=did_you_mean(reference.text, words) or "name an output of a component inside, or `self.` and an input",
+                help=did_you_mean(reference.text, words)
+                or "name an output of a component inside, or `self.` and an input",
                 element=shell_id,
             )
         )
@@ -107,7 +108,10 @@ class SourceReferences:
             return None
         else:
             message = f"`{shell_id}` has no input `{name}`"
-            help_line = did_you_mean(name, self._outline.inputs[shell_id]) or "`self` means the component around: name one of its inputs"
+            help_line = (
+                did_you_mean(name, self._outline.inputs[shell_id])
+                or "`self` means the component around: name one of its inputs"
+            )
         self._resolver.diagnostics.append(
             Diagnostic("unknown-reference", message, reference.span, help=help_line, element=writer_id)
         )
@@ -124,9 +128,7 @@ class SourceReferences:
         if inside.count:
             self._diagnose_inside(reference, inside.elements[0], writer_id)
             return None
-        target = self._resolver.resolve_reference(
-            reference, SOURCE_KINDS, writer_id, writer_id, names=self._open_names
-        )
+        target = self._resolver.resolve_reference(reference, SOURCE_KINDS, writer_id, writer_id, names=self._open_names)
         if target is not None and self._is_around(target, writer_id):
             message = f"`{path}` is a component around `{writer_id}`"
             help_line = "a reference never means what it stands in: `self.` and a name is an input of that component"
@@ -163,9 +165,7 @@ class SourceReferences:
         )
 
     def _warn_inside(self, reference: ScalarNode, path: str, writer_id: str) -> None:
-        shell_id = next(
-            shell_id for shell_id in self._outline.shells if path.startswith(f"{shell_id}.")
-        )
+        shell_id = next(shell_id for shell_id in self._outline.shells if path.startswith(f"{shell_id}."))
         self._resolver.diagnostics.append(
             Diagnostic(
                 "reaches-inside",
@@ -183,22 +183,21 @@ class SourceReferences:
         children = [child.rpartition(".")[2] for child in self._outline.shells[shell_id].children]
         type_name = origin.expression.name
         if outside.count:
-            rule, message = "reaches-outside", f"inside of the type `{type_name}`, `{reference.text}` means something outside of it"
+            rule, message = (
+                "reaches-outside",
+                f"inside of the type `{type_name}`, `{reference.text}` means something outside of it",
+            )
             help_line: str | None = f"give `{type_name}` an input and name it here: `self.` and its name"
         else:
             rule, message = "unknown-reference", f"nothing inside of the type `{type_name}` is named `{reference.text}`"
             help_line = did_you_mean(reference.text.partition(".")[0], children)
-        self._resolver.diagnostics.append(
-            Diagnostic(rule, message, reference.span, help=help_line, element=writer_id)
-        )
+        self._resolver.diagnostics.append(Diagnostic(rule, message, reference.span, help=help_line, element=writer_id))
 
     @cached_property
     def _open_names(self) -> PathResolver:
         """What can be named from everywhere: groups, what stands directly in them, and its outputs."""
         open_ids = [
-            component_id
-            for component_id in self._resolver.spans["component"]
-            if component_id not in self._parents
+            component_id for component_id in self._resolver.spans["component"] if component_id not in self._parents
         ]
         return PathResolver(
             {
@@ -211,4 +210,3 @@ class SourceReferences:
 
 def _make_match(elements: Sequence[ElementRef]) -> PathMatch:
     return PathMatch(tuple(elements[:MAX_LISTED]), len(elements))
-

@@ -199,6 +199,35 @@ class Architecture:
         inner_leaves = tuple(leaf for child in shell.children for leaf in self.leaves_of(child))
         return (component_id, *inner_leaves) if component_id in self.components else inner_leaves
 
+    def list_described_components(self) -> Iterator[Component]:
+        """Yield the composed components, then the leaves; what is not designed yet of a composed one is not told twice."""
+        yield from self.shells.values()
+        yield from (component for component in self.components.values() if component.id not in self.shells)
+
+    def list_around(self, component: Component) -> Iterator[Component]:
+        """Yield the composed components around a component, from the inside to the outside."""
+        around = self.shells.get(component.parent or "")
+        while around is not None:
+            yield around
+            around = self.shells.get(around.parent or "")
+
+    def leaf_ports_of(self, kind: str, port_id: str) -> tuple[str, ...]:
+        """Return the ports of leaves behind an `input` or `output`; that of a leaf stands for itself."""
+        behind = self.shell_ports.get(f"{kind} {port_id}", ())
+        return tuple(leaf for each in behind for leaf in self.leaf_ports_of(kind, each)) or (port_id,)
+
+    def list_types_of(self, component: Component) -> Iterator[str]:
+        """Yield the component types that a component is an instance of, or is part of: with bindings, without, and bases."""
+        for each in (component, *self.list_around(component)):
+            type_text = each.component_type
+            while type_text is not None:
+                yield type_text
+                name = type_text.partition("<")[0]
+                if name != type_text:
+                    yield name
+                base = self.component_types.get(name)
+                type_text = base.base if base else None
+
     def nodes_using(self, resource_id: str) -> Iterator[Node]:
         """Yield the nodes of which an activity uses a resource."""
         return (

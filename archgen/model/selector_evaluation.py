@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 
 from archgen.diagnostics.suggestions import NAMES_HELP, find_closest
@@ -21,6 +21,8 @@ from archgen.model.selector_parser import ALL_STEPS, SelectorAtom, SelectorProbl
 
 __all__ = ["Selection", "SelectorEvaluator", "SelectorProblem", "evaluate_selector", "parse_selector"]
 
+_ALL_BELOW = ".**"
+"""Behind a path: everything below it, to any depth."""
 _PATH_KINDS = ("group", "component", "output")
 _MAX_GUESS_POOL = 100_000
 """No guess is made among more names than these: it would take seconds."""
@@ -88,11 +90,12 @@ class SelectorEvaluator:
     def resolver(self) -> PathResolver:
         """Resolves paths to elements."""
         architecture = self.architecture
+        shells = architecture.shells.values()
         ids_by_kind = {
             "group": architecture.groups,
-            "component": architecture.components,
-            "output": architecture.outputs,
-            "input": architecture.inputs,
+            "component": {**architecture.components, **architecture.shells},
+            "output": {**architecture.outputs, **{port.id: port for each in shells for port in each.outputs.values()}},
+            "input": {**architecture.inputs, **{port.id: port for each in shells for port in each.inputs.values()}},
         }
         return PathResolver({**ids_by_kind, "node": architecture.nodes})
 
@@ -188,6 +191,9 @@ class SelectorEvaluator:
                 message = f"nothing has `{atom.key}:{atom.value}`"
                 problems.append(SelectorProblem(message, atom.start, atom.end, "warning"))
             return hit
+        if atom.value.endswith(_ALL_BELOW) and "*" not in atom.value.removesuffix(_ALL_BELOW):
+            path = atom.value.removesuffix(_ALL_BELOW)
+            return self._evaluate_path(replace(atom, value=path, end=atom.end - len(_ALL_BELOW)), problems)
         if "*" in atom.value:
             hit = self._hit_of_elements(self._match_pattern(atom.value))
             if not hit.elements:
@@ -233,7 +239,7 @@ class SelectorEvaluator:
         architecture = self.architecture
         ids_by_kind = {
             "group": architecture.groups,
-            "component": architecture.components,
+            "component": {**architecture.components, **architecture.shells},
             "output": architecture.outputs,
             "node": architecture.nodes,
         }
@@ -252,13 +258,15 @@ class SelectorEvaluator:
             if element.kind == "group":
                 components.update(c.id for c in self.architecture.groups[element.id].components.values())
             elif element.kind == "component":
-                components.add(element.id)
+                components.update(self.architecture.leaves_of(element.id))
             elif element.kind in {"output", "input"}:
-                components.add(element.id.rpartition(".")[0])
+                ports = self.architecture.leaf_ports_of(element.kind, element.id)
+                components.update(port.rpartition(".")[0] for port in ports)
         nodes = frozenset(element.id for element in elements if element.kind == "node")
-        outputs = tuple(element.id for element in elements if element.kind == "output")
+        output_elements = [element.id for element in elements if element.kind == "output"]
+        outputs = tuple(leaf for each in output_elements for leaf in self.architecture.leaf_ports_of("output", each))
         # `outputs` is set only if the word names nothing else, see `SelectorHit.outputs`.
-        only_outputs = len(outputs) == len(elements)
+        only_outputs = len(output_elements) == len(elements)
         return SelectorHit(
             frozenset(components), nodes, elements, outputs if only_outputs else (), bool(nodes) and not components
         )

@@ -52,6 +52,11 @@ def find_by_key(
     """Return the components and nodes that a key's value selects; `*` in it stands for any characters."""
     if key == "type":
         return SelectorHit(frozenset(_find_by_type(architecture, " ".join(value.split()))), frozenset())
+    if key == "is":
+        instances = (
+            c.id for c in architecture.components.values() if _matches_any(value, architecture.list_types_of(c))
+        )
+        return SelectorHit(frozenset(instances), frozenset())
     if key == "tag":
         return _find_tagged(architecture, value)
     if key == "finding":
@@ -59,7 +64,7 @@ def find_by_key(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
         )
     component_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
-    components = (
+    components: Iterable[str] = (
         (c.id for c in architecture.components.values() if _matches_any(value, component_values(c)))
         if component_values
         else ()
@@ -138,6 +143,8 @@ def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> 
             components.add(port.component)
         elif element_id in architecture.components:
             components.add(element_id)
+        elif element_id in architecture.shells:
+            components.update(architecture.leaves_of(element_id))
         elif element_id in architecture.groups:
             components.update(c.id for c in architecture.groups[element_id].components.values())
         elif element_id in architecture.nodes:

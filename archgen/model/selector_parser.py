@@ -30,6 +30,7 @@ SELECTOR_KEYS = (
     "behaviour",
     "finding",
     "node",
+    "is",
 )
 ALL_STEPS = -1
 """Any number of steps."""

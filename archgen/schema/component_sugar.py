@@ -147,7 +147,9 @@ def _find_inner(components: MappingNode, outer_id: str, entry: MappingEntry) -> 
     body_node = outer.value
     if not isinstance(body_node, MappingNode):
         return None
-    inner = body_node.entries.setdefault("components", MappingEntry("components", entry.key_span, MappingNode({}, entry.key_span)))
+    inner = body_node.entries.setdefault(
+        "components", MappingEntry("components", entry.key_span, MappingNode({}, entry.key_span))
+    )
     if isinstance(inner.value, ScalarNode):
         inner.value = MappingNode({}, entry.key_span)
     elif isinstance(inner.value, SequenceNode):
@@ -188,9 +190,13 @@ def _connect_target(
         )
         return
     body = _as_mapping(component, "title")
-    inputs_entry = body.entries.setdefault("inputs", MappingEntry("inputs", target.span, MappingNode({}, target.span, declares=False)))
+    inputs_entry = body.entries.setdefault(
+        "inputs", MappingEntry("inputs", target.span, MappingNode({}, target.span, declares=False))
+    )
     inputs = _as_mapping(inputs_entry, None)
-    input_entry = inputs.entries.setdefault(input_id, MappingEntry(input_id, target.span, MappingNode({}, target.span, declares=False)))
+    input_entry = inputs.entries.setdefault(
+        input_id, MappingEntry(input_id, target.span, MappingNode({}, target.span, declares=False))
+    )
     input_body = _as_mapping(input_entry, "from")
     from_entry = input_body.entries.setdefault("from", MappingEntry("from", target.span, SequenceNode([], target.span)))
     if isinstance(from_entry.value, ScalarNode):

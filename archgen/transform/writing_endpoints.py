@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import field
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
@@ -28,6 +29,8 @@ class NodePart:
     uses_by_port: Mapping[str, tuple[PortUse, ...]]
     """The entries by the port's complete id. Those of the node's other components are among them."""
     is_only_node: bool
+    given_ports: Mapping[str, str] = field(default_factory=dict)
+    """Of a node that is all of a composed component: its outputs by the leaves' outputs that they give on."""
 
 
 def find_node_parts(architecture: Architecture) -> dict[str, tuple[NodePart, ...]]:
@@ -44,10 +47,25 @@ def find_node_parts(architecture: Architecture) -> dict[str, tuple[NodePart, ...
                 uses.setdefault(use.port, []).append(use)
         by_port = {port: tuple(port_uses) for port, port_uses in uses.items()}
         node_parts[node.id] = tuple(
-            NodePart(node, architecture.components[component_id], by_port, node_counts[component_id] == 1)
+            NodePart(
+                node,
+                architecture.components[component_id],
+                by_port,
+                node_counts[component_id] == 1,
+                _find_given_ports(architecture, node) if node.wholes else {},
+            )
             for component_id in node.implements
         )
     return node_parts
+
+
+def _find_given_ports(architecture: Architecture, node: Node) -> dict[str, str]:
+    return {
+        leaf: output.id
+        for whole in node.wholes
+        for output in architecture.shells[whole].outputs.values()
+        for leaf in architecture.leaf_ports_of("output", output.id)
+    }
 
 
 def derive_writing_endpoints(architecture: Architecture, node_part: NodePart) -> Iterator[Endpoint]:
@@ -79,7 +97,7 @@ def _endpoints_of_output(
     message = use.message or architecture.message_of(output)
     flow_kind = flow_of_use(message, use)
     for name in [ros_names.resolve_ros_name(topic, node_part.node) for topic in use.topics] or [
-        ros_names.default_port_name(output.id)
+        ros_names.default_port_name(node_part.given_ports.get(output.id, output.id))
     ]:
         yield Endpoint(
             node=node_part.node.id,

@@ -42,6 +42,7 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
     """Return all names of a project by where they fit, in the order of the files."""
     groups = tuple(_list_titles(architecture.groups))
     components = tuple(OfferedName(each.id, _shorten_text(each.title)) for each in architecture.components.values())
+    composed = tuple(OfferedName(each.id, _shorten_text(each.title)) for each in architecture.shells.values())
     outputs = tuple(_list_outputs(architecture))
     nodes = tuple(_list_titles({id_: node for id_, node in architecture.nodes.items() if node.written}))
     messages = sorted(architecture.interfaces.names)
@@ -51,6 +52,7 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             "partners",
             "use_cases",
             "requirements",
+            "component_types",
             "hosts",
             "containers",
             "resources",
@@ -67,8 +69,8 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             OfferedName(each.name, each.message or "no message yet") for each in architecture.types.values()
         ),
         "sources": _add_short_forms((*outputs, *components, *groups)),
-        "implemented": _add_short_forms(components),
-        "waypoints": _add_short_forms((*nodes, *components, *outputs)),
+        "implemented": _add_short_forms((*components, *composed)),
+        "waypoints": _add_short_forms((*nodes, *components, *composed, *outputs)),
         "inputs": tuple(_list_inputs(architecture.components.values())),
         "tags": tuple(OfferedName(tag, "") for tag in sorted(_list_tags(architecture))),
         "topics": tuple(

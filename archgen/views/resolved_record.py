@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from archgen.model.architecture import Architecture, Chain, Requirement
-from archgen.model.component import Component, Group, Input, Output
+from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Host, Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Qos
@@ -37,8 +37,10 @@ def make_record(lookup: Lookup) -> Record:
         "requirements": {r.id: _record_requirement(lookup, r) for r in architecture.requirements.values()},
         "groups": {name: _record_group(lookup, architecture.groups[name]) for name in lookup.shown_groups()},
         "components": {c.id: _record_component(lookup, c) for c in architecture.components.values() if is_shown(c.id)},
+        **_record_composition(lookup),
         "connections": [
-            pick_fields(c, "input", "kind", "target", "outputs")
+            pick_fields(c, "input", "kind", "target", "outputs", "shell_port")
+            | drop_unknown({"is_made": c.is_made or None})
             for c in architecture.connections
             if is_shown(architecture.inputs[c.input].component)
         ],
@@ -58,6 +60,38 @@ def make_record(lookup: Lookup) -> Record:
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
     }
+
+
+def _record_composition(lookup: Lookup) -> dict[str, object]:
+    """Return composed components and component types, empty in a project without any."""
+    architecture, is_shown = lookup.architecture, lookup.scope.shows_component
+    shells = {
+        shell.id: _record_component(lookup, shell)
+        | {
+            "components": list(shell.children),
+            "behind": {
+                f"{kind} {port.name}": list(architecture.leaf_ports_of(kind, port.id))
+                for kind, ports in (("input", shell.inputs), ("output", shell.outputs))
+                for port in ports.values()
+            },
+        }
+        for shell in architecture.shells.values()
+        if any(map(is_shown, architecture.leaves_of(shell.id)))
+    }
+    types = {each.id: _record_component_type(each) for each in architecture.component_types.values()}
+    return drop_unknown({"composed": shells, "component_types": types})
+
+
+def _record_component_type(component_type: ComponentType) -> dict[str, object]:
+    fields = {
+        "is": component_type.base,
+        "generic": list(component_type.generic),
+        "abstract": component_type.is_abstract or None,
+        "inputs": {name: kind or "" for name, kind in component_type.inputs.items()},
+        "outputs": {name: kind or "" for name, kind in component_type.outputs.items()},
+        "components": list(component_type.components),
+    }
+    return pick_fields(component_type, "title", "owner", "functionality", "description") | drop_unknown(dict(fields))
 
 
 def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, object]:
@@ -112,6 +146,9 @@ def _record_component(lookup: Lookup, component: Component) -> dict[str, object]
         {
             "title": component.title,
             "group": component.group,
+            "parent": component.parent,
+            "is": component.component_type,
+            "is_reference": component.is_reference or None,
             "owner": component.owner,
             "co_owners": list(component.co_owners),
             "role": component.role,

@@ -18,7 +18,7 @@ from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
 from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
-from archgen.model.component import Component, Group, Input, Output
+from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
@@ -34,6 +34,7 @@ MODEL_CLASSES: Mapping[str, type] = {
     "partner": Partner,
     "use_case": UseCase,
     "requirement": Requirement,
+    "component_type": ComponentType,
     "group": Group,
     "component": Component,
     "output": Output,
@@ -52,6 +53,7 @@ SECTIONS = {
     "partner": "partners",
     "use_case": "use_cases",
     "requirement": "requirements",
+    "component_type": "component_types",
     "group": "groups",
     "component": "components",
     "output": "outputs",
@@ -73,9 +75,27 @@ NOT_WRITTEN_KINDS = {
     "message": "a file of its own, or a text below `ros: definitions`",
     "connection": "the `from` of an input",
     "port": "an entry of a node's `publishes`, `subscribes`, `serves` or `calls`",
+    "composed": "a component with `components`",
 }
 """Kinds that are no mapping of the schema."""
+_INSIDE = {
+    "from": "the connections that it makes",
+    "components": "elements of their own",
+    "autoconnect": "the connections that it makes",
+    "node": "the node that it makes",
+    "containers": "elements of their own",
+}
 SCHEMA_ONLY = {
+    **{f"component {key}": reason for key, reason in _INSIDE.items()},
+    "component same_as": "the key `is`",
+    "group autoconnect": "the connections that it makes",
+    **dict.fromkeys(("output from", "output to"), "the connections that it makes"),
+    **{
+        f"component_type {key}": "what its instances have"
+        for key in SCHEMA["$defs"]["component_type"]["properties"]
+        if key not in {"title", "functionality", "description", "owner", "is", "generic", "abstract"}
+        and key not in {"inputs", "outputs", "components"}
+    },
     "group components": "elements of their own",
     "input from": "the kind `connection`",
     **dict.fromkeys(("node publishes", "node subscribes", "node serves", "node calls"), "the kind `port`"),
@@ -93,6 +113,13 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project rules": "a section of its own",
 }
 MODEL_ONLY = {
+    "component parent": "the beginning of the id",
+    "component children": "elements of their own",
+    "component component_type": "the key `is`",
+    "component is_reference": "the key `is`",
+    "component_type base": "the key `is`",
+    "component_type is_abstract": "the key `abstract`",
+    "node wholes": "its components are in the key `implements`",
     **{f"{kind} id": "the key of the element" for kind in SECTIONS if kind != "type"},
     "type name": "the key of the element",
     "type origin": "where it is declared",
@@ -114,6 +141,9 @@ MODEL_ONLY = {
     "link unresolved": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
+    "component is": "the fields `component_type` and `is_reference`",
+    "component_type is": "the field `base`",
+    "component_type abstract": "the field `is_abstract`",
     **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
     "node kind": "the field `kinds`",
     "link latency": "the fields `best` and `worst`",
@@ -125,6 +155,8 @@ TABLE_ONLY_FOR_MODEL = {
     },
 }
 RECORD_ONLY = {
+    "component parent": "the beginning of the id",
+    "component is_reference": "the key `is`",
     "requirement served_by": "the key `requirements` of components",
     "requirement served_by_chains": "the key `requirements` of chains",
     "group components": "elements of their own",
@@ -149,9 +181,11 @@ KINDS_NOT_IN_RECORD = {
     "connection": "a list",
     "port": "the endpoints of a node",
     "view": "a picture, not a part of the system",
+    "composed": "a component: beside the others",
     "policy": "a rule, not a part of the system",
 }
 CARD_ONLY = {
+    "parent": "the beginning of the id",
     "ROS name": "made of name and namespace",
     "group": "the beginning of the id",
     "component": "the beginning of the id",
@@ -190,6 +224,11 @@ groups:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
         timing: {behaviour: event, trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, inputs: {k: {wcet: 1 ms, bcet: 0 ms}}}
+      whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
+      copy: {same_as: drum}
+component_types:
+  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
+  box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
 types: {T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned}, S: {request: T, response: T, feedback: T}}
 nodes:
   n:
@@ -216,6 +255,7 @@ nodes:
     urls: {a: "https://a.eu"}
     publishes: {o: /o}
   m: b
+  r: [whole, copy]
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, arm: {scheduling: {0: fifo}}}
 containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo}}
@@ -279,7 +319,7 @@ def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:
     if kind == "project":
         return set(record["project"])
     if kind in {"input", "output"}:
-        ports = (port for each in record["components"].values() for port in each[SECTIONS[kind]].values())
+        ports = (port for each in record["components"].values() for port in each.get(SECTIONS[kind], {}).values())
         return {key for port in ports for key in port}
     return {key for element in record[SECTIONS[kind]].values() for key in element}
 
@@ -307,10 +347,11 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
     assert set(MODEL_CLASSES) == kinds
     assert set(SECTIONS) == kinds - {"project"}
     carded = {kind.replace(" ", "_") for kinds in kinds_by_id(lookup).values() for kind in kinds}
-    assert carded - {"topic"} == set(SECTIONS)
+    assert carded - {"topic", "composed"} == set(SECTIONS)
     # What else an architecture maps from ids: topics follow from nodes.
     mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
-    assert mapped - {"topics"} == set(SECTIONS.values())
+    # Nor are composed components a kind of their own in files.
+    assert mapped - {"topics", "shells", "shell_ports"} == set(SECTIONS.values())
 
 
 def test_the_exceptions_are_needed() -> None:
@@ -338,11 +379,12 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
 
 def test_the_order_of_the_report() -> None:
     assert list(KIND_ORDER) == [
-        *("project", "chapter", "partner", "use_case", "requirement", "group", "component", "output", "input"),
+        *("project", "chapter", "partner", "use_case", "requirement", "component_type", "group", "composed"),
+        *("component", "output", "input"),
         *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "chain", "policy"),
         "view",
     ]
-    assert list(KIND_ORDER.values()) == list(range(21))
+    assert list(KIND_ORDER.values()) == list(range(23))
 
 
 def test_whatever_refers_to_a_kind_names_one() -> None:
@@ -402,7 +444,7 @@ def test_how_far_a_changed_key_reaches(effect: Effect, keys: str) -> None:
 def test_how_far_a_whole_element_reaches() -> None:
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.TEXT} == {"chapter", "view", "use_case"}
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.SYSTEM} == {
-        *("project", "partner", "requirement", "policy")
+        *("project", "partner", "requirement", "policy", "component_type", "composed")
     }
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.compose import expand_project
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link import input_wiring
 from archgen.link.element_outline import build_outline
 from archgen.link.reference_resolution import ReferenceResolver

@@ -12,6 +12,12 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "unknown-reference": ("error", True),
         "ambiguous-reference": ("error", True),
         "hidden-reference": ("warning", False),
+        "reaches-outside": ("error", True),
+        "reaches-inside": ("warning", False),
+        "ambiguous-connection": ("warning", False),
+        "several-sources": ("warning", False),
+        "unused-node": ("note", False),
+        "duplicate-port": ("error", True),
         "missing-chapter": ("error", True),
         "missing-parameter-file": ("warning", False),
     }

@@ -117,6 +117,54 @@ def _mark_timing(_relations: ElementRelations, component: Component) -> frozense
     return mark_values(timing.behaviour, timing.rate, timing.wcet) if timing else frozenset()
 
 
+def _read_component_type(component: Component, _context: ReadContext) -> str | None:
+    """Return the component type that a component is made from; one that is exactly it says so."""
+    return f"same as {component.component_type}" if component.is_reference else component.component_type
+
+
+_IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from")
+COMPOSED = KindSpec(
+    "composed",
+    None,
+    (
+        KeySpec("title", lambda shell, _: normalize_title(shell.name, shell.title), Effect.TEXT),
+        prose_key("functionality"),
+        DESCRIPTION,
+        OWNER,
+        CO_OWNERS,
+        _IS,
+        requirements_key(lambda shell: tuple(use.text for use in shell.requirements)),
+        TAGS,
+        LAYOUT,
+        URLS,
+    ),
+    Effect.SYSTEM,
+    elements=lambda version: version.architecture.shells,
+    word="composed component",
+    has_path_id=True,
+    parent_kind="group",
+    parent=lambda shell, context: ("group", context.matched_ids.common_id("group", shell.group)),
+    owner=read_owner,
+)
+COMPONENT_TYPE = KindSpec(
+    "component_type",
+    "Component types",
+    (
+        TITLE,
+        prose_key("functionality"),
+        DESCRIPTION,
+        KeySpec("owner", effect=Effect.SYSTEM, verb="belongs to"),
+        KeySpec("is", lambda each, _: each.base, Effect.SYSTEM, verb="is made from"),
+        KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
+        KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
+        KeySpec("inputs.", lambda each, _: {name: kind or "?" for name, kind in each.inputs.items()}, Effect.SYSTEM),
+        KeySpec("outputs.", lambda each, _: {name: kind or "?" for name, kind in each.outputs.items()}, Effect.SYSTEM),
+        KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
+    ),
+    Effect.SYSTEM,
+    elements=lambda version: version.architecture.component_types,
+    word="component type",
+)
 COMPONENT = KindSpec(
     "component",
     None,
@@ -127,6 +175,7 @@ COMPONENT = KindSpec(
         OWNER,
         CO_OWNERS,
         KeySpec("role", effect=Effect.SYSTEM, verb="is a"),
+        _IS,
         requirements_key(lambda component: tuple(use.text for use in component.requirements)),
         TAGS,
         LAYOUT,
@@ -242,4 +291,4 @@ INPUT = KindSpec(
 )
 # Which outputs an input reads: compared by `connection_maps`, since it has no keys.
 CONNECTION = KindSpec("connection", None)
-FUNCTIONAL_KINDS = (GROUP, COMPONENT, OUTPUT, INPUT, CONNECTION)
+FUNCTIONAL_KINDS = (COMPONENT_TYPE, GROUP, COMPOSED, COMPONENT, OUTPUT, INPUT, CONNECTION)

@@ -23,6 +23,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "chain.through": ("waypoints",),
     "chapters": ("chapters",),
     "component_requirements": ("requirements",),
+    "component_type_item": ("component_types",),
+    "component_type_name": ("component_types",),
     "container": ("hosts",),
     "container.host": ("hosts",),
     "forbid.from": ("selectors",),
@@ -60,7 +62,19 @@ _LISTED_KINDS = frozenset({"inputs", "waypoints"})
 """Names that are offered in lists only: nobody writes a chain of one element."""
 
 _SECTIONS = (
-    *("partners", "use_cases", "requirements", "groups", "nodes", "types", "hosts", "containers", "links", "chains"),
+    *(
+        "partners",
+        "use_cases",
+        "requirements",
+        "component_types",
+        "groups",
+        "nodes",
+        "types",
+        "hosts",
+        "containers",
+        "links",
+        "chains",
+    ),
     *("resources", "views", "policies"),
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""

@@ -38,7 +38,6 @@ class ImplementingNodes(NamedTuple):
 
 
 def declare_component_nodes(
-    root: MappingNode,
     outline: ElementOutline,
     expansion: ExpandedProject,
     written_targets: dict[str, tuple[str, ...]],
@@ -46,6 +45,7 @@ def declare_component_nodes(
     diagnostics: list[Diagnostic],
 ) -> ImplementingNodes:
     """Return all nodes: those that are written, and those that components bring along."""
+    root = expansion.root
     if expansion.is_plain:
         return ImplementingNodes(root, written_targets, {}, lambda _kind, port: (port,))
     written_nodes = mapping_values.get_mapping(root, "nodes")
@@ -150,7 +150,9 @@ class ComponentNodes:
         if "name" not in body.entries:
             name = _find_free_name(component_id, node_id, mapping_values.get_text(body, "namespace") or "", used_names)
             entries["name"] = MappingEntry("name", entry.key_span, ScalarNode(name, name, entry.key_span))
-        self.entries[node_id] = MappingEntry(node_id, entry.key_span, MappingNode({**entries, **body.entries}, body.span))
+        self.entries[node_id] = MappingEntry(
+            node_id, entry.key_span, MappingNode({**entries, **body.entries}, body.span)
+        )
         self.implements[node_id] = (component_id,)
         if _MAPPING_KEYS.isdisjoint(body.entries):
             self.planned_ids.add(node_id)
@@ -189,13 +191,16 @@ def _drop_whole(body: MappingNode) -> MappingNode:
 def _join_namespaces(body: MappingNode, around: Mapping[str, MappingEntry], own: MappingNode) -> None:
     """Put the namespace of what is around in front of a node's own, unless that is absolute."""
     outer, inner = around.get("namespace"), own.entries.get("namespace")
-    if outer is None or inner is None or not isinstance(outer.value, ScalarNode) or not isinstance(inner.value, ScalarNode):
+    if (
+        outer is None
+        or inner is None
+        or not isinstance(outer.value, ScalarNode)
+        or not isinstance(inner.value, ScalarNode)
+    ):
         return
     if not inner.value.text.startswith("/"):
         text = f"{outer.value.text.rstrip('/')}/{inner.value.text}"
-        body.entries["namespace"] = MappingEntry(
-            "namespace", inner.key_span, ScalarNode(text, text, inner.value.span)
-        )
+        body.entries["namespace"] = MappingEntry("namespace", inner.key_span, ScalarNode(text, text, inner.value.span))
 
 
 def _find_free_name(component_id: str, node_id: str, namespace: str, used_names: set[tuple[str, str]]) -> str:

@@ -64,7 +64,9 @@ def declare_groups(
         sources = PortSources(outline, resolver, types)
         join_ports(outline, sources, resolver)
     wiring = InputWiring(outline, resolver, types, sources)
-    group_declarer = _GroupDeclarer(outline, resolver, wiring)
+    group_declarer = _GroupDeclarer(
+        outline, resolver, wiring, outside_readers=sources.list_given_outside() if sources else {}
+    )
     open_shells = OpenShells(outline, sources) if sources else None
     groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
     components = {component.id: component for group in groups.values() for component in group.components.values()}
@@ -88,6 +90,8 @@ class _GroupDeclarer:
     wiring: InputWiring
     owners: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """The owners of groups and composed components, by complete id."""
+    outside_readers: Mapping[str, MappingNode] = field(default_factory=dict)
+    """The outputs of composed components that go outside of the system, by the leaf's output that they give on."""
 
     def declare_group(self, group_id: str, entry: MappingEntry, open_shells: OpenShells | None) -> Group:
         body = mapping_values.get_body(entry)
@@ -139,7 +143,16 @@ class _GroupDeclarer:
             group_id,
             entry,
             {name: self.wiring.declare_input(component_id, port) for name, port in inputs.items()},
-            self.outline.outputs[component_id],
+            {name: self._add_outside(output) for name, output in self.outline.outputs[component_id].items()},
+        )
+
+    def _add_outside(self, output: Output) -> Output:
+        """Return an output with the reader outside of the system that a composed component gives it on to."""
+        body = self.outside_readers.get(output.id)
+        return (
+            replace(output, external=mapping_values.get_text(body, "external"))
+            if body and not output.external
+            else output
         )
 
     def _declare_rest(self, shell: ComponentShell, open_shells: OpenShells) -> Component:

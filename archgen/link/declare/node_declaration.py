@@ -77,7 +77,10 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
     inherited_owners = (owner for component in implements for owner in context.components[component].owners)
     owners = resolver.resolve_owners(body, node_id, inherited_owners)
     # A composed component in one process is named by its own ports, whatever those inside are called.
-    port_holders = (*wholes, *(each for each in implements if not any(each.startswith(f"{whole}.") for whole in wholes)))
+    port_holders = (
+        *wholes,
+        *(each for each in implements if not any(each.startswith(f"{whole}.") for whole in wholes)),
+    )
     ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
     return Node(
         id=node_id,

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
+from archgen.model.path_resolver import ElementRef
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
-from archgen.syntax.yaml_tree import MappingNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
 _WAYPOINT_KINDS = ("node", "component", "output")
 
@@ -74,11 +75,14 @@ def declare_requirements(root: MappingNode, resolver: ReferenceResolver) -> dict
 
 
 def declare_chains(
-    root: MappingNode, resolver: ReferenceResolver, implements: Mapping[str, Collection[str]]
+    root: MappingNode,
+    resolver: ReferenceResolver,
+    implements: Mapping[str, Collection[str]],
+    list_leaf_ports: Callable[[str, str], tuple[str, ...]],
 ) -> dict[str, Chain]:
     """Declare the chains; a waypoint that cannot be resolved is kept in `unresolved`: the chain then counts as open.
 
-    `implements` holds the components of each node.
+    `implements` holds the components of each node, `list_leaf_ports` returns what stands behind a port of a composed one.
     """
     chains_by_id: dict[str, Chain] = {}
     for name, entry, body in mapping_values.iterate_elements(root, "chains"):
@@ -90,7 +94,7 @@ def declare_chains(
         chains_by_id[name] = Chain(
             id=name,
             title=mapping_values.get_title(body, name),
-            through=tuple(Waypoint(target.kind, target.id, scalar.span) for target, scalar in waypoints if target),  # type: ignore[arg-type]
+            through=tuple(_make_waypoint(target, scalar, list_leaf_ports) for target, scalar in waypoints if target),
             deadline=sanity_checks.read_positive(body, "deadline", "duration", name, resolver.diagnostics),
             requirements=mapping_values.get_texts(body, "requirements"),
             at=entry.key_span,
@@ -98,6 +102,18 @@ def declare_chains(
             requirement_places=tuple(scalar.span for scalar in mapping_values.get_scalars(body, "requirements")),
         )
     return chains_by_id
+
+
+def _make_waypoint(
+    target: ElementRef, scalar: ScalarNode, list_leaf_ports: Callable[[str, str], tuple[str, ...]]
+) -> Waypoint:
+    """Return an element of a chain; an output that gives on several is the composed component that it belongs to."""
+    if target.kind == "output":
+        leaf_ports = list_leaf_ports("output", target.id)
+        if len(leaf_ports) > 1:
+            return Waypoint("component", target.id.rpartition(".")[0], scalar.span)
+        return Waypoint("output", leaf_ports[0], scalar.span)
+    return Waypoint(target.kind, target.id, scalar.span)  # type: ignore[arg-type]
 
 
 def declare_views(root: MappingNode) -> dict[str, View]:

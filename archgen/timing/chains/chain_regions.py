@@ -39,7 +39,9 @@ def resolve_points(
             activity_ids = [point.id] if point.id in system.activities else of_node.get(point.id, [])
             chain_points.append(ChainPoint(tuple(activity_ids)))
         elif point.kind == "component":
-            chain_points.append(ChainPoint(tuple(of_component.get(point.id, ()))))
+            # A composed component is the worst way through its leaves.
+            leaves = architecture.leaves_of(point.id)
+            chain_points.append(ChainPoint(tuple(each for leaf in leaves for each in of_component.get(leaf, ()))))
         else:
             output = architecture.outputs.get(point.id)
             owners = of_component.get(output.component, []) if output else []

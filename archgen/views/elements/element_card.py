@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component, Group, Input, Output
+from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.node import Node, Topic
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -33,9 +33,11 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
     return {
         # An id that several kinds share is found in this order.
         "group": a.groups,
+        "composed": {shell_id: shell for shell_id, shell in a.shells.items() if shell_id not in a.components},
         "component": a.components,
-        "output": a.outputs,
-        "input": a.inputs,
+        "component type": a.component_types,
+        "output": {**{port.id: port for each in a.shells.values() for port in each.outputs.values()}, **a.outputs},
+        "input": {**{port.id: port for each in a.shells.values() for port in each.inputs.values()}, **a.inputs},
         "node": a.nodes,
         "topic": a.topics,
         "type": a.types,
@@ -89,28 +91,20 @@ def _element_title(lookup: Lookup, kind: str, element_id: str) -> str:
     architecture = lookup.architecture
     if kind == "group":
         return architecture.groups[element_id].title
+    if kind == "composed":
+        return architecture.shells[element_id].title
     return architecture.components[element_id].title if kind == "component" else element_id
 
 
 def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     """Make the card of one element."""
-    architecture = lookup.architecture
-    if kind == "group":
-        return _group_card(architecture.groups[element_id])
-    if kind == "component":
-        return _component_card(lookup, architecture.components[element_id])
-    if kind in {"input", "output"}:
-        return _port_card(
-            lookup, architecture.inputs[element_id] if kind == "input" else architecture.outputs[element_id]
-        )
-    if kind == "node":
-        return _node_card(lookup, architecture.nodes[element_id])
-    if kind == "topic":
-        return _topic_card(lookup, architecture.topics[element_id])
-    return _generic_card(lookup, kind, element_id)
+    make_kind_card = _CARD_MAKERS.get(kind)
+    if make_kind_card is None:
+        return _generic_card(lookup, kind, element_id)
+    return make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
 
 
-def _group_card(group: Group) -> ElementCard:
+def _group_card(_lookup: Lookup, group: Group) -> ElementCard:
     facts = [
         ("owner", ", ".join(group.owners) or "?"),
         ("tags", ", ".join(group.tags)),
@@ -125,6 +119,7 @@ def _group_card(group: Group) -> ElementCard:
 def _component_card(lookup: Lookup, component: Component) -> ElementCard:
     facts = [
         ("group", component.group),
+        *_list_origin_facts(component),
         ("owner", ", ".join(component.owners) or "?"),
         ("role", component.role or "?"),
         ("functionality", " ".join((component.functionality or "?").split())),
@@ -153,6 +148,67 @@ def _component_card(lookup: Lookup, component: Component) -> ElementCard:
     return ElementCard("component", component.id, component.title, component.at, _known_facts(facts), lists)
 
 
+def _list_origin_facts(component: Component) -> list[tuple[str, str]]:
+    """Return what a component stands in, and what it is made from."""
+    type_text = component.component_type or ""
+    return [("parent", component.parent or ""), ("is", f"exactly {type_text}" if component.is_reference else type_text)]
+
+
+def _composed_card(lookup: Lookup, shell: Component) -> ElementCard:
+    """Make the card of a component that holds components: its ports, with what stands behind them, and what is inside."""
+    architecture = lookup.architecture
+    facts = [
+        ("group", shell.group),
+        *_list_origin_facts(shell),
+        ("owner", ", ".join(shell.owners) or "?"),
+        ("functionality", " ".join((shell.functionality or "?").split())),
+        ("requirements", "; ".join(use.text for use in shell.requirements)),
+        ("tags", ", ".join(shell.tags)),
+    ]
+    inputs = tuple(
+        f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}"
+        f" => {', '.join(architecture.shell_ports[f'input {port.id}']) or 'nobody inside'}"
+        for port in shell.inputs.values()
+    )
+    outputs = tuple(
+        f"{port.name} ({port.type or '?'}) <= {', '.join(architecture.shell_ports[f'output {port.id}']) or '?'}"
+        for port in shell.outputs.values()
+    )
+    lists = (
+        ("inputs", inputs),
+        ("outputs", outputs),
+        ("components", shell.children),
+        ("findings", tuple(_format_findings(lookup, shell.id))),
+    )
+    return ElementCard("composed", shell.id, shell.title, shell.at, _known_facts(facts), lists)
+
+
+def _component_type_card(lookup: Lookup, component_type: ComponentType) -> ElementCard:
+    architecture = lookup.architecture
+    facts = [
+        ("is", component_type.base or ""),
+        ("generic", ", ".join(component_type.generic)),
+        ("abstract", "yes" if component_type.is_abstract else ""),
+        ("owner", component_type.owner or ""),
+        ("functionality", " ".join((component_type.functionality or "").split())),
+    ]
+    instances = tuple(
+        each.id
+        for each in (*architecture.shells.values(), *architecture.components.values())
+        if (each.component_type or "").partition("<")[0] == component_type.id
+    )
+    lists = (
+        ("inputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.inputs.items())),
+        ("outputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.outputs.items())),
+        ("components", component_type.components),
+        ("instances", tuple(dict.fromkeys(instances))),
+        ("findings", tuple(_format_findings(lookup, component_type.id))),
+    )
+    return ElementCard(
+        "component type", component_type.id, component_type.title, component_type.at, _known_facts(facts), lists
+    )
+
+
 def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:
     """Describe where an input gets its data: connections with their types, then what is outside."""
     for connection in port.connections:
@@ -165,7 +221,11 @@ def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:
 
 def _list_readers(lookup: Lookup, port: Output) -> list[str]:
     """Return who reads an output."""
-    readers = [connection.input for connection in lookup.readers_of.get(port.id, ())]
+    readers = [
+        connection.input
+        for leaf in lookup.architecture.leaf_ports_of("output", port.id)
+        for connection in lookup.readers_of.get(leaf, ())
+    ]
     return readers + ([f"outside: {port.external}"] if port.external else [])
 
 
@@ -326,3 +386,16 @@ def _format_fact(value: object) -> str:
 def _known_facts(facts: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
     """Drop facts without a value."""
     return tuple((name, value) for name, value in facts if value)
+
+
+_CARD_MAKERS: Mapping[str, Callable[[Lookup, Any], ElementCard]] = {
+    "group": _group_card,
+    "component": _component_card,
+    "composed": _composed_card,
+    "component type": _component_type_card,
+    "input": _port_card,
+    "output": _port_card,
+    "node": _node_card,
+    "topic": _topic_card,
+}
+"""What makes the card of an element; other kinds have a list of fields."""

@@ -36,6 +36,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("requirement", use.text) for use in component.requirements if use.is_id),
                     *_list_behaviours((component.timing,)),
                     *(("finding", rule) for rule in rules[component.id]),
+                    *(("is", name) for name in architecture.list_types_of(component)),
                 )
             )
         )

@@ -39,15 +39,24 @@ _FIGURE_LABELS = {
     "chains": "Chains of effect",
     "views": "Views",
     "policies": "Policies",
+    "composed": "Composed components",
+    "component_types": "Component types",
+    "made_connections": "Connections made by themselves",
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
+_COMPOSITION_FIGURES = frozenset({"composed", "component_types", "made_connections"})
+"""Figures that are left out where there is nothing to count: most projects compose nothing."""
 PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")
 """The steps that progress counts, in order; each is a field of `Progress` and of the history's `Row`."""
 
 
 def format_figures(project_size: ArchitectureSize) -> list[tuple[str, str, str]]:
     """Return key, title and value of each figure."""
-    return [(key, label, format_count(getattr(project_size, key))) for key, label in _FIGURE_LABELS.items()]
+    return [
+        (key, label, format_count(getattr(project_size, key)))
+        for key, label in _FIGURE_LABELS.items()
+        if key not in _COMPOSITION_FIGURES or getattr(project_size, key)
+    ]
 
 
 def format_count(value: int | Fraction) -> str:

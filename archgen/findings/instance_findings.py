@@ -1,0 +1,85 @@
+"""Say once what is wrong in a component type, and which of its instances have it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+
+_MAX_NAMED = 3
+"""So many further instances are named."""
+
+
+def gather_instance_findings(
+    diagnostics: Iterable[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]
+) -> list[Diagnostic]:
+    """Return the findings with those that stand in a component type joined, each with the places of its instances.
+
+    `type_spans` are where component types are written.
+    """
+    if not type_spans:
+        return list(diagnostics)
+    gathered: dict[tuple[str, Span], list[Diagnostic]] = {}
+    others: list[Diagnostic] = []
+    for diagnostic in diagnostics:
+        if _is_within(diagnostic.span, type_spans) and _find_component(architecture, diagnostic.element):
+            gathered.setdefault((diagnostic.rule, diagnostic.span), []).append(diagnostic)
+        else:
+            others.append(_drop_repeated_labels(diagnostic))
+    return [*others, *(_join_findings(same, architecture, type_spans) for same in gathered.values())]
+
+
+def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]) -> Diagnostic:
+    instances = list({each.id: each for each in _list_instances(same, architecture, type_spans)}.values())
+    if not instances:
+        return same[0]
+    first, further = instances[0], instances[1:]
+    text = f"in the instance `{first.id}`"
+    if further:
+        names = [f"`{each.id}`" for each in further[:_MAX_NAMED]]
+        rest = [f"{len(further) - _MAX_NAMED} more"] if len(further) > _MAX_NAMED else []
+        text += f", and in {join_words([*names, *rest])}"
+    return replace(same[0], labels=(*same[0].labels, Label(first.at, text)))
+
+
+def _drop_repeated_labels(diagnostic: Diagnostic) -> Diagnostic:
+    """Return a finding without labels at one place: each instance of a type would bring the same."""
+    labels = tuple(dict.fromkeys(label for label in diagnostic.labels if label.span != diagnostic.span))
+    return replace(diagnostic, labels=labels) if len(labels) < len(diagnostic.labels) else diagnostic
+
+
+def _list_instances(
+    same: Sequence[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]
+) -> Iterator[Component]:
+    """Yield the instances that stand in no type themselves, around what findings are about."""
+    for diagnostic in same:
+        component = _find_component(architecture, diagnostic.element)
+        while component and component.parent and _is_within(component.at, type_spans):
+            component = architecture.shells.get(component.parent)
+        if component and not _is_within(component.at, type_spans):
+            yield component
+
+
+def _find_component(architecture: Architecture, element_id: str | None) -> Component | None:
+    """Return the component, composed or not, that an id means, or whose port or node it means."""
+    node = architecture.nodes.get(element_id or "")
+    names = (*node.wholes, *node.implements)[:1] if node else (element_id or "", (element_id or "").rpartition(".")[0])
+    for name in names:
+        component = architecture.shells.get(name) or architecture.components.get(name)
+        if component:
+            return component
+    return None
+
+
+def _is_within(span: Span, type_spans: Sequence[Span]) -> bool:
+    return any(
+        span.file == each.file
+        and each.line <= span.line <= each.end_line
+        and (each.line, each.column) <= (span.line, span.column) <= (each.end_line, each.end_column)
+        for each in type_spans
+    )
