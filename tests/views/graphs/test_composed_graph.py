@@ -9,6 +9,7 @@ import pytest
 from archgen import pipeline
 from archgen.emit.graphviz import graph_drawing
 from archgen.model.architecture import Architecture
+from archgen.views import graphs
 from archgen.views.graph_shapes import Arrow, Graph
 from archgen.views.graphs import draw_components, draw_composed, draw_group, make_all_graphs
 from archgen.views.graphs.selection_graphs import draw_functional_part
@@ -204,3 +205,16 @@ def test_ports_stand_on_the_line_of_the_frame(robot: Architecture, shell: str) -
             assert part.rectangle[2] < left or part.rectangle[0] > right
         else:
             assert left < part.rectangle[0] < part.rectangle[2] < right
+
+
+def test_very_many_composed_components_have_pictures_only_where_single_ones_have(
+    robot: Architecture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def list_composed(*, draws_components: bool) -> list[str]:
+        pictures = make_all_graphs(robot, draws_components=draws_components)
+        return [graph.id for graph in pictures if graph.kind == "composed"]
+
+    assert list_composed(draws_components=False) == ["composed/arms.arm", "composed/arms.arm.hand"]
+    monkeypatch.setattr(graphs, "MAX_COMPOSED_PICTURES", 1)
+    assert list_composed(draws_components=False) == []
+    assert len(list_composed(draws_components=True)) == 2
