@@ -29,6 +29,7 @@ ELEMENTS = {
     "use_cases": "use_case",
     "requirements": "requirement",
     "groups": "group",
+    "component_types": "component_type",
     "components": "component",
     "inputs": "input",
     "outputs": "output",
@@ -63,9 +64,10 @@ def project(text: str) -> dict[str, Any]:
         "partners": {"p": {}},
         "use_cases": {"UC-1": {}},
         "requirements": {"R-1": {"use_cases": ["UC-1"]}},
+        "component_types": {"t": {"inputs": {"in": {"type": kind}}, "outputs": {"made": {"type": kind}}}},
         "groups": {
             "a": {"owner": "p", "urls": {text[:60]: "https://example.org/"}, "components": {"x": _component({}, kind)}},
-            "b": {"components": {"y": _component({"in": {"from": "a.x.out"}}, kind), "z": {}}},
+            "b": {"components": {"y": _component({"in": {"from": "a.x.out"}}, kind), "z": {}, "s": _compose()}},
         },
         "nodes": {
             "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
@@ -91,6 +93,12 @@ def project(text: str) -> dict[str, Any]:
         for element in data[section].values():
             _fill(element, ELEMENTS[section], text)
     return data
+
+
+def _compose() -> dict[str, Any]:
+    """Give a composed component with an instance of a component type inside."""
+    inner = {"i": {"is": "t", "inputs": {"in": {"from": "self.in"}}}}
+    return {"inputs": {"in": {"from": "a.x.out"}}, "outputs": {"made": {"from": "i.made"}}, "components": inner}
 
 
 def _component(inputs: dict[str, Any], kind: str) -> dict[str, Any]:

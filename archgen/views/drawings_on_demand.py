@@ -123,7 +123,9 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
         architecture, lookup = self._lookup.architecture, self._graph_lookup
         if family == "groups" and any(each.group == name for each in architecture.components.values()):
             return fold_graph(graphs.draw_group(lookup, name))
-        if family == "components" and name in architecture.components:
+        if family == "composed" and name in architecture.shells:
+            return graphs.draw_composed(lookup, name)
+        if family == "components" and name in architecture.components and name not in architecture.shells:
             return graphs.draw_component(lookup, name)
         if family == "implementation" and name in architecture.components:
             return graphs.draw_implementation(lookup, name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 from archgen.model.message_types import full_message_name
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -15,6 +16,8 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
     """Return the anchor of the element with this id; of a port that of its component. None for a name of nothing."""
     for kind, elements in (
         ("component", architecture.components),
+        ("component", architecture.shells),
+        ("component_type", architecture.component_types),
         ("node", architecture.nodes),
         ("group", architecture.groups),
         ("requirement", architecture.requirements),
@@ -33,8 +36,17 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
     port = architecture.inputs.get(name) or architecture.outputs.get(name)
     if port:
         return f"component:{port.component}"
+    if shell := _find_shell(architecture, name):
+        return f"component:{shell.id}"
     # A short name is none: `my_group/Part` may be anything.
     return f"message:{name}" if full_message_name(name) == name else None
+
+
+def _find_shell(architecture: Architecture, port_id: str) -> Component | None:
+    """Return the composed component that a port belongs to."""
+    holder, _, name = port_id.rpartition(".")
+    shell = architecture.shells.get(holder)
+    return shell if shell and (name in shell.inputs or name in shell.outputs) else None
 
 
 def message_link(message: str) -> Text:
@@ -47,6 +59,7 @@ def find_owners(architecture: Architecture, element_id: str | None) -> tuple[str
     name = element_id or ""
     port = architecture.inputs.get(name) or architecture.outputs.get(name)
     component = architecture.components.get(port.component if port else name)
+    component = component or architecture.shells.get(name) or _find_shell(architecture, name)
     element = component or architecture.nodes.get(name) or architecture.groups.get(name)
     return element.owners if element else ()
 

@@ -26,7 +26,8 @@ class Box:
 
     `style` says what it is; `emphasis` is `subject` (thick frame), `normal` or `neighbour` (grey). `colour` is an index
     into the palette of group hues, None for no hue. `lines` follow the title in small type. `ports_in` and `ports_out`
-    are rows (name, text) at its sides. `side` puts neighbours at the outer ranks.
+    are rows (name, text) at its sides. `side` puts neighbours at the outer ranks. A `composed` box is a closed component
+    of components, a `port` stands at the rim of an open one.
     """
 
     id: str
@@ -47,6 +48,8 @@ class Box:
         "host",
         "container",
         "partner",
+        "composed",
+        "port",
         "fold",
         "link",
     ] = "component"
@@ -95,6 +98,8 @@ class Arrow:
     change: ElementChange | None = None
     broken: bool = False
     """Whether a change of what runs along it breaks another partner."""
+    is_made: bool = False
+    """Whether nobody wrote it: `autoconnect` joined its ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +121,7 @@ GraphKind = Literal[
     "components",
     "group",
     "component",
+    "composed",
     "implementation",
     "ros",
     "hosts",

@@ -10,6 +10,7 @@ from itertools import chain
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.component_nesting import find_component
 from archgen.model.declared_timing import InputTiming, Timing
 from archgen.model.deployment import Host
 from archgen.model.node import Node, Qos
@@ -147,17 +148,34 @@ def owner_links(architecture: Architecture, owners: Iterable[str]) -> Inlines:
 
 def port_link(architecture: Architecture, port: Input | Output) -> Inlines:
     """Link to a port's component, followed by the port's own name: ports have no page of their own."""
-    component = architecture.components[port.component]
+    component = find_component(architecture, port.component)
     return (component_link(component), share_text(" · "), share_text(port.name, code=True))
+
+
+def frame_link(name: str) -> Inlines:
+    """Link to a coordinate frame."""
+    return (Text(name, ref=f"frame:{name}", code=True),)
 
 
 def describe_source(architecture: Architecture, connection: Connection) -> Inlines:
     """Describe what a connection reads: one output, all outputs of a component, or all of a group."""
+    made_words = (Text(" (autoconnect)", muted=True),) if connection.is_made else ()
     if connection.kind == "output":
-        return port_link(architecture, architecture.outputs[connection.target])
+        source = port_link(architecture, architecture.outputs[connection.target])
+        return (*source, *_describe_way(architecture, connection), *made_words)
     if connection.kind == "component":
-        return (component_link(architecture.components[connection.target]), Text(" · all outputs"))
+        return (component_link(find_component(architecture, connection.target)), Text(" · all outputs"), *made_words)
     return (group_link(architecture, connection.target), Text(" · all of the group"))
+
+
+def _describe_way(architecture: Architecture, connection: Connection) -> Inlines:
+    """Return the port of a composed component that a connection is written at; nothing for any other."""
+    if connection.shell_port is None:
+        return ()
+    is_component = connection.shell_port in architecture.shells
+    shell_id, _, name = (connection.shell_port, "", "") if is_component else connection.shell_port.rpartition(".")
+    port_name = (Text(" · "), Text(name, code=True)) if name else ()
+    return (Text(" through ", muted=True), component_link(find_component(architecture, shell_id)), *port_name)
 
 
 def link_urls(named_urls: Iterable[tuple[str, str]]) -> Inlines:

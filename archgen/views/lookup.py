@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.component_nesting import (
+    find_component,
+    list_members,
+    list_surrounding,
+    list_written_connections,
+)
 from archgen.model.coordinate_frames import Frame
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -47,8 +53,11 @@ class Lookup:
     scope: DocumentScope = field(default_factory=DocumentScope)
     readers_of: Mapping[str, tuple[Connection, ...]] = field(default_factory=dict)
     """Connections that read an output, by the output's id."""
+    written_connections: tuple[tuple[Input, Connection], ...] = ()
+    """All connections with their inputs, those of composed components included."""
     connection_positions: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
-    """Positions of the connections at a component, by its id; one is there twice where both ends are its own."""
+    """Positions in `written_connections` of those at a component or inside of it, by its id; one is there twice where both
+    ends are its own."""
     nodes_of: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
     """Nodes that implement a component, by the component's id."""
     endpoints_of: Mapping[str, tuple[Endpoint, ...]] = field(default_factory=dict)
@@ -88,6 +97,41 @@ class Lookup:
         group_components = self.architecture.groups[group_id].components.values()
         return [component for component in group_components if self.scope.shows_component(component.id)]
 
+    def shown_members(self, group_id: str) -> list[Component]:
+        """Return the shown components that stand directly in a group, composed ones closed."""
+        return self._keep_shown(list_members(self.architecture, group_id))
+
+    def shown_children(self, shell: Component) -> list[Component]:
+        """Return the shown components that stand directly in a composed component."""
+        return self._keep_shown(shell.children)
+
+    def nested_components(self) -> Iterator[Component]:
+        """Yield the shown components group by group, a composed one before what is inside."""
+        pending = [c for name in reversed(self.shown_groups()) for c in reversed(self.shown_members(name))]
+        while pending:
+            yield (component := pending.pop())
+            pending += reversed(self.shown_children(component))
+
+    def _keep_shown(self, component_ids: Iterable[str]) -> list[Component]:
+        return [find_component(self.architecture, name) for name in component_ids if self.shows_part(name)]
+
+    def connections_at(self, component_id: str) -> list[tuple[Input, Connection]]:
+        """Return the connections at a component, those of what is inside of a composed one included."""
+        positions = dict.fromkeys(self.connection_positions.get(component_id, ()))
+        return [self.written_connections[position] for position in positions]
+
+    def shows_part(self, component_id: str) -> bool:
+        """Whether a component is shown, of a composed one whether anything inside is."""
+        if self.scope.components is None:
+            return True
+        return any(map(self.scope.shows_component, self.architecture.leaves_of(component_id)))
+
+    def nodes_inside(self, component_id: str) -> tuple[Node, ...]:
+        """Return the nodes that implement a component, or what is inside of a composed one."""
+        leaves = self.architecture.leaves_of(component_id)
+        nodes = {node.id: node for leaf in leaves for node in self.nodes_of.get(leaf, ())}
+        return tuple(nodes.values())
+
     def shown_nodes(self) -> list[Node]:
         """Return the shown nodes, in order."""
         return [node for node in self.architecture.nodes.values() if self.scope.shows_node(node.id)]
@@ -110,6 +154,7 @@ def make_lookup(
     """Build all look-ups, each in one pass over the architecture."""
     all_findings = tuple(findings)
     components, nodes = architecture.components.values(), architecture.nodes.values()
+    written_connections = tuple(list_written_connections(architecture))
     return Lookup(
         architecture,
         all_findings,
@@ -117,7 +162,8 @@ def make_lookup(
         readers_of=_group_values(
             (o, connection) for connection in architecture.connections for o in connection.outputs
         ),
-        connection_positions=_group_values(_list_ends(architecture)),
+        written_connections=written_connections,
+        connection_positions=_group_values(_list_ends(architecture, written_connections)),
         nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
         endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.endpoints),
         findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
@@ -140,13 +186,15 @@ def make_lookup(
     )
 
 
-def _list_ends(architecture: Architecture) -> Iterable[tuple[str, int]]:
-    """Yield the component at each end of each connection, with the connection's position."""
-    for position, connection in enumerate(architecture.connections):
-        yield architecture.inputs[connection.input].component, position
-        for name in connection.outputs:
-            if name in architecture.outputs:
-                yield architecture.outputs[name].component, position
+def _list_ends(
+    architecture: Architecture, connections: Iterable[tuple[Input, Connection]]
+) -> Iterable[tuple[str, int]]:
+    """Yield the components at and around each end of each connection, with the connection's position."""
+    for position, (port, connection) in enumerate(connections):
+        outputs = (architecture.outputs[name] for name in connection.outputs if name in architecture.outputs)
+        for component_id in (port.component, *(output.component for output in outputs)):
+            yield component_id, position
+            yield from ((shell, position) for shell in list_surrounding(architecture, component_id))
 
 
 def _find_physical_types(architecture: Architecture) -> frozenset[str]:
@@ -159,7 +207,13 @@ def _find_physical_types(architecture: Architecture) -> frozenset[str]:
 def _containing_element(architecture: Architecture, element_id: str) -> str:
     """Return the component of a port id; any other id is returned unchanged."""
     port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
-    return port.component if port else element_id
+    if port:
+        return port.component
+    holder, _, name = element_id.rpartition(".")
+    shell = architecture.shells.get(holder)
+    is_port = shell is not None and (name in shell.inputs or name in shell.outputs)
+    is_component = element_id in architecture.components or element_id in architecture.shells
+    return holder if is_port and not is_component else element_id
 
 
 def _group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:

@@ -7,6 +7,7 @@
 | service | dashed, open head, from client to server |
 | action | bold, double head, from client to server |
 | internal | dotted |
+| made by autoconnect | dotted, with the head of what runs along it |
 | link | thick, without head |
 
 Where two versions are drawn: what is added is thick, what is removed dashed, what changed a double line, what breaks
@@ -48,6 +49,7 @@ def style_arrow(arrow: Arrow, resolve_link: LinkResolver, *, merged: bool = Fals
         "arrowsize": "0.6",
         "penwidth": pen_width(arrow.count) if merged else "0.8",
         **_form_attributes(arrow, colour),
+        **({"style": '"dotted"', "penwidth": "1.2"} if arrow.is_made else {}),
         **_tooltip_attributes(arrow, resolve_link),
     }
     if merged:

@@ -3,6 +3,8 @@
 | style | form |
 |---|---|
 | component | rounded box; source: heavy bar at the right, sink: at the left; reactive: octagon |
+| composed | rounded box with double frame |
+| port | small box with sharp corners, at the rim of a frame |
 | group, fold | box with bold title; fold: double frame (it stands for several) |
 | node, topic | ellipse, note-coloured box |
 | service, action | hexagon, action with double frame |
@@ -35,7 +37,7 @@ _BOX_SHAPES = {
     "service": "hexagon",
     "action": "hexagon",
 }
-_ROUNDED_STYLES = {"component", "source", "sink", "physical", "container"}
+_ROUNDED_STYLES = {"component", "source", "sink", "physical", "container", "composed"}
 _DASHED_STYLES = {"external", "physical", "partner"}
 _TABLE_DASHES = ("dashed", "dotted")
 _CHANGE_PENS = {"added": "2.6", "removed": "1.4", "changed": "1", "renamed": "2"}
@@ -81,7 +83,7 @@ def style_box(box: Box, resolve_link: LinkResolver) -> DotAttributes:
 def _has_double_frame(box: Box) -> bool:
     if box.change is not None:
         return box.change == "changed"
-    return box.style in {"action", "fold"} or box.fill == "once"
+    return box.style in {"action", "fold", "composed"} or box.fill == "once"
 
 
 def box_colours(box: Box) -> tuple[str, str]:

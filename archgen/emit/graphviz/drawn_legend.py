@@ -21,6 +21,8 @@ _WIDEST_FACE = 1.15
 _BOX_SAMPLES: dict[str, tuple[Box, str]] = {
     "subject": (Box("", "", emphasis="subject"), "what the picture is about"),
     "neighbour": (Box("", "", emphasis="neighbour"), "neighbour"),
+    "composed": (Box("", "", style="composed"), "has components of its own"),
+    "port": (Box("", "", style="port"), "port of the frame"),
     "source": (Box("", "", style="source"), "source"),
     "sink": (Box("", "", style="sink"), "sink"),
     "reactive": (Box("", "", style="reactive"), "reactive: serves requests"),
@@ -59,6 +61,7 @@ _BOX_SAMPLES |= {
 _ARROW_SAMPLES: dict[str, tuple[Arrow, str]] = {
     "data": (Arrow("", "", ""), "data"),
     "optional": (Arrow("", "", "", optional=True), "optional input"),
+    "made": (Arrow("", "", "", is_made=True), "joined by autoconnect"),
     "physical": (Arrow("", "", "", style="physical"), "physical"),
     "service": (Arrow("", "", "", style="service"), "service, from client to server"),
     "action": (Arrow("", "", "", style="action"), "action, from client to server"),
@@ -121,7 +124,7 @@ def _legend_entries(key: str, graph: Graph) -> Iterator[tuple[Scene, str]]:
 def _box_sample(box: Box) -> Scene:
     # A second frame is drawn outside of the node's size: less of it keeps all samples equally large.
     frame_space = (
-        6 if box.style in {"fold", "action"} or box.fill == "once" or box.change == "changed" else 0
+        6 if box.style in {"fold", "action", "composed"} or box.fill == "once" or box.change == "changed" else 0
     )  # the second frame stands outside
     width, height = _SAMPLE_SIZE[0] - frame_space, _SAMPLE_SIZE[1] - frame_space
     attributes = {

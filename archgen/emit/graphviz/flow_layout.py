@@ -119,7 +119,9 @@ def _join_neighbours(styled_graph: StyledGraph, wrapped: WrappedRanks) -> list[s
     `rank=source` and `rank=sink` hold the neighbours outside, but in parts that nothing joins dot broke down in 4 of
     1,200 random groups. From and to every box the edges cost three times the time, and all lines ran round them.
     """
-    ends = {box.side: styled_graph.dot_names[box.id] for box in reversed(styled_graph.graph.boxes) if box.side}
+    # Ports first: they are nearer to the frame than the neighbours.
+    outside = sorted(styled_graph.graph.boxes, key=lambda box: box.style != "port")
+    ends = {box.side: styled_graph.dot_names[box.id] for box in reversed(outside) if box.side}
     first, last = (next(name for row in wrapped.columns[at] for name in row) for at in (0, -1))
     pairs = [(ends[side], first) if side == "left" else (last, ends[side]) for side in sorted(ends)]
     return [f'{tail} -> {head} [style="invis" weight="0"];' for tail, head in pairs]
@@ -150,18 +152,29 @@ def _rank_statements(styled_graph: StyledGraph) -> list[str]:
     """Return statements that keep neighbours in the first and the last rank."""
     ranks = []
     for side, rank in (("left", "source"), ("right", "sink")):
-        names = [styled_graph.dot_names[item.id] for item in styled_graph.graph.boxes if item.side == side]
-        if names:
-            ranks.append(f"{{ rank={rank}; {'; '.join(names)}; }}")
+        outside = [item for item in styled_graph.graph.boxes if item.side == side]
+        names = [styled_graph.dot_names[item.id] for item in outside if item.style != "port"]
+        ports = [styled_graph.dot_names[item.id] for item in outside if item.style == "port"]
+        if names and ports:
+            # Ports stand on the frame's line, neighbours farther out.
+            ends = (names[0], ports[0]) if side == "left" else (ports[0], names[0])
+            ranks += [f"{{ rank=same; {'; '.join(ports)}; }}", f'{" -> ".join(ends)} [style="invis" weight="0"];']
+        if names or ports:
+            ranks.append(f"{{ rank={rank}; {'; '.join(names or ports)}; }}")
     return ranks
 
 
 def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, inside_names: set[str]) -> Scene:
     """Add the frame round its boxes and all lines that pass between them, with the title above."""
     boxes = [title_part.rectangle for title_part in scene.parts if title_part.name in inside_names]
+    ports = _list_rim_ports(styled_graph, scene)
     heading = title_attributes(cluster)
     ((width, height),) = measure_nodes([heading])
     left, right = min((box[0] for box in boxes), default=0.0), max((box[2] for box in boxes), default=width)
+    # Ports stand on the frame's own line.
+    centres = [(box[0] + box[2]) / 2 for box in ports]
+    rims = [x for x in centres if x < left], [x for x in centres if x > right]
+    left, right = min(rims[0], default=left), max(rims[1], default=right)
     # A line may swing out above its boxes. Only what is between the frame's sides counts: neighbours are outside.
     y_values = [y for line in scene.lines for x, y in sample_line(line) if left <= x <= right]
     y_values += [
@@ -175,13 +188,20 @@ def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, insid
         y_values = [y for box in boxes for y in (box[1], box[3])]
     bottom, top = min(y_values, default=0.0) - _FRAME_MARGIN, max(y_values, default=0.0) + _FRAME_MARGIN + height
     spare = max(width + 2 * _FRAME_MARGIN - (right - left), 2 * _FRAME_MARGIN) / 2
+    left_side, right_side = left - (0 if rims[0] else spare), right + (0 if rims[1] else spare)
     cluster_frame = SceneFrame(
-        "c0", frame_attributes(cluster, styled_graph.resolve_link), (left - spare, bottom, right + spare, top)
+        "c0", frame_attributes(cluster, styled_graph.resolve_link), (left_side, bottom, right_side, top)
     )
-    title_part = ScenePart(
-        "t0", heading, left - spare + 8 + width / 2, top - 5 - height / 2, width, height, kind="title"
-    )
+    title_part = ScenePart("t0", heading, left_side + 8 + width / 2, top - 5 - height / 2, width, height, kind="title")
     return scene.joined(Scene(frames=(cluster_frame,), parts=(title_part,)))
+
+
+def _list_rim_ports(styled_graph: StyledGraph, scene: Scene) -> list[tuple[float, float, float, float]]:
+    """Return the rectangles of the ports at the rim of the frame; none where the flow runs down: they stand outside."""
+    if styled_graph.graph.direction == "top-bottom":
+        return []
+    names = {styled_graph.dot_names[box.id] for box in styled_graph.graph.boxes if box.style == "port"}
+    return [part.rectangle for part in scene.parts if part.name in names]
 
 
 def lay_out_simply(styled_graph: StyledGraph) -> Scene:

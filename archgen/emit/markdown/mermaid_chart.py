@@ -13,7 +13,7 @@ from archgen.emit.safe_names import make_identifier
 from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph
 
 _MAX_LABEL_LENGTH = 60
-_BOX_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])"}
+_BOX_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])", "composed": "[[]]", "port": "[]"}
 _LIST_START = re.compile(r"^(?=[-+*#>]|\d+[.)])")
 _BOX_STYLES: dict[ElementChange, str] = {
     "added": "stroke:#2e8b57,stroke-width:4px",
@@ -75,7 +75,7 @@ def _write_box(box: Box, names: dict[str, str]) -> str:
 
 
 def _write_arrow(arrow: Arrow, names: dict[str, str]) -> str:
-    line = _ARROW_SIGNS.get(arrow.style, "-->")
+    line = "-.->" if arrow.is_made else _ARROW_SIGNS.get(arrow.style, "-->")
     text = arrow.label or (str(arrow.count) if arrow.count > 1 else "")
     label = "<br>".join(_label_text(line) for line in text.split("\n")) if text else ""
     return f"{names[arrow.tail]} {line}" + (f'|"{label}"|' if label else "") + f" {names[arrow.head]}"

@@ -69,7 +69,7 @@ def list_explorer_scripts(map_parts: Sequence[str]) -> tuple[str, tuple[str, ...
 def find_explorer_address(page: Page, links: SiteLinks) -> str | None:
     """Return the address that shows a page's element on the map, relative to the site's folder; None if it has none."""
     kind, _, element_id = page.anchor.partition(":")
-    if EXPLORER_ANCHOR not in links.pages or kind not in _ELEMENT_KINDS:
+    if EXPLORER_ANCHOR not in links.pages or kind not in _ELEMENT_KINDS or not page.is_on_map:
         return None
     level = {"node": "nodes", "host": "hosts"}.get(kind, "components")
     # Ids have no letter that an address would have to write in another way, but for those of strangers' files.

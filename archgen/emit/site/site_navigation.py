@@ -28,6 +28,8 @@ Of 42,000 pages the tree made 2.3 of 8 kB each.
 UNCOUNTED_KINDS = frozenset({"rules", "timing"})
 """Kinds of pages that are no elements: how many there are says nothing about the architecture."""
 NEWLINE = "\n"
+_NESTED_KIND = "components"
+"""The kind of pages below which the tree opens again: components inside of others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +57,7 @@ class SiteNavigation:
         ancestry = self._ancestry_of(page.anchor)
         # Without long lists a tree depends on the page right below the start page only, and hundreds of pages share it.
         has_long_list = any(self._is_long(name, ancestry) for name in self._visible_lists(ancestry))
-        key = (root, ancestry if has_long_list else ancestry[-1:])
+        key = (root, ancestry if has_long_list or self._opens_further(ancestry) else ancestry[-1:])
         if key not in self.cached_html:
             self.cached_html[key] = "\n".join(
                 self._write_kind(kind, title, ancestry, root) for kind, title in self.kinds
@@ -136,11 +138,21 @@ class SiteNavigation:
         child_counts = self._count_children(page.anchor)
         count = f' <span class="count" aria-hidden="true">{child_counts}</span>' if child_counts else ""
         visible_children = self._visible_pages(page.anchor, ancestry) if page.anchor == ancestry[-1] else ()
-        items = NEWLINE.join(
-            f"<li>{self._write_link(child, root, _write_marks(child))}</li>" for child in visible_children
-        )
+        items = NEWLINE.join(self._write_child(child, ancestry, root) for child in visible_children)
         inner = f"\n<ul>\n{items}\n</ul>\n" if items else ""
         return f"<li>{self._write_link(page, root, f'{mark}{count}')}{inner}</li>"
+
+    def _opens_further(self, ancestry: tuple[str, ...]) -> bool:
+        """Whether the tree opens more than the page right below the start page: a component that holds others."""
+        return any(self.pages[each].kind == _NESTED_KIND and self.children.get(each) for each in ancestry[:-1])
+
+    def _write_child(self, page: Page, ancestry: tuple[str, ...], root: str) -> str:
+        """Write an entry further down. A component that holds others is open where the reader is in it."""
+        items: list[str] = []
+        if page.kind == _NESTED_KIND and page.anchor in ancestry:
+            items = [self._write_child(child, ancestry, root) for child in self._visible_pages(page.anchor, ancestry)]
+        inner = f"\n<ul>\n{NEWLINE.join(items)}\n</ul>\n" if items else ""
+        return f"<li>{self._write_link(page, root, _write_marks(page))}{inner}</li>"
 
     def _count_children(self, anchor: str) -> str:
         """Return how many pages are below a page, counted once: there may be thousands, and each shows its parent."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from fractions import Fraction
 
-from archgen.model.component import Component, Group, Input, Output
+from archgen.model.component import Component, Group
+from archgen.model.component_nesting import list_surrounding
 from archgen.views import inline_text
+from archgen.views.elements import port_tables
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -20,14 +23,17 @@ from archgen.views.shapes import (
     Paragraph,
     Table,
     Text,
-    drop_empty_columns,
 )
 from archgen.views.timing import element_timing
+from archgen.views.type_names import link_type
+
+_MAX_NODES = 4
+"""With more nodes inside of a composed component a table counts them."""
 
 
 def make_group_blocks(lookup: Lookup, group: Group) -> tuple[Block, ...]:
     """Describe a group: its owner, its purpose, its picture and its components."""
-    components = lookup.shown_components(group.id)
+    components = lookup.shown_members(group.id)
     blocks: list[Block] = [Facts(tuple(_group_facts(lookup, group)))]
     if group.description:
         blocks.append(Markdown(group.description))
@@ -51,7 +57,7 @@ def make_group_blocks(lookup: Lookup, group: Group) -> tuple[Block, ...]:
 
 def _group_facts(lookup: Lookup, group: Group) -> list[tuple[str, Inlines]]:
     rows = [("Owner", inline_text.owner_links(lookup.architecture, group.owners))]
-    rows.append(("Components", inline_text.to_inlines(str(len(group.components)))))
+    rows.append(("Components", inline_text.to_inlines(_count_components(lookup, group))))
     if group.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(group.tags))))
     if group.urls:
@@ -59,20 +65,54 @@ def _group_facts(lookup: Lookup, group: Group) -> list[tuple[str, Inlines]]:
     return rows
 
 
-def make_component_table(lookup: Lookup, anchor: str, caption: str, components: list[Component]) -> Table:
-    """List components with their purpose, role and nodes."""
+def _count_components(lookup: Lookup, group: Group) -> str:
+    """Count the components of a group, and the composed ones where there are such."""
+    composed = [shell for shell in lookup.architecture.shells.values() if shell.group == group.id]
+    return f"{len(group.components)}{f', and {len(composed)} composed of others' if composed else ''}"
+
+
+def make_component_table(
+    lookup: Lookup, anchor: str, caption: str, components: list[Component], *, inside_of: str | None = None
+) -> Table:
+    """List components with their purpose, role and nodes; with their types where one of them has a type.
+
+    Each is named with what it is inside of, as seen from within `inside_of`; with None, not at all.
+    """
     rows = tuple(
         (
-            inline_text.to_inlines(inline_text.component_link(component)),
+            _make_name_cell(lookup, component, inside_of),
+            (link_type(lookup.architecture, component),) if component.component_type else (),
             inline_text.value_or_unknown(first_sentence(component.functionality)),
             inline_text.value_or_unknown(component.role),
-            inline_text.join_inlines((inline_text.node_link(node),) for node in lookup.nodes_of.get(component.id, ()))
-            or inline_text.UNKNOWN_INLINES,
+            _make_node_cell(lookup, component),
         )
         for component in components
     )
     columns = (Column("Component", 1.1), Column("Purpose", 2.4), Column("Role", 0.6), Column("Nodes", 1.1))
-    return Table(anchor, caption, columns, rows)
+    if any(component.component_type for component in components):
+        return Table(anchor, caption, (columns[0], Column("Type", 0.9), *columns[1:]), rows)
+    return Table(anchor, caption, columns, tuple((row[0], *row[2:]) for row in rows))
+
+
+def _make_node_cell(lookup: Lookup, component: Component) -> Inlines:
+    """Return the nodes of a component; of many inside of a composed one only how many they are."""
+    nodes = lookup.nodes_inside(component.id)
+    if component.children and len(nodes) > _MAX_NODES:
+        return inline_text.to_inlines(inline_text.count_noun(len(nodes), "node"))
+    return inline_text.join_inlines((inline_text.node_link(node),) for node in nodes) or inline_text.UNKNOWN_INLINES
+
+
+def _make_name_cell(lookup: Lookup, component: Component, inside_of: str | None) -> Inlines:
+    """Return a link to a component; of a composed one with how many are inside."""
+    around = list_surrounding(lookup.architecture, component.id) if inside_of is not None else ()
+    inner = around[around.index(inside_of) + 1 :] if inside_of in around else around
+    titles = "".join(f"{lookup.architecture.shells[name].title} · " for name in inner)
+    link = inline_text.component_link(component)
+    place = (Text(titles, muted=True),) if titles else ()
+    if component.id not in lookup.architecture.shells:
+        return (*place, link)
+    inside = [leaf for leaf in lookup.architecture.leaves_of(component.id) if leaf != component.id]
+    return (*place, link, Text(f" ({inline_text.count_noun(len(inside), 'component')})", muted=True))
 
 
 def first_sentence(markdown: str | None) -> str | None:
@@ -88,10 +128,8 @@ def first_sentence(markdown: str | None) -> str | None:
 def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
     """Describe a component: facts, functionality, picture, requirements, performance, ports, parameters, operations."""
     blocks: list[Block] = [
-        Facts(tuple(_component_facts(lookup, component))),
-        Markdown(component.functionality)
-        if component.functionality
-        else Paragraph(inline_text.to_inlines(Text("What it does is not described yet.", muted=True))),
+        Facts(tuple(list_component_facts(lookup, component))),
+        make_functionality_block(component),
     ]
     if component.description:
         blocks.append(Markdown(component.description))
@@ -103,26 +141,35 @@ def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, 
             f"{component.title} with its inputs at the left and its outputs at the right.",
         )
     )
-    blocks += _requirement_blocks(lookup, component)
-    blocks += _performance_blocks(component)
-    blocks += _input_blocks(lookup, component)
-    blocks += _output_blocks(lookup, component)
+    blocks += make_requirement_blocks(lookup, component)
+    blocks += make_performance_blocks(component)
+    blocks += port_tables.make_input_blocks(lookup, component)
+    blocks += port_tables.make_output_blocks(lookup, component)
     blocks += make_parameter_blocks(component)
     return tuple(blocks)
 
 
-def _component_facts(lookup: Lookup, component: Component) -> list[tuple[str, Inlines]]:
+def make_functionality_block(component: Component) -> Block:
+    """Return what a component does, as written."""
+    if component.functionality:
+        return Markdown(component.functionality)
+    return Paragraph(inline_text.to_inlines(Text("What it does is not described yet.", muted=True)))
+
+
+def list_component_facts(lookup: Lookup, component: Component) -> list[tuple[str, Inlines]]:
     """Return the facts above a component's description."""
     architecture = lookup.architecture
     rows = [
         ("Group", inline_text.to_inlines(inline_text.group_link(architecture, component.group))),
+        *_list_composition_facts(lookup, component),
         ("Owner", inline_text.owner_links(architecture, component.owners)),
-        ("Role", inline_text.value_or_unknown(component.role)),
     ]
+    if component.role or not component.children:
+        rows.append(("Role", inline_text.value_or_unknown(component.role)))
     timing = inline_text.format_timing_sentence(component.timing)
     if timing:
         rows.append(("Timing", inline_text.to_inlines(timing)))
-    nodes = lookup.nodes_of.get(component.id, ())
+    nodes = lookup.nodes_inside(component.id)
     if rate := element_timing.make_rate_fact(lookup, nodes, component.id):
         rows.append(("Rate", rate))
     rows.append(
@@ -132,7 +179,12 @@ def _component_facts(lookup: Lookup, component: Component) -> list[tuple[str, In
         )
     )
     if written_frames := lookup.frames_of.get(component.id):
-        rows.append(("Writes the frames", inline_text.join_inlines(_link_frame(frame.id) for frame in written_frames)))
+        rows.append(
+            (
+                "Writes the frames",
+                inline_text.join_inlines(inline_text.frame_link(frame.id) for frame in written_frames),
+            )
+        )
     if component.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(component.tags))))
     if component.urls:
@@ -140,11 +192,19 @@ def _component_facts(lookup: Lookup, component: Component) -> list[tuple[str, In
     return rows
 
 
-def _link_frame(name: str) -> Inlines:
-    return (Text(name, ref=f"frame:{name}", code=True),)
+def _list_composition_facts(lookup: Lookup, component: Component) -> Iterator[tuple[str, Inlines]]:
+    """Yield what a component is inside of, and of which type it is; nothing for one that is neither."""
+    architecture = lookup.architecture
+    if around := list_surrounding(architecture, component.id):
+        links = ((inline_text.component_link(architecture.shells[name]),) for name in around)
+        yield "Inside of", inline_text.join_inlines(links, " · ")
+    if component.component_type:
+        words = Text(", exactly (a reference)" if component.is_reference else "", muted=True)
+        yield "Type", (link_type(architecture, component), *((words,) if words.text else ()))
 
 
-def _requirement_blocks(lookup: Lookup, component: Component) -> list[Block]:
+def make_requirement_blocks(lookup: Lookup, component: Component) -> list[Block]:
+    """Return the requirements that a component serves."""
     # `requirements: []` states that there are none, a missing key that nobody knows yet; inputs and outputs likewise.
     if not component.requirements:
         message = "It serves no requirement." if component.requirements_known else "Its requirements are not known yet."
@@ -156,7 +216,8 @@ def _requirement_blocks(lookup: Lookup, component: Component) -> list[Block]:
     return [Paragraph(inline_text.to_inlines(Text("Requirements", strong=True))), Bullets(items)]
 
 
-def _performance_blocks(component: Component) -> list[Block]:
+def make_performance_blocks(component: Component) -> list[Block]:
+    """Return the table of a component's performance indicators."""
     if not component.performance:
         return [
             Paragraph(inline_text.to_inlines(Text("Performance. ", strong=True), Text("Not known yet.", muted=True)))
@@ -179,130 +240,3 @@ def _accuracy_cell(accuracy: str | None) -> Inlines:
     if accuracy is None or percentage is None:
         return inline_text.value_or_unknown(accuracy)
     return (Text(accuracy, sort_number=str(Fraction(percentage[1]) / 100)),)
-
-
-def _input_blocks(lookup: Lookup, component: Component) -> list[Block]:
-    if not component.inputs:
-        message = "It has no inputs." if component.inputs_known else "Its inputs are not known yet."
-        return [Paragraph(inline_text.to_inlines(Text("Inputs. ", strong=True), Text(message, muted=True)))]
-    rows = tuple(
-        (
-            _port_name(port),
-            _source_cell(lookup, port),
-            _input_type_cell(lookup, port),
-            _medium_cell(port),
-            _remarks_cell(lookup, port),
-        )
-        for port in component.inputs.values()
-    )
-    columns = (Column("Input"), Column("From", 1.9), Column("Type", 1.2), Column("Medium", 0.8), Column("Remarks", 1.3))
-    table = Table(f"table:inputs/{component.id}", f"{component.title}: inputs", columns, rows)
-    return [drop_empty_columns(table)]
-
-
-def _output_blocks(lookup: Lookup, component: Component) -> list[Block]:
-    if not component.outputs:
-        message = "It has no outputs." if component.outputs_known else "Its outputs are not known yet."
-        return [Paragraph(inline_text.to_inlines(Text("Outputs. ", strong=True), Text(message, muted=True)))]
-    rows = tuple(
-        (
-            _port_name(port),
-            inline_text.type_link(port.type),
-            _reader_cell(lookup, port),
-            _medium_cell(port),
-            _remarks_cell(lookup, port),
-        )
-        for port in component.outputs.values()
-    )
-    columns = (Column("Output"), Column("Type", 1.2), Column("To", 1.9), Column("Medium", 0.8), Column("Remarks", 1.3))
-    table = Table(f"table:outputs/{component.id}", f"{component.title}: outputs", columns, rows)
-    return [drop_empty_columns(table)]
-
-
-def _port_name(port: Input | Output) -> Inlines:
-    return inline_text.to_inlines(Text(port.name, code=True))
-
-
-def _source_cell(lookup: Lookup, port: Input) -> Inlines:
-    """Return the sources of an input, one on each line, with partners other than the component's own."""
-    sources = [
-        (
-            *inline_text.describe_source(lookup.architecture, connection),
-            *_other_owners(lookup, port.component, connection.outputs),
-        )
-        for connection in port.connections
-    ]
-    if port.external:
-        sources.append(inline_text.to_inlines(Text("outside: ", muted=True), port.external))
-    return inline_text.join_lines(sources) or inline_text.UNKNOWN_INLINES
-
-
-def _other_owners(lookup: Lookup, component_id: str, output_ids: tuple[str, ...]) -> Inlines:
-    """Return the owners of the outputs who do not own the component, in brackets; empty where there are none."""
-    architecture = lookup.architecture
-    own_partners = architecture.components[component_id].owners
-    owners = dict.fromkeys(
-        p for o in output_ids for p in architecture.components[architecture.outputs[o].component].owners
-    )
-    # Only a flow that crosses from one partner to another names them: the component's own are in its facts.
-    other_partners = [owner for owner in owners if owner not in own_partners]
-    return (
-        (
-            Text(" ("),
-            *inline_text.join_inlines(inline_text.partner_link(architecture, o) for o in other_partners),
-            Text(")"),
-        )
-        if other_partners
-        else ()
-    )
-
-
-def _input_type_cell(lookup: Lookup, port: Input) -> Inlines:
-    """Return the types of an input: its own first, then those of the outputs it reads."""
-    outputs = (lookup.architecture.outputs[o] for connection in port.connections for o in connection.outputs)
-    types = dict.fromkeys([port.type, *(output.type for output in outputs)] if port.type else (o.type for o in outputs))
-    return (
-        inline_text.join_inlines(inline_text.type_link(name) for name in types if name) or inline_text.UNKNOWN_INLINES
-    )
-
-
-def _reader_cell(lookup: Lookup, port: Output) -> Inlines:
-    """Return the readers of an output, one on each line."""
-    architecture = lookup.architecture
-    readers = [architecture.inputs[connection.input] for connection in lookup.readers_of.get(port.id, ())]
-    cells = [
-        (*inline_text.port_link(architecture, reader), *_reader_owners(lookup, port, reader)) for reader in readers
-    ]
-    if port.external:
-        cells.append(inline_text.to_inlines(Text("outside: ", muted=True), port.external))
-    return inline_text.join_lines(cells) or inline_text.to_inlines(Text("nobody yet", muted=True))
-
-
-def _reader_owners(lookup: Lookup, port: Output, reader: Input) -> Inlines:
-    """Return the owners of a reader who do not own the output's component, in brackets."""
-    architecture = lookup.architecture
-    own_partners = architecture.components[port.component].owners
-    other_partners = [owner for owner in architecture.components[reader.component].owners if owner not in own_partners]
-    return (
-        (
-            Text(" ("),
-            *inline_text.join_inlines(inline_text.partner_link(architecture, o) for o in other_partners),
-            Text(")"),
-        )
-        if other_partners
-        else ()
-    )
-
-
-def _medium_cell(port: Input | Output) -> Inlines:
-    return inline_text.to_inlines("physical" if port.physical else "digital")
-
-
-def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
-    optional = "optional" if isinstance(port, Input) and port.optional else ""
-    # Only what is written of the port itself: the table of types would say the rest again and again.
-    name = port.frame
-    is_known = name in lookup.architecture.frames
-    frame = (Text("in the frame "), *(_link_frame(name) if is_known else (Text(name, code=True),))) if name else ()
-    parts = [inline_text.to_inlines(optional), frame, inline_text.to_inlines(port.description or "")]
-    return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")

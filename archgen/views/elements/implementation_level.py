@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.views import element_references, inline_text
 from archgen.views.elements.parameter_blocks import make_effective_table
@@ -16,7 +17,7 @@ _USE_LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "
 
 def make_implementation_blocks(lookup: Lookup, component_id: str) -> tuple[Block, ...]:
     """Return the figure of a component's nodes with their neighbours."""
-    title = lookup.architecture.components[component_id].title
+    title = find_component(lookup.architecture, component_id).title
     return (
         Figure(
             f"figure:implementation/{component_id}",

@@ -167,7 +167,7 @@ class _MapMaker:
         return (
             f"component:{component.id}",
             component.id,
-            component.title,
+            self._name_component(component),
             self.group_numbers[component.group],
             _describe_paces(paces),
             _shorten_text(component.functionality, component.description),
@@ -178,6 +178,11 @@ class _MapMaker:
             self.map_places.components[component.id],
             self._list_places(component.at),
         )
+
+    def _name_component(self, component: Component) -> str:
+        """Return a component's title, with that of the composed one around it: the map has the leaves of a group side by side."""
+        around = self.lookup.architecture.shells.get(component.parent or "")
+        return f"{around.title} · {component.title}" if around else component.title
 
     def node_row(self, node: Node) -> Row:
         """Return the row of a node."""

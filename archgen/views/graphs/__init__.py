@@ -5,6 +5,7 @@
 | `overview` | `overview` | the groups |
 | `components` | `components` | all groups with their components |
 | `groups/G` | `group` | a group with its neighbours |
+| `composed/G.C` | `composed` | a composed component, open, with what is inside |
 | `components/G.C` | `component` | a component with its ports |
 | `implementation/G.C` | `implementation` | a component's nodes and topics |
 | `ros` | `ros` | all nodes |
@@ -25,6 +26,7 @@ from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.component_graph import draw_component
+from archgen.views.graphs.composed_graph import draw_composed
 from archgen.views.graphs.frame_graph import draw_frames
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.group_graph import draw_group
@@ -38,6 +40,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 __all__ = [
     "draw_component",
     "draw_components",
+    "draw_composed",
     "draw_frames",
     "draw_group",
     "draw_hosts",
@@ -50,6 +53,10 @@ __all__ = [
 ]
 
 
+MAX_COMPOSED_PICTURES = 300
+"""With more composed components they have pictures only where single components have them."""
+
+
 def make_all_graphs(
     architecture: Architecture,
     selection: Selection | None = None,
@@ -60,7 +67,7 @@ def make_all_graphs(
 ) -> tuple[Graph, ...]:
     """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out.
 
-    Without those of the `undrawn_kinds`.
+    Without those of the `undrawn_kinds`; where single components are not drawn, composed ones are as long as they are few.
     """
     lookup = make_lookup(architecture, findings, timing_lookup=timed)
     return tuple(graph for graph in _iterate_graphs(lookup, selection, undrawn_kinds) if graph.boxes)
@@ -80,8 +87,16 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, undrawn_kinds: 
     groups = dict.fromkeys(each.group for each in shown_components)
     for name in groups if "group" not in undrawn_kinds else ():
         yield fold_graph(draw_group(lookup, name))
+    shown_ids = {component.id for component in shown_components}
+    shown_shells = [each for each in architecture.shells if not shown_ids.isdisjoint(architecture.leaves_of(each))]
+    for shell_id in (
+        shown_shells if "component" not in undrawn_kinds or len(shown_shells) <= MAX_COMPOSED_PICTURES else ()
+    ):
+        yield draw_composed(lookup, shell_id)
     for each in shown_components if "component" not in undrawn_kinds else ():
-        yield draw_component(lookup, each.id)
+        # A composed one that is not designed to its end is among them, and has its own picture already.
+        if each.id not in architecture.shells:
+            yield draw_component(lookup, each.id)
         yield draw_implementation(lookup, each.id)
     if selection is None:
         yield draw_ros_graph(lookup)

@@ -6,7 +6,7 @@ of its own. A connection to a whole group is one flow for each component of the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,7 +14,6 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of
 from archgen.views.graph_shapes import Arrow
-from archgen.views.lookup import Lookup
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
 
@@ -36,22 +35,17 @@ class ComponentFlow:
         """The label beside the arrow: the types, each on a line."""
         return list_type_names(self.types)
 
+    @property
+    def is_made(self) -> bool:
+        """Whether nobody wrote it: `autoconnect` joined the two."""
+        return self.connection.is_made
+
 
 def list_flows(architecture: Architecture) -> tuple[ComponentFlow, ...]:
     """Return all flows, in the order of the connections."""
     return tuple(
         flow for connection in architecture.connections for flow in _flows_of_connection(architecture, connection)
     )
-
-
-def list_flows_at(lookup: Lookup, component_ids: Collection[str]) -> list[ComponentFlow]:
-    """Return the flows that begin or end at some components, in the order of the connections."""
-    architecture = lookup.architecture
-    # Every group's picture asks: to go through all connections for each is quadratic.
-    positions = {at for component in component_ids for at in lookup.connection_positions.get(component, ())}
-    touching = (architecture.connections[at] for at in sorted(positions))
-    candidates = (flow for connection in touching for flow in _flows_of_connection(architecture, connection))
-    return [flow for flow in candidates if flow.tail in component_ids or flow.head in component_ids]
 
 
 def _flows_of_connection(architecture: Architecture, connection: Connection) -> Iterable[ComponentFlow]:
@@ -111,6 +105,7 @@ def merge_flows(
             count=len(bundle),
             optional=by_style and all(flow.optional for flow in bundle),
             flows=tuple(flow.sentence for flow in bundle),
+            is_made=all(flow.is_made for flow in bundle),
         )
         for (tail, head, style), bundle in bundles.items()
     )

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Literal
 
 from archgen.model.component import Component, Connection, Input, Output
+from archgen.model.component_nesting import find_component
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import flow_style, list_type_names, port_style
@@ -123,7 +124,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
         box = replace(group_box, emphasis="neighbour", side=side, lines=("whole group", *shown_types, *more))
         label = "* all of these" if types else "*"
     else:
-        producer = architecture.components[_component_of_port(connection.target)]
+        producer = find_component(architecture, _component_of_target(lookup, connection))
         box = element_boxes.neighbour_box(lookup, producer, side)
         label = list_type_names(types)
     box = replace(box, id=f"{_SIGNS[side]}{box.id}")
@@ -139,6 +140,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
             f"{architecture.components[output.component].title} · {output.name} → {port.name}" for output in outputs
         ),
         ref=f"type:{types[0]}" if len(types) == 1 else None,
+        is_made=connection.is_made,
     )
     return box, _point_to_server(arrow)
 
@@ -151,7 +153,7 @@ def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbo
             yield _draw_external(lookup, output, component)
             label = ""
         for connection in lookup.readers_of.get(output.id, ()):
-            reader = lookup.architecture.components[_component_of_port(connection.input)]
+            reader = lookup.architecture.components[lookup.architecture.inputs[connection.input].component]
             side = _port_side(lookup, output)
             box = replace(element_boxes.neighbour_box(lookup, reader, side), id=f"{_SIGNS[side]}{reader.id}")
             arrow = Arrow(
@@ -164,6 +166,7 @@ def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbo
                 optional=lookup.architecture.inputs[connection.input].optional,
                 flows=(f"{output.name} → {reader.title} · {connection.input.rsplit('.', 1)[1]}",),
                 ref=f"type:{output.type}" if output.type else None,
+                is_made=connection.is_made,
             )
             # The type is written beside the first arrow only; the next ones out of the same output have no label.
             yield box, _point_to_server(arrow)
@@ -221,8 +224,9 @@ def _fold_neighbours(lookup: Lookup, drawn: list[DrawnNeighbour]) -> list[DrawnN
     return folded
 
 
-def _component_of_port(port_id: str) -> str:
-    return ".".join(port_id.split(".")[:2])
+def _component_of_target(lookup: Lookup, connection: Connection) -> str:
+    output = lookup.architecture.outputs.get(connection.target) if connection.kind == "output" else None
+    return output.component if output else connection.target
 
 
 def _describe_component(component: Component, neighbours: list[str]) -> str:

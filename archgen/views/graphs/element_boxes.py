@@ -8,19 +8,21 @@ from typing import Literal, cast
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.component import Component
+from archgen.model.component_nesting import find_component, list_members, list_surrounding
 from archgen.views.graph_shapes import Box, Cluster
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.type_names import name_type
 
 BadgeSeverity = Literal["error", "warning", "note"]
 
 
 def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...] = ()) -> Box:
-    """Return the box of a component, in the hue of its group."""
+    """Return the box of a component, in the hue of its group. A composed one is closed, and says how many are inside."""
     return Box(
         component.id,
         component.title,
-        lines,
+        (*lines, *_count_inside(lookup, component)),
         style=_component_style(component),
         colour=group_hue(lookup, component.group),
         cluster=component.group,
@@ -30,16 +32,46 @@ def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...
     )
 
 
-def _component_style(component: Component) -> Literal["component", "source", "sink", "reactive"]:
+def type_lines(lookup: Lookup, component: Component) -> tuple[str, ...]:
+    """Return a line with the type that a component is made from; none where its title says it already."""
+    type_name = name_type(lookup.architecture, component)
+    return (type_name,) if type_name not in {"", component.title} else ()
+
+
+def _count_inside(lookup: Lookup, component: Component) -> tuple[str, ...]:
+    """Return a line with the number of components in a composed one; no line for any other."""
+    if component.id not in lookup.architecture.shells or not component.children:
+        return ()
+    leaves = [leaf for leaf in lookup.architecture.leaves_of(component.id) if leaf != component.id]
+    return (count_noun(len(leaves), "component"),)
+
+
+def _component_style(component: Component) -> Literal["component", "source", "sink", "reactive", "composed"]:
+    if component.children:
+        return "composed"
     return "component" if component.role is None or component.role == "filter" else component.role
 
 
 def _component_tooltip(lookup: Lookup, component: Component) -> str:
     lines = [f"{component.title} ({component.id})", f"Group: {lookup.architecture.groups[component.group].title}"]
+    lines += [f"Inside of: {title}"] if (title := join_surrounding_titles(lookup, component)) else []
+    lines += [f"Type: {name_type(lookup.architecture, component)}"] if component.component_type else []
     lines += [f"Role: {component.role}"] if component.role else []
     lines += [f"Owner: {join_owner_titles(lookup, component.owners)}"] if component.owners else []
     lines += [component.functionality] if component.functionality else []
+    lines += _list_ports(component) if component.children else []
     return "\n".join(lines)
+
+
+def _list_ports(component: Component) -> list[str]:
+    uses = ("Inputs", component.inputs), ("Outputs", component.outputs)
+    return [f"{use}: {', '.join(ports)}" for use, ports in uses if ports]
+
+
+def join_surrounding_titles(lookup: Lookup, component: Component) -> str:
+    """Join the titles of the composed components around a component, the outermost first; empty where there are none."""
+    shells = lookup.architecture.shells
+    return " · ".join(shells[name].title for name in list_surrounding(lookup.architecture, component.id))
 
 
 def join_owner_titles(lookup: Lookup, partner_ids: Iterable[str]) -> str:
@@ -68,10 +100,11 @@ def name_severity(severities: Iterable[Severity]) -> BadgeSeverity | None:
 
 def neighbour_box(lookup: Lookup, component: Component, side: Literal["left", "right"] | None, suffix: str = "") -> Box:
     """Return the box of a component of another group: grey, with its group's title below its own."""
+    place = [lookup.architecture.groups[component.group].title, join_surrounding_titles(lookup, component)]
     return replace(
-        component_box(lookup, component, lines=(lookup.architecture.groups[component.group].title,)),
+        component_box(lookup, component, lines=(" · ".join(filter(None, place)),)),
         id=component.id + suffix,
-        style="component",
+        style="composed" if component.children else "component",
         emphasis="neighbour",
         cluster=None,
         side=side,
@@ -83,6 +116,7 @@ def group_box(lookup: Lookup, group_id: str, *, lines: Iterable[str] = ()) -> Bo
     """Return a group as one box."""
     group = lookup.architecture.groups[group_id]
     count = count_noun(len(group.components), "component")
+    members = [find_component(lookup.architecture, name) for name in list_members(lookup.architecture, group_id)]
     summary_lines = [line for line in (join_owner_titles(lookup, group.owners), count) if line]
     return Box(
         group_id,
@@ -91,9 +125,7 @@ def group_box(lookup: Lookup, group_id: str, *, lines: Iterable[str] = ()) -> Bo
         style="group",
         colour=group_hue(lookup, group_id),
         ref=f"group:{group_id}",
-        tooltip="\n".join(
-            [f"{group.title} ({group_id})", *summary_lines, *(c.title for c in group.components.values())]
-        ),
+        tooltip="\n".join([f"{group.title} ({group_id})", *summary_lines, *(c.title for c in members)]),
     )
 
 

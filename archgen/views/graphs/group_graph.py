@@ -11,9 +11,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Literal
 
+from archgen.model.component import Component
+from archgen.model.component_nesting import find_component
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import ComponentFlow, list_flows_at, merge_flows
+from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
+from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -24,9 +27,9 @@ MAX_FLOWS = 45
 
 def draw_group(lookup: Lookup, group_id: str) -> Graph:
     """Draw one group with its neighbours."""
-    group = lookup.architecture.groups[group_id]
-    own_ids = {component.id for component in group.components.values()}
-    touching_flows = list_flows_at(lookup, own_ids)
+    group, level = lookup.architecture.groups[group_id], DrawnLevel(lookup)
+    own_ids = set(level.list_group_boxes(group_id))
+    touching_flows = level.list_flows_at(own_ids)
     is_folded = len(touching_flows) > MAX_FLOWS
     placed_flows = [_place_flow(flow, own_ids, is_folded=is_folded) for flow in touching_flows]
     neighbour_boxes = _draw_neighbours(lookup, placed_flows, own_ids, is_folded=is_folded)
@@ -40,7 +43,10 @@ def draw_group(lookup: Lookup, group_id: str) -> Graph:
         "group",
         # Without a hue: all of them are in the same group, and its frame has it.
         (
-            *(replace(element_boxes.component_box(lookup, each), colour=None) for each in group.components.values()),
+            *(
+                _draw_member(lookup, find_component(lookup.architecture, each))
+                for each in level.list_group_boxes(group_id)
+            ),
             *neighbour_boxes,
         ),
         arrows,
@@ -52,6 +58,11 @@ def draw_group(lookup: Lookup, group_id: str) -> Graph:
         kind="group",
     )
     return add_legend_keys(graph)
+
+
+def _draw_member(lookup: Lookup, component: Component) -> Box:
+    lines = element_boxes.type_lines(lookup, component)
+    return replace(element_boxes.component_box(lookup, component, lines=lines), colour=None)
 
 
 def _place_flow(flow: ComponentFlow, own_ids: set[str], *, is_folded: bool) -> tuple[ComponentFlow, str, str]:
@@ -75,7 +86,7 @@ def _draw_neighbours(
         side: Literal["left", "right"] = "left" if box_id[0] == "<" else "right"
         if is_folded:
             members = {flow.tail if side == "left" else flow.head for flow, *ends in placed_flows if box_id in ends}
-            titles = [c.title for c in lookup.architecture.components.values() if c.id in members]
+            titles = [c.title for c in DrawnLevel(lookup).list_boxes() if c.id in members]
             yield replace(
                 element_boxes.group_box(lookup, box_id[1:]),
                 id=box_id,
@@ -84,7 +95,7 @@ def _draw_neighbours(
                 lines=_shorten_titles(titles),
             )
         else:
-            component = lookup.architecture.components[box_id[1:]]
+            component = find_component(lookup.architecture, box_id[1:])
             yield replace(element_boxes.neighbour_box(lookup, component, side), id=box_id)
 
 

@@ -8,12 +8,12 @@ from typing import get_args
 from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
 
 _BADGE_KEYS = ("badge:error", "badge:warning", "badge:note")
-_BOX_KEYS = ("source", "sink", "reactive", "external", "node", "topic", "fold")
+_BOX_KEYS = ("composed", "port", "source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_KEY_OF_FLOW = {"service": "service-box", "action": "action-box"}
 _STATUS_KEYS = ("planned", "adapted")
 # The first six of the literals are the steps of the scale; `event` and the others have no period.
 _PERIOD_SCALE = get_args(PeriodStep)[:6]
-_ARROW_KEYS = ("optional", "physical", "service", "action", "internal", "link")
+_ARROW_KEYS = ("optional", "made", "physical", "service", "action", "internal", "link")
 
 
 def add_legend_keys(graph: Graph, *extra: str) -> Graph:
@@ -63,4 +63,4 @@ def _box_kinds(box: Box) -> set[str]:
 
 
 def _arrow_kinds(arrow: Arrow) -> set[str]:
-    return {str(arrow.style)} | ({"optional"} if arrow.optional else set())
+    return {str(arrow.style)} | ({"optional"} if arrow.optional else set()) | ({"made"} if arrow.is_made else set())

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from archgen.views.graph_shapes import Arrow, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import ComponentFlow, list_flows, merge_flows
+from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
+from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -33,8 +34,8 @@ def draw_overview(lookup: Lookup) -> Graph:
 
 def draw_components(lookup: Lookup) -> Graph:
     """Draw all groups with their components: flows inside a group one by one, between groups merged and counted."""
-    architecture = lookup.architecture
-    inside = [flow for flow in list_flows(architecture) if _group_of(flow.tail) == _group_of(flow.head)]
+    architecture, level = lookup.architecture, DrawnLevel(lookup)
+    inside = [flow for flow in level.list_flows() if _group_of(flow.tail) == _group_of(flow.head)]
     between = _flows_between_groups(lookup)
     arrows = merge_flows(inside, lambda flow: (flow.tail, flow.head), labels=False)
     arrows += _colour_by_source(lookup, merge_flows(between, _groups_of_flow, labels=False, by_style=False))
@@ -45,7 +46,7 @@ def draw_components(lookup: Lookup) -> Graph:
         "components",
         f"{architecture.project.title}: all components",
         "two-step",
-        tuple(element_boxes.component_box(lookup, component) for component in architecture.components.values()),
+        tuple(element_boxes.component_box(lookup, component) for component in level.list_boxes()),
         arrows,
         tuple(element_boxes.group_frame(lookup, group) for group in architecture.groups),
         direction=architecture.layout.direction,
@@ -59,7 +60,7 @@ def draw_components(lookup: Lookup) -> Graph:
 def _flows_between_groups(lookup: Lookup) -> list[ComponentFlow]:
     """Return the flows between groups. A connection to a whole group counts once."""
     flow_by_source: dict[tuple[int, str], ComponentFlow] = {}
-    for flow in list_flows(lookup.architecture):
+    for flow in DrawnLevel(lookup).list_flows():
         if _group_of(flow.tail) != _group_of(flow.head):
             # By identity of the connection, and by source: one connection may take from several groups.
             flow_by_source.setdefault((id(flow.connection), _group_of(flow.tail)), flow)

@@ -10,10 +10,12 @@ from dataclasses import replace
 
 from archgen.model.architecture import View
 from archgen.model.component import Component
+from archgen.model.component_nesting import find_component
 from archgen.model.selector_evaluation import Selection
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes, node_boxes, ros_graph
-from archgen.views.graphs.component_flows import ComponentFlow, list_flows_at, merge_flows
+from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
+from archgen.views.graphs.drawn_level import DrawnLevel, list_open_shells
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
@@ -26,10 +28,12 @@ _TITLES_PER_BOX = 3
 
 def draw_functional_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collection[str]) -> Graph:
     """Draw selected components and their neighbours."""
-    components = [component for component in lookup.architecture.components.values() if component.id in component_ids]
-    touching_flows = list_flows_at(lookup, component_ids)
+    level = DrawnLevel(lookup, list_open_shells(lookup.architecture, component_ids))
+    box_ids = {level.find_box(name): name for name in lookup.architecture.components if name in component_ids}
+    components = [level.find_component(name) for name in box_ids]
+    touching_flows = level.list_flows_at(box_ids)
     neighbour_ids = dict.fromkeys(
-        end for flow in touching_flows for end in (flow.tail, flow.head) if end not in component_ids
+        end for flow in touching_flows for end in (flow.tail, flow.head) if end not in box_ids
     )
     is_small = len(components) + len(neighbour_ids) <= _SMALL_PICTURE[0] and len(touching_flows) <= _SMALL_PICTURE[1]
     graph = (_draw_small_part if is_small else _draw_large_part)(
@@ -64,7 +68,7 @@ def _draw_small_part(
         for each in components
     ]
     neighbour_boxes = [
-        element_boxes.neighbour_box(lookup, architecture.components[each], None) for each in neighbour_ids
+        element_boxes.neighbour_box(lookup, find_component(architecture, each), None) for each in neighbour_ids
     ]
     arrows = merge_flows(touching_flows, lambda flow: (flow.tail, flow.head), labels=True)
     return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows), kind="overview")
@@ -124,7 +128,7 @@ def _colour_outer_arrow(lookup: Lookup, arrow: Arrow) -> Arrow:
 
 def _neighbour_group_box(lookup: Lookup, group: str, member_ids: Sequence[str]) -> Box:
     """Return the neighbours in one group as one grey box."""
-    titles = [lookup.architecture.components[each].title for each in member_ids]
+    titles = [find_component(lookup.architecture, each).title for each in member_ids]
     shown_titles = (
         titles
         if len(titles) <= _TITLES_PER_BOX + 1
@@ -217,7 +221,7 @@ def colour_graph(lookup: Lookup, graph: Graph, criterion: str) -> Graph:
 
 
 def _colour_value(lookup: Lookup, box: Box, criterion: str) -> str | None:
-    component = lookup.architecture.components.get(box.id)
+    component = lookup.architecture.shells.get(box.id) or lookup.architecture.components.get(box.id)
     node = lookup.architecture.nodes.get(box.id)
     item = component or node
     if item is None:

@@ -166,7 +166,7 @@ def make_node_table(
     )
     columns = (
         Column("Node", 1.2),
-        Column("Implements too" if component else "Implements", 1.5),
+        Column("Implements too" if component and not component.children else "Implements", 1.5),
         Column("Package", 1.3),
         Column("Status", 0.7),
         Column("Host", 0.8),

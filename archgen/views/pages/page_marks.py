@@ -73,8 +73,8 @@ def _groups_of(lookup: Lookup, element_id: str) -> list[str]:
         return [element_id]
     node = architecture.nodes.get(element_id)
     component_ids = node.implements if node else (element_id,)
-    groups = (architecture.components[name].group for name in component_ids if name in architecture.components)
-    return list(dict.fromkeys(groups))
+    components = (architecture.components.get(name) or architecture.shells.get(name) for name in component_ids)
+    return list(dict.fromkeys(component.group for component in components if component))
 
 
 def _groups_of_activity(lookup: Lookup, activity_id: str) -> list[str]:

@@ -25,6 +25,8 @@ def _list_spans(architecture: Architecture) -> Mapping[str, Span]:
     kinds = (
         ("group", architecture.groups),
         ("component", architecture.components),
+        ("component", architecture.shells),
+        ("component_type", architecture.component_types),
         ("node", architecture.nodes),
         ("requirement", architecture.requirements),
         ("use_case", architecture.use_cases),

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from archgen.model.component import Component, Group
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
@@ -15,11 +14,10 @@ from archgen.views import inline_text
 from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
-from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
-from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
+from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 from archgen.views.tables import architecture_tables, frame_table, project_growth
 
@@ -139,41 +137,9 @@ class _ChapterMaker:
                 yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def make_groups(self) -> list[Section]:
-        """Make one section for each group, with its components and their nodes."""
-        return [self._group_section(self.lookup.architecture.groups[group]) for group in self.lookup.shown_groups()]
-
-    def _group_section(self, group: Group) -> Section:
-        sections = tuple(self._component_section(component) for component in self.lookup.shown_components(group.id))
-        blocks = self._keep_drawn(make_group_blocks(self.lookup, group))
-        return Section(f"group:{group.id}", group.title, blocks, sections, page_break=True)
-
-    def _component_section(self, component: Component) -> Section:
-        blocks = self._keep_drawn(make_component_blocks(self.lookup, component))
-        sections: tuple[Section, ...] = ()
-        if self.edition.level == "implementation":
-            figure_blocks = self._keep_drawn(make_implementation_blocks(self.lookup, component.id))
-            node_sections = tuple(
-                self._node_section(node.id, component) for node in self.lookup.nodes_of.get(component.id, ())
-            )
-            if node_sections:
-                title = f"Implementation of {component.title}"
-                sections = (Section(f"implementation:{component.id}", title, figure_blocks, node_sections),)
-        return Section(f"component:{component.id}", component.title, blocks, sections)
-
-    def _node_section(self, node_id: str, component: Component) -> Section:
-        """Describe a node at the first shown component that it implements; elsewhere refer to that place."""
-        node = self.lookup.architecture.nodes[node_id]
-        # Never exhausted: the component being written is itself shown and implemented by the node.
-        first_component = next(c for c in node.implements if self.lookup.scope.shows_component(c))
-        if first_component == component.id:
-            return Section(f"node:{node.id}", f"Node {node.id}", make_node_blocks(self.lookup, node))
-        link = inline_text.component_link(self.lookup.architecture.components[first_component])
-        reference = inline_text.to_inlines(
-            "The node ", inline_text.node_link(node), " implements this too; it is described at ", link, "."
-        )
-        # The plain anchor `node:ID` belongs to the full description and must stay unique.
-        anchor = f"node:{node.id}:{component.id}"
-        return Section(anchor, f"Node {node.id}", (Paragraph(reference),))
+        """Make one section for each group, with its components and their nodes; then one for all component types."""
+        shows_nodes = self.edition.level == "implementation"
+        return ComponentSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
 
     def _keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
         """Drop figures that are not among this document's drawings."""

@@ -31,11 +31,10 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
     architecture, lookup = page_maker.architecture, page_maker.lookup
     kind, _, name = anchor.partition(":")
     match kind:
-        case "component" if name in architecture.components:
-            component = architecture.components[name]
-            return (page_maker.make_component_page(architecture.groups[component.group], component),)
+        case "component" if name in architecture.components or name in architecture.shells:
+            return (page_maker.component_pages().make_single_page(name),)
         case "group" if name in architecture.groups:
-            return (page_maker.make_group_page(architecture.groups[name]),)
+            return (page_maker.component_pages().make_group_page(architecture.groups[name]),)
         case "node" if name in architecture.nodes and page_maker.edition.level == "implementation":
             return (page_maker.make_node_page(architecture.nodes[name]),)
         case "topic" if page_maker.edition.level == "implementation":
@@ -56,6 +55,7 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
             return chain(
                 start_page,
                 _UntimedPageMaker(lookup, page_maker.edition).spanning_pages() if kind == "page" else (),
+                page_maker.component_pages().list_type_pages() if kind in {"page", "component_type"} else (),
                 _make_surrounding_pages(page_maker),
             )
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component, Group
 from archgen.model.node import Node
 from archgen.views import inline_text
 from archgen.views.changes.site_changes import add_changes
-from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
-from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.elements.functional_level import make_component_table
+from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.pages import (
     context_pages,
@@ -25,6 +24,7 @@ from archgen.views.pages import (
     timing_chapter,
     undrawn_pictures,
 )
+from archgen.views.pages.component_pages import ComponentPages, drop_facts
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
@@ -40,9 +40,10 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     page_maker = PageMaker(lookup, edition)
     functional_pages = [
         page_maker.start_page(),
-        *page_maker.group_pages(),
+        *page_maker.component_pages().make_pages(),
         *page_maker.chapter_pages(),
         *page_maker.spanning_pages(),
+        *page_maker.component_pages().list_type_pages(),
         *page_maker.rule_pages(),
         *matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation"),
     ]
@@ -80,14 +81,6 @@ def _make_paths_distinct(pages: Iterable[Page]) -> tuple[Page, ...]:
         taken_paths.add(path.casefold())
         result.append(page if path == page.path else replace(page, path=path))
     return tuple(result)
-
-
-def _drop_facts(blocks: Iterable[Block], names: Collection[str]) -> tuple[Block, ...]:
-    """Drop the facts that the line below the title, or the way to the page, says already."""
-    return tuple(
-        Facts(tuple(row for row in block.rows if row[0] not in names)) if isinstance(block, Facts) else block
-        for block in blocks
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +135,8 @@ class PageMaker:
         """Describe the size of the architecture on one line; counts of nothing are left out."""
         counted_elements = (
             ("component", self.architecture.components),
+            ("composed component", self.architecture.shells),
+            ("component type", self.architecture.component_types),
             ("group", self.architecture.groups),
             ("partner", self.architecture.partners),
             ("connection", self.architecture.connections),
@@ -150,42 +145,14 @@ class PageMaker:
         counts = [inline_text.count_noun(len(elements), noun) for noun, elements in counted_elements if elements]
         return f"Software architecture{f': {join_words(counts)}' if counts else ''}"
 
-    def group_pages(self) -> Iterator[Page]:
-        """Make a page for each shown group, followed by its shown components."""
-        for name in self.lookup.shown_groups():
-            group = self.architecture.groups[name]
-            yield self.make_group_page(group)
-            for component in self.lookup.shown_components(name):
-                yield self.make_component_page(group, component)
-
-    def make_group_page(self, group: Group) -> Page:
-        """Make the page of a group."""
-        blocks = _drop_facts(self.keep_drawn(make_group_blocks(self.lookup, group)), {"Components"})
-        section = Section(f"group:{group.id}", group.title, blocks)
-        lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
-        return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME_CRUMB,), lead)
+    def component_pages(self) -> ComponentPages:
+        """Return the maker of the pages of groups, components and component types."""
+        shows_nodes = self.edition.level == "implementation"
+        return ComponentPages(self.lookup, self.keep_drawn, self._finding_sections, shows_nodes)
 
     def _lead_with_owners(self, lead: str, owners: Iterable[str]) -> str:
         """Return a page's lead with the titles of the owners behind it."""
         return " · ".join([lead, *(self.architecture.partners[owner].title for owner in owners)])
-
-    def make_component_page(self, group: Group, component: Component) -> Page:
-        """Make the page of a component."""
-        sections = []
-        if self.edition.level == "implementation":
-            blocks = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
-            nodes = list(self.lookup.nodes_of.get(component.id, ()))
-            table = context_pages.make_node_table(self.lookup, nodes, component)
-            sections = [Section(f"implementation:{component.id}", "Implementation", (*blocks, *table))]
-        sections += self._finding_sections(component.id)
-        repeated_facts = {"Group", "Role"} if component.role else {"Group"}
-        blocks = _drop_facts(self.keep_drawn(make_component_blocks(self.lookup, component)), repeated_facts)
-        section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
-        crumbs = (HOME_CRUMB, (group.title, f"group:{group.id}"))
-        # Not the owner: the facts below have it, as a link.
-        lead = f"Component{f' · {component.role}' if component.role else ''}"
-        path = f"components/{component.id}.html"
-        return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
 
     def _finding_sections(self, element_id: str) -> list[Section]:
         """Return a section with the findings about an element, or nothing."""
@@ -230,11 +197,13 @@ class PageMaker:
 
     def spanning_pages(self) -> Iterator[Page]:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
-        components = [c for name in self.lookup.shown_groups() for c in self.lookup.shown_components(name)]
+        components = list(self.lookup.nested_components())
         if components or self.lookup.shown_nodes():
             explorer_blocks = explorer_page.make_explorer_blocks(self.lookup, self.make_figures("overview"))
             yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
-        component_table = make_component_table(self.lookup, "table:components", "All components", components)
+        component_table = make_component_table(
+            self.lookup, "table:components", "All components", components, inside_of=""
+        )
         yield self._spanning_page(
             "components", "Components", *self.make_figures("components"), component_table if components else None
         )
@@ -324,7 +293,7 @@ class PageMaker:
             result = results[section.anchor]
             waterfall = make_waterfall(self.lookup, self.lookup.timing, result) if self.lookup.timing else None
             # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
-            shown_blocks = _drop_facts(
+            shown_blocks = drop_facts(
                 (block for block in section.blocks if not (waterfall and isinstance(block, Figure))),
                 WATERFALL_FACTS if waterfall else (),
             )

@@ -15,9 +15,12 @@ _PORT_COLUMNS = (
     Column("Port", 1.1),
     Column("Type", 1.2),
     Column("From / to", 2.0),
+    Column("Inside", 1.4),
     Column("Medium", 0.7),
     Column("Remarks", 1.2),
 )
+_MEDIUM = 4
+"""The place of the medium among them."""
 
 
 def condense_component(blocks: Iterable[Block], title: str, component_id: str) -> tuple[Block, ...]:
@@ -26,7 +29,7 @@ def condense_component(blocks: Iterable[Block], title: str, component_id: str) -
     figures: list[Block] = []
     rows: list[FactRow] = []
     port_tables: list[tuple[str, Table]] = []
-    set_tables: list[Table] = []
+    last_tables: list[Block] = []
     pending_title = ""
     for block in blocks:
         match block:
@@ -36,8 +39,8 @@ def condense_component(blocks: Iterable[Block], title: str, component_id: str) -
                 figures.append(block)
             case Table() if block.anchor.startswith(("table:inputs/", "table:outputs/")):
                 port_tables.append(("in" if block.anchor.startswith("table:inputs/") else "out", block))
-            case Table() if block.anchor.startswith(("table:set/", "table:operations/")):
-                set_tables.append(block)
+            case Table() if block.anchor.startswith(("table:set/", "table:operations/", "table:components/")):
+                last_tables.append(drop_repeated_columns(block) if "components/" in block.anchor else block)
             case Table():
                 rows.append(("Performance", inline_text.join_lines(_phrase_row(block, row) for row in block.rows)))
             case Bullets():
@@ -50,7 +53,7 @@ def condense_component(blocks: Iterable[Block], title: str, component_id: str) -
                 texts.append(block)
     facts = Facts(tuple(_order_component_facts(rows)))
     ports = [_join_ports(port_tables, f"table:ports/{component_id}", f"Ports of {title}")] if port_tables else []
-    return (*texts, *([facts] if facts.rows else []), *figures, *ports, *set_tables)
+    return (*texts, *([facts] if facts.rows else []), *figures, *ports, *last_tables)
 
 
 def _is_title(paragraph: Paragraph) -> bool:
@@ -92,11 +95,12 @@ def _join_ports(tables: Sequence[tuple[str, Table]], anchor: str, caption: str) 
     rows, anchors = [], []
     for use, table in tables:
         titles = {"Input": "Port", "Output": "Port", "From": "From / to", "To": "From / to"}
+        titles |= {"Read inside by": "Inside", "Given on from": "Inside"}
         places = {titles.get(column.title, column.title): index for index, column in enumerate(table.columns)}
         row_anchors = (*table.row_anchors, *(None for _ in table.rows))
         for row, row_anchor in zip(table.rows, row_anchors, strict=False):
             cells = [row[places[column.title]] if column.title in places else () for column in _PORT_COLUMNS]
-            cells[3] = () if _join_texts(cells[3]) == "digital" else cells[3]
+            cells[_MEDIUM] = () if _join_texts(cells[_MEDIUM]) == "digital" else cells[_MEDIUM]
             rows.append((inline_text.to_inlines(use), *cells))
             anchors.append(row_anchor)
     columns = (Column("Use", 0.3), *_PORT_COLUMNS)

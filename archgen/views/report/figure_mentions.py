@@ -22,6 +22,12 @@ _BLOCK_WORDS = {
     "figure:overview": "shows the groups and what runs between them",
     "table:worst_chains": "lists the chains of effect with what is left of their deadlines",
     "table:partner_progress": "counts how far the components of each partner are described",
+    "figure:composed/": "shows what is inside",
+    "table:ports/": "lists the ports",
+    "table:components/": "tells what each is for",
+    "table:component_types": "lists them",
+    "table:type_ports/": "lists its ports",
+    "table:instances/": "lists what is made from it",
     "figure:hosts": "shows the hosts and the processes on them",
     "table:hosts": "lists what runs on which host",
     "table:links": "lists how the hosts are connected",
@@ -86,6 +92,8 @@ def _write_sentence(anchor: str, blocks: Sequence[Block]) -> Inlines:
     figures = [_name_block(block) for block in blocks if isinstance(block, Figure)]
     tables = [_name_block(block) for block in blocks if isinstance(block, Table)]
     words = next((words for prefix, words in _WORDS if anchor.startswith(prefix)), None)
+    # A composed component's picture shows something else than a component's.
+    words = None if any(_find_purpose(block) == _BLOCK_WORDS["figure:composed/"] for block in blocks) else words
     if words and len(figures) <= 1 and len(tables) <= 1:
         parts = [
             (name, Text(f" {word}")) for names, word in zip((figures, tables), words, strict=True) for name in names

@@ -9,7 +9,9 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping
 
+from archgen.model.component import Component
 from archgen.views.chart_shapes import Drawing
+from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
@@ -105,10 +107,16 @@ class _ReportPrinter:
 
     def _print_component(self, section: Section) -> Section:
         component_id = section.anchor.partition(":")[2]
-        blocks = condensed_blocks.condense_component(self._keep_legible(section.blocks), section.title, component_id)
-        if self._shows_ros and self.edition.ros_place == "inline":
+        shown_blocks = (_drop_column(block, "Nodes") for block in self._keep_legible(section.blocks))
+        blocks = condensed_blocks.condense_component(shown_blocks, section.title, component_id)
+        is_leaf = component_id in self.lookup.architecture.components
+        if is_leaf and self._shows_ros and self.edition.ros_place == "inline":
             blocks += self._make_ros_blocks(component_id)
-        return dataclasses.replace(section, blocks=blocks, sections=())
+        # What is inside of a composed component has sections; those of nodes move to the annex.
+        inner = (each for each in section.sections if each.anchor.startswith("component:"))
+        return dataclasses.replace(
+            section, blocks=blocks, sections=tuple(self._print_component(each) for each in inner)
+        )
 
     @property
     def _shows_ros(self) -> bool:
@@ -135,13 +143,19 @@ class _ReportPrinter:
     def _list_ros_groups(self) -> Iterator[Section]:
         for group_id in self.lookup.shown_groups():
             sections = tuple(
-                Section(f"implementation:{component.id}", component.title, self._make_ros_blocks(component.id))
+                Section(
+                    f"implementation:{component.id}", self._name_place(component), self._make_ros_blocks(component.id)
+                )
                 for component in self.lookup.shown_components(group_id)
                 if self.lookup.nodes_of.get(component.id)
             )
             if sections:
                 title = self.lookup.architecture.groups[group_id].title
                 yield Section(f"nodes:{group_id}", title, (), sections, appendix=True)
+
+    def _name_place(self, component: Component) -> str:
+        """Return the title of a component, with those of the composed ones around it."""
+        return " · ".join(filter(None, (join_surrounding_titles(self.lookup, component), component.title)))
 
     def _split_timing(self, section: Section) -> Iterator[Section]:
         """Yield the chapter of timing with its verdicts, and the annex of its tables."""

@@ -78,7 +78,7 @@ def _fit_drawing(lookup: Lookup, drawing: Drawing) -> Drawing:
         return drawing
     if drawing.kind == "implementation":
         return join_topics(drawing)
-    if drawing.kind == "component":
+    if drawing.kind in {"component", "composed"}:
         return _rename(drawing, boxes=drawing.boxes, arrows=drawing.arrows)
     if drawing.kind == "group-timing":
         return leave_neighbours(drawing)

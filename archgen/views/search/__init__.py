@@ -14,6 +14,8 @@ def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEn
     """Make the search entries of a site with these pages. Entries of one kind follow one another."""
     entries = [
         *functional_entries.make_component_entries(lookup),
+        *functional_entries.make_composed_entries(lookup),
+        *functional_entries.make_component_type_entries(lookup),
         *functional_entries.make_group_entries(lookup),
         *implementation_entries.make_node_entries(lookup),
         *implementation_entries.make_topic_entries(lookup),

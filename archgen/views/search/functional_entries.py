@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.component import Component, Connection, Group, Input, Output
+from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
+from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
 
@@ -38,15 +40,54 @@ def make_group_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 def make_component_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the shown components."""
     for group, component in _shown_components(lookup):
+        if component.id in lookup.architecture.shells:
+            continue
         tags = dict.fromkeys((*component.tags, *group.tags))
         yield SearchEntry(
             "component",
             component.title,
-            join_words(group.title, list_owner_titles(lookup, component.owners)),
+            join_words(_join_place(lookup, component), list_owner_titles(lookup, component.owners)),
             (f"component:{component.id}",),
             (component.id, *make_owner_keys(component.owners, tags)),
             to_plain_text(component.functionality, component.description, *component.parameters, *component.operations),
         )
+
+
+def make_composed_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the composed components of which something is shown."""
+    for shell in lookup.architecture.shells.values():
+        if lookup.shows_part(shell.id):
+            leaves = [leaf for leaf in lookup.architecture.leaves_of(shell.id) if leaf != shell.id]
+            yield SearchEntry(
+                "component",
+                shell.title,
+                join_words(
+                    f"composed of {inline_text.count_noun(len(leaves), 'component')}",
+                    _join_place(lookup, shell),
+                    list_owner_titles(lookup, shell.owners),
+                ),
+                (f"component:{shell.id}",),
+                (shell.id, *make_owner_keys(shell.owners, shell.tags)),
+                to_plain_text(shell.functionality, shell.description),
+            )
+
+
+def make_component_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the component types."""
+    for component_type in lookup.architecture.component_types.values():
+        yield SearchEntry(
+            "component type",
+            component_type.title,
+            "type of components",
+            (f"component_type:{component_type.id}",),
+            (component_type.id, f"is:{component_type.id}"),
+            to_plain_text(component_type.functionality, component_type.description),
+        )
+
+
+def _join_place(lookup: Lookup, component: Component) -> str:
+    """Return the titles of a component's group and of what it is inside of."""
+    return join_words(lookup.architecture.groups[component.group].title, join_surrounding_titles(lookup, component))
 
 
 def make_port_entries(lookup: Lookup) -> Iterator[SearchEntry]:
@@ -151,6 +192,6 @@ def _source_title(lookup: Lookup, connection: Connection) -> str:
     if connection.kind == "group":
         return architecture.groups[connection.target].title
     if connection.kind == "component":
-        return architecture.components[connection.target].title
+        return find_component(architecture, connection.target).title
     output = architecture.outputs[connection.target]
     return _port_title(architecture.components[output.component], output.name)

@@ -11,6 +11,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
 from archgen.model.architecture import Chain, Requirement
 from archgen.model.component import Connection
+from archgen.model.component_nesting import find_component
 from archgen.model.deployment import Link
 from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
@@ -375,8 +376,10 @@ def waypoint_link(lookup: Lookup, kind: str, element_id: str) -> Inlines:
     if kind == "node":
         return (inline_text.node_link(architecture.nodes[element_id]),)
     if kind == "component":
-        return (inline_text.component_link(architecture.components[element_id]),)
-    return inline_text.port_link(architecture, architecture.outputs[element_id])
+        return (inline_text.component_link(find_component(architecture, element_id)),)
+    output = architecture.outputs.get(element_id)
+    holder, _, name = element_id.rpartition(".")
+    return inline_text.port_link(architecture, output or architecture.shells[holder].outputs[name])
 
 
 def make_topic_table(lookup: Lookup, selected_topics: Iterable[Topic], anchor: str, caption: str) -> Table | None:

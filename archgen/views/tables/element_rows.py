@@ -16,23 +16,44 @@ TextRow = tuple[str, ...]
 def list_element_rows(lookup: Lookup, kind: str) -> tuple[tuple[str, ...], list[TextRow]]:
     """Return the column names and rows for one kind of element (a key of `_TABLES_BY_KIND`)."""
     columns, make_rows = _TABLES_BY_KIND[kind]
-    return columns, list(make_rows(lookup))
+    rows = list(make_rows(lookup))
+    for name, values in _list_further_columns(lookup, kind):
+        # A column that no row has a word in is that of a project without composition: its table stays as it was.
+        if any(values):
+            columns = (*columns, name)
+            rows = [(*row, value) for row, value in zip(rows, values, strict=True)]
+    return columns, rows
+
+
+def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield what types and composed components add to a table, column by column."""
+    if kind == "components":
+        components = list(lookup.nested_components())
+        leaves = (lookup.architecture.leaves_of(c.id) for c in components)
+        yield "type", [c.component_type or "" for c in components]
+        yield (
+            "composed_of",
+            [str(len(set(each) - {c.id})) if c.children else "" for c, each in zip(components, leaves, strict=True)],
+        )
+    if kind == "connections":
+        connections = architecture_tables.shown_connections(lookup)
+        yield "through", [connection.shell_port or "" for connection in connections]
+        yield "made_by", ["autoconnect" if connection.is_made else "" for connection in connections]
 
 
 def _component_rows(lookup: Lookup) -> Iterator[TextRow]:
-    for group in lookup.shown_groups():
-        for c in lookup.shown_components(group):
-            nodes = ", ".join(node.id for node in lookup.nodes_of.get(c.id, ()))
-            yield (
-                c.id,
-                c.title,
-                ", ".join(c.owners),
-                c.role or "",
-                str(len(c.inputs)),
-                str(len(c.outputs)),
-                nodes,
-                str(c.at),
-            )
+    for c in lookup.nested_components():
+        nodes = ", ".join(node.id for node in lookup.nodes_inside(c.id))
+        yield (
+            c.id,
+            c.title,
+            ", ".join(c.owners),
+            c.role or "",
+            str(len(c.inputs)),
+            str(len(c.outputs)),
+            nodes,
+            str(c.at),
+        )
 
 
 def _node_rows(lookup: Lookup) -> Iterator[TextRow]:

@@ -26,7 +26,7 @@ def test_a_path_takes_what_its_steps_take() -> None:
 
 @pytest.mark.parametrize(("widths", "works"), [((1, 1), [3, 5]), ((1, 2), [3, 3, 3]), ((2, 1), [2, 2, 5])])
 def test_what_is_reentrant_counts_as_several_lanes(widths: tuple[int, ...], works: list[int]) -> None:
-    path = CorePath(0, 0, None, (), (), ([0], [1]), widths, frozenset(), {}, 2)
+    path = CorePath(0, 0, None, (), (), ([0], [1]), widths, frozenset(), ())
     assert split_lanes(path, [3, 5]) == works
 
 

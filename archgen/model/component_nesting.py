@@ -1,0 +1,65 @@
+"""Where components stand: what is directly inside of a group or a composed component, and what is around."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Input
+
+
+def find_component(architecture: Architecture, component_id: str) -> Component:
+    """Return a component by its complete id; of a composed one the whole, with all of its ports."""
+    # Shells first: one that is not designed to its end is among the leaves as well, with the open ports only.
+    return architecture.shells.get(component_id) or architecture.components[component_id]
+
+
+def list_surrounding(architecture: Architecture, component_id: str) -> tuple[str, ...]:
+    """Return the composed components around a component, the outermost first."""
+    around: list[str] = []
+    parent = find_component(architecture, component_id).parent if architecture.shells else None
+    while parent is not None and parent in architecture.shells:
+        around.insert(0, parent)
+        parent = architecture.shells[parent].parent
+    return tuple(around)
+
+
+def find_closed(architecture: Architecture, component_id: str, open_shells: Collection[str] = ()) -> str:
+    """Return what stands for a component where these composed components are open: the outermost closed one around it."""
+    around = list_surrounding(architecture, component_id)
+    return next((shell for shell in around if shell not in open_shells), component_id)
+
+
+def list_members(architecture: Architecture, group_id: str) -> tuple[str, ...]:
+    """Return the components directly in a group, composed ones closed, in the order of the group."""
+    leaves = (component.id for component in architecture.groups[group_id].components.values())
+    members = dict.fromkeys(find_closed(architecture, leaf) for leaf in leaves)
+    members |= dict.fromkeys(
+        shell.id for shell in architecture.shells.values() if shell.group == group_id and shell.parent is None
+    )
+    return tuple(members)
+
+
+def list_written_connections(architecture: Architecture) -> Iterator[tuple[Input, Connection]]:
+    """Yield the connections of all inputs, those of composed components included."""
+    for connection in architecture.connections:
+        yield architecture.inputs[connection.input], connection
+    for shell in architecture.shells.values():
+        for port in shell.inputs.values():
+            if port.id not in architecture.inputs:
+                yield from ((port, connection) for connection in port.connections)
+
+
+def find_passed_shell(architecture: Architecture, reader_id: str, connection: Connection) -> str | None:
+    """Return the composed component around the reader through whose input a connection comes (`self.x`)."""
+    port_id = connection.shell_port
+    holder = port_id.rpartition(".")[0] if port_id else ""
+    if port_id is None or holder != find_component(architecture, reader_id).parent:
+        return None
+    # A component inside may be called as the input is; `self` tells them apart.
+    is_component = port_id in architecture.shells and not connection.written.startswith("self.")
+    return None if is_component or port_id not in _list_input_ids(architecture, holder) else holder
+
+
+def _list_input_ids(architecture: Architecture, shell_id: str) -> Collection[str]:
+    return {port.id for port in architecture.shells[shell_id].inputs.values()}

@@ -1,0 +1,156 @@
+"""Component types in documents: their ports, what they are made from, and their instances with what each says otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.model.component import Component, ComponentType
+from archgen.views import inline_text
+from archgen.views.element_references import place_run
+from archgen.views.elements.functional_level import first_sentence
+from archgen.views.elements.instance_values import OwnValue, TypeTexts
+from archgen.views.graphs.element_boxes import join_surrounding_titles
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns
+from archgen.views.type_names import link_type, list_instances, type_page_link
+
+_MAX_VALUE = 80
+"""Letters of a value that the table of instances shows; the instance's own page has all of it."""
+
+
+def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Table | None:
+    """List the component types; None where there are none."""
+    architecture = lookup.architecture
+    rows = tuple(
+        (
+            (type_page_link(each),),
+            inline_text.value_or_unknown(first_sentence(each.functionality)),
+            _make_base_cell(lookup, each),
+            inline_text.to_inlines(", ".join(each.generic)),
+            (Text(str(count), sort_number=str(count)),),
+        )
+        for each in architecture.component_types.values()
+        for count in (len(_shown_instances(lookup, each)),)
+    )
+    columns = (
+        Column("Type", 1.2),
+        Column("Purpose", 2.4),
+        Column("Made from", 1),
+        Column("Generic names", 0.8),
+        Column("Instances", 0.7, "right"),
+    )
+    return drop_empty_columns(Table(anchor, "Types of components", columns, rows)) if rows else None
+
+
+def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Block, ...]:
+    """Describe a component type: facts, what it does, its ports and its instances."""
+    blocks: list[Block] = [Facts(tuple(_list_facts(lookup, component_type)))]
+    base = lookup.architecture.component_types.get(_base_id(component_type))
+    # What a type has from another is said there.
+    known_texts = {base.functionality, base.description} if base else set()
+    texts = (component_type.functionality, component_type.description)
+    blocks += [Markdown(text) for text in texts if text and text not in known_texts]
+    blocks += _make_port_table(component_type)
+    blocks += _make_instance_table(lookup, component_type)
+    return tuple(blocks)
+
+
+def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple[str, Inlines]]:
+    architecture = lookup.architecture
+    if component_type.owner:
+        yield "Owner", inline_text.owner_links(architecture, [component_type.owner])
+    if component_type.base:
+        yield "Made from", _make_base_cell(lookup, component_type)
+    if component_type.generic:
+        yield "Generic names", inline_text.join_inlines((Text(name, code=True),) for name in component_type.generic)
+    derived = [each for each in architecture.component_types.values() if _base_id(each) == component_type.id]
+    if derived:
+        yield "Made from it", inline_text.join_inlines((type_page_link(each),) for each in derived)
+    if component_type.components:
+        yield "Inside", inline_text.join_inlines((Text(name, code=True),) for name in component_type.components)
+    words = "abstract: it has no instance of its own" if component_type.is_abstract else ""
+    count = inline_text.count_noun(len(_shown_instances(lookup, component_type)), "instance")
+    yield "Instances", inline_text.to_inlines(", ".join(filter(None, (count, words))))
+
+
+def _base_id(component_type: ComponentType) -> str:
+    return (component_type.base or "").partition("<")[0].strip()
+
+
+def _make_base_cell(lookup: Lookup, component_type: ComponentType) -> Inlines:
+    base = lookup.architecture.component_types.get(_base_id(component_type))
+    if base is None:
+        return inline_text.to_inlines(component_type.base or "")
+    return (type_page_link(base),)
+
+
+def _make_port_table(component_type: ComponentType) -> list[Block]:
+    rows = tuple(
+        (
+            inline_text.to_inlines(use),
+            inline_text.to_inlines(Text(name, code=True)),
+            _make_type_cell(component_type, type_name, has_inside=use == "out" and bool(component_type.components)),
+        )
+        for use, ports in (("in", component_type.inputs), ("out", component_type.outputs))
+        for name, type_name in ports.items()
+    )
+    columns = (Column("Use", 0.3), Column("Port", 1.2), Column("Type", 2))
+    anchor = f"table:type_ports/{component_type.id}"
+    return [Table(anchor, f"Ports of {component_type.title}", columns, rows)] if rows else []
+
+
+def _make_type_cell(component_type: ComponentType, type_name: str | None, *, has_inside: bool) -> Inlines:
+    if type_name in component_type.generic:
+        return (Text(type_name or "", code=True), Text(" (generic)", muted=True))
+    if type_name is None and has_inside:
+        return (Text("follows from what is inside", muted=True),)
+    return inline_text.type_link(type_name)
+
+
+def _shown_instances(lookup: Lookup, component_type: ComponentType) -> list[Component]:
+    return [each for each in list_instances(lookup.architecture, component_type.id) if lookup.shows_part(each.id)]
+
+
+def _make_instance_table(lookup: Lookup, component_type: ComponentType) -> list[Block]:
+    texts = TypeTexts(lookup.architecture)
+    rows = tuple(
+        (
+            (inline_text.component_link(each),),
+            inline_text.to_inlines(_join_places(lookup, each)),
+            (link_type(lookup.architecture, each),),
+            _make_own_cell(lookup, each, texts),
+        )
+        for each in _shown_instances(lookup, component_type)
+    )
+    columns = (Column("Instance"), Column("In", 1.2), Column("As"), Column("Says otherwise", 2))
+    anchor = f"table:instances/{component_type.id}"
+    return [drop_empty_columns(Table(anchor, f"Instances of {component_type.title}", columns, rows))] if rows else []
+
+
+def _join_places(lookup: Lookup, component: Component) -> str:
+    group_title = lookup.architecture.groups[component.group].title
+    return " · ".join(filter(None, (group_title, join_surrounding_titles(lookup, component))))
+
+
+def _make_own_cell(lookup: Lookup, component: Component, texts: TypeTexts) -> Inlines:
+    if component.is_reference:
+        return inline_text.to_inlines(Text("a reference: exactly its type", muted=True))
+    return make_own_value_lines(lookup, texts.list_own_values(component), max_letters=_MAX_VALUE)
+
+
+def make_own_value_fact(lookup: Lookup, component: Component, texts: TypeTexts) -> tuple[str, Inlines] | None:
+    """Return what an instance says otherwise than its type as a fact; None where it says nothing."""
+    lines = make_own_value_lines(lookup, texts.list_own_values(component))
+    return ("Otherwise than its type", lines) if lines else None
+
+
+def make_own_value_lines(lookup: Lookup, own_values: Iterable[OwnValue], max_letters: int | None = None) -> Inlines:
+    """Return what an instance says otherwise, each on a line with its place."""
+    lines = []
+    for value in own_values:
+        text = " ".join(value.text.split())
+        is_long = max_letters is not None and len(text) > max_letters
+        shown_text = f"{text[:max_letters]} ..." if is_long else text
+        place = place_run(lookup, value.at)
+        lines.append((Text(f"{value.name}: {shown_text}"), *((Text(" "), place) if place else ())))
+    return inline_text.join_lines(lines)

@@ -1,0 +1,241 @@
+"""Draw a composed component open: its own ports at the rim of a frame, its components inside, inner composed ones closed.
+
+What is outside is said at the ports. Only who is joined past them has a box outside of the frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from archgen.model.component import Component, Input, Output
+from archgen.model.component_nesting import find_passed_shell, list_surrounding
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.component_flows import (
+    ComponentFlow,
+    FlowStyle,
+    flow_style,
+    merge_flows,
+    port_style,
+)
+from archgen.views.graphs.drawn_level import DrawnLevel
+from archgen.views.graphs.graph_folding import fold_graph
+from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.inline_text import count_noun
+from archgen.views.lookup import Lookup
+
+_CALLS = {"service", "action"}
+_MAX_NAMED = 3
+"""How many components a port at the rim names."""
+
+
+def draw_composed(lookup: Lookup, shell_id: str) -> Graph:
+    """Draw a composed component open."""
+    return _ComposedDrawing(lookup, lookup.architecture.shells[shell_id]).draw()
+
+
+@dataclass(frozen=True, slots=True)
+class _ComposedDrawing:
+    """Draws one composed component."""
+
+    lookup: Lookup
+    shell: Component
+
+    @property
+    def level(self) -> DrawnLevel:
+        """What is drawn inside: this component and all around it are open."""
+        around = list_surrounding(self.lookup.architecture, self.shell.id)
+        return DrawnLevel(self.lookup, frozenset((*around, self.shell.id)))
+
+    def draw(self) -> Graph:
+        shell, lookup = self.shell, self.lookup
+        own_ids = set(shell.children)
+        flows = [flow for flow in self.level.list_flows_at(own_ids) if not self._passes_rim(flow)]
+        inner_flows = [flow for flow in flows if flow.tail in own_ids and flow.head in own_ids]
+        outer_flows = [flow for flow in flows if flow.tail not in own_ids or flow.head not in own_ids]
+        hue = element_boxes.group_hue(lookup, shell.group)
+        arrows = (
+            *(replace(arrow, colour=hue) for arrow in merge_flows(inner_flows, _find_ends, labels=True)),
+            *self._draw_rim_arrows(),
+            *merge_flows(outer_flows, self._place_ends, labels=True),
+        )
+        graph = Graph(
+            f"composed/{shell.id}",
+            shell.title,
+            "group",
+            (*self._draw_children(), *self._draw_ports(), *self._draw_neighbours(outer_flows)),
+            arrows,
+            (
+                Cluster(
+                    shell.id,
+                    shell.title,
+                    element_boxes.type_lines(lookup, shell),
+                    colour=hue,
+                    emphasis="subject",
+                    ref=f"component:{shell.id}",
+                    tooltip=f"{shell.title} ({shell.id})",
+                ),
+            ),
+            direction=shell.layout.direction or lookup.architecture.layout.direction,
+            alt=self._describe(len(inner_flows)),
+            asked=sum(arrow.count for arrow in arrows),
+            kind="composed",
+        )
+        return fold_graph(add_legend_keys(graph))
+
+    def _passes_rim(self, flow: ComponentFlow) -> bool:
+        """Whether a flow comes in or goes out through a port of this component: the ports have arrows of their own."""
+        connection, own_ids = flow.connection, tuple(self.shell.children)
+        if flow.tail in own_ids and flow.head in own_ids:
+            return False
+        reader = connection.input.rpartition(".")[0]
+        if self.level.find_box(reader) in own_ids:
+            return find_passed_shell(self.lookup.architecture, reader, connection) == self.shell.id
+        port_id = connection.shell_port
+        return port_id is not None and not f"{port_id}.".startswith(tuple(f"{each}." for each in own_ids))
+
+    def _place_ends(self, flow: ComponentFlow) -> tuple[str, str]:
+        own_ids = self.shell.children
+        return (
+            flow.tail if flow.tail in own_ids else f"<{flow.tail}",
+            flow.head if flow.head in own_ids else f">{flow.head}",
+        )
+
+    def _draw_children(self) -> Iterator[Box]:
+        for name in self.shell.children:
+            component = self.level.find_component(name)
+            lines = element_boxes.type_lines(self.lookup, component)
+            box = element_boxes.component_box(self.lookup, component, lines=lines)
+            # Without a hue: the frame has it.
+            yield replace(box, colour=None, cluster=self.shell.id)
+
+    def _draw_neighbours(self, flows: Iterable[ComponentFlow]) -> Iterator[Box]:
+        ends = (end for flow in flows for end in self._place_ends(flow))
+        for box_id in dict.fromkeys(end for end in ends if end not in self.shell.children):
+            side: Literal["left", "right"] = "left" if box_id[0] == "<" else "right"
+            component = self.level.find_component(box_id[1:])
+            yield replace(element_boxes.neighbour_box(self.lookup, component, side), id=box_id)
+
+    def _list_ports(self) -> tuple[Input | Output, ...]:
+        return (*self.shell.inputs.values(), *self.shell.outputs.values())
+
+    def _draw_ports(self) -> Iterator[Box]:
+        """Yield the ports at the rim: what comes in and who calls at the left, what goes out and who is called at the right."""
+        for port in self._list_ports():
+            is_left = isinstance(port, Input) != (self._find_style(port) in _CALLS)
+            names = self._list_outside(port)
+            use, word = ("input", "from") if isinstance(port, Input) else ("output", "to")
+            yield Box(
+                _port_box_id(port),
+                port.name,
+                (*self._list_types(port), *_shorten_names(word, names)),
+                style="port",
+                side="left" if is_left else "right",
+                ref=f"component:{self.shell.id}",
+                tooltip="\n".join((f"{use} {port.name} of {self.shell.title}", *names)),
+            )
+
+    def _list_outside(self, port: Input | Output) -> list[str]:
+        """Return the titles of who is at the other end of a port, outside of this component."""
+        outside = DrawnLevel(self.lookup, frozenset(list_surrounding(self.lookup.architecture, self.shell.id)))
+        names: list[str] = []
+        for flow in outside.list_flows_at({self.shell.id}):
+            given = (flow.connection.shell_port, *flow.connection.outputs)
+            is_here = port.id in ((flow.connection.input,) if isinstance(port, Input) else given)
+            is_reader = flow.connection.input.startswith(f"{self.shell.id}.")
+            if is_here and is_reader == isinstance(port, Input):
+                names.append(outside.find_component(flow.head if flow.tail == self.shell.id else flow.tail).title)
+        return list(dict.fromkeys([*names, *([port.external] if port.external else [])]))
+
+    def _draw_rim_arrows(self) -> Iterator[Arrow]:
+        """Yield the arrows between the ports at the rim and what stands behind them; two of the same ends are one."""
+        arrows: dict[str, Arrow] = {}
+        for port in self._list_ports():
+            kind = "input" if isinstance(port, Input) else "output"
+            for inner_id in self.lookup.architecture.shell_ports.get(f"{kind} {port.id}", ()):
+                arrow = self._draw_rim_arrow(port, inner_id)
+                if arrow is None:
+                    continue
+                known = arrows.get(arrow.id)
+                arrows[arrow.id] = (
+                    replace(
+                        known,
+                        flows=(*known.flows, *arrow.flows),
+                        count=known.count + 1,
+                        is_made=known.is_made and arrow.is_made,
+                        optional=known.optional and arrow.optional,
+                    )
+                    if known
+                    else arrow
+                )
+        yield from arrows.values()
+
+    def _draw_rim_arrow(self, port: Input | Output, inner_id: str) -> Arrow | None:
+        """Return the arrow between a port and one that stands behind it; None where the input's port has it already."""
+        holder, _, name = inner_id.rpartition(".")
+        inner = self.level.find_component(holder)
+        style, box_id = self._find_style(port), _port_box_id(port)
+        if holder == self.shell.id:
+            if isinstance(port, Output):
+                return None
+            # What comes in goes out again.
+            other, is_made, optional = _port_box_id(inner.outputs[name]), False, False
+        else:
+            reader = inner.inputs.get(name) if isinstance(port, Input) else None
+            made = [each.is_made for each in reader.connections if each.shell_port == port.id] if reader else []
+            other, is_made, optional = holder, bool(made) and all(made), bool(reader and reader.optional)
+        runs_in = isinstance(port, Input) != (style in _CALLS)
+        tail, head = (box_id, other) if runs_in else (other, box_id)
+        types = self._list_types(port)
+        ends = port.name, f"{inner.title} · {name}"
+        return Arrow(
+            f"{tail}>{head}" + (f":{style}" if style != "data" else ""),
+            tail,
+            head,
+            # Without a label: the port names its type once, and has an arrow for each that stands behind it.
+            style=style,
+            optional=optional,
+            flows=(" → ".join(ends if isinstance(port, Input) else reversed(ends)),),
+            ref=f"type:{types[0]}" if len(types) == 1 else None,
+            is_made=is_made,
+        )
+
+    def _list_types(self, port: Input | Output) -> list[str]:
+        if isinstance(port, Output) or not port.connections:
+            return [port.type] if port.type else []
+        outputs = self.lookup.architecture.outputs
+        types = dict.fromkeys(
+            outputs[name].type for each in port.connections for name in each.outputs if name in outputs
+        )
+        return [name for name in types if name]
+
+    def _find_style(self, port: Input | Output) -> FlowStyle:
+        architecture = self.lookup.architecture
+        sources = [name for each in port.connections for name in each.outputs] if isinstance(port, Input) else []
+        known = [name for name in sources if name in architecture.outputs]
+        return flow_style(architecture, known[0]) if known else port_style(architecture, port)
+
+    def _describe(self, inner_flows: int) -> str:
+        shell = self.shell
+        counts = (
+            f"{count_noun(len(shell.children), 'component')} inside and {count_noun(inner_flows, 'flow')} among them"
+        )
+        ports = f"{count_noun(len(shell.inputs), 'input')} and {count_noun(len(shell.outputs), 'output')}"
+        return f"{shell.title} with {counts}; it has {ports}."
+
+
+def _find_ends(flow: ComponentFlow) -> tuple[str, str]:
+    return flow.tail, flow.head
+
+
+def _shorten_names(word: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Return who is at the other end of a port, each on a line; of many the first, and how many more there are."""
+    shown_names = names if len(names) <= _MAX_NAMED + 1 else [*names[:_MAX_NAMED], f"{len(names) - _MAX_NAMED} more"]
+    return tuple(f"{word} {name}" for name in shown_names)
+
+
+def _port_box_id(port: Input | Output) -> str:
+    # With a blank, so that it is no component's id; an input and an output may have one name.
+    return f"{'in' if isinstance(port, Input) else 'out'} {port.name}"

@@ -1,0 +1,144 @@
+"""What runs between the boxes of a picture where composed components are closed, but for those that it opens.
+
+A connection counts once, where it is written: at the port of a closed composed component, however many read it inside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from archgen.model import component_nesting
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Input
+from archgen.views.graphs.component_flows import ComponentFlow, FlowStyle, flow_style
+from archgen.views.lookup import Lookup
+
+
+@dataclass(frozen=True, slots=True)
+class _FlowPart:
+    """What one connection brings from one component: between which boxes, the names of the outputs, and their types."""
+
+    port: Input
+    connection: Connection
+    source: str
+    reader: str
+    style: FlowStyle
+    names: tuple[str, ...]
+    types: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnLevel:
+    """Which box stands for each component: the outermost composed one around it that is not open, else itself."""
+
+    lookup: Lookup
+    open_shells: Collection[str] = frozenset()
+
+    @property
+    def architecture(self) -> Architecture:
+        """Return the architecture."""
+        return self.lookup.architecture
+
+    def find_box(self, component_id: str) -> str:
+        """Return the id of the component whose box stands for a component."""
+        return component_nesting.find_closed(self.architecture, component_id, self.open_shells)
+
+    def find_component(self, component_id: str) -> Component:
+        """Return a component by its complete id."""
+        return component_nesting.find_component(self.architecture, component_id)
+
+    def list_boxes(self) -> tuple[Component, ...]:
+        """Return what the picture of everything has boxes for, group by group."""
+        if not self.architecture.shells:
+            return tuple(self.architecture.components.values())
+        names = (name for group in self.architecture.groups for name in self.list_group_boxes(group))
+        return tuple(map(self.find_component, names))
+
+    def list_group_boxes(self, group_id: str) -> tuple[str, ...]:
+        """Return the ids of what a group has boxes for."""
+        return component_nesting.list_members(self.architecture, group_id)
+
+    def list_flows(self) -> tuple[ComponentFlow, ...]:
+        """Return all flows, in the order of the connections."""
+        return tuple(self._join_parts(self.lookup.written_connections))
+
+    def list_flows_at(self, box_ids: Collection[str]) -> list[ComponentFlow]:
+        """Return the flows that begin or end at some boxes, in the order of the connections."""
+        # Every group's picture asks: to go through all connections for each is quadratic.
+        positions = {at for box in box_ids for at in self.lookup.connection_positions.get(box, ())}
+        touching = (self.lookup.written_connections[at] for at in sorted(positions))
+        return [flow for flow in self._join_parts(touching) if flow.tail in box_ids or flow.head in box_ids]
+
+    def _join_parts(self, connections: Iterable[tuple[Input, Connection]]) -> Iterator[ComponentFlow]:
+        """Yield the flows of connections. What one reference brings through a composed component is one flow."""
+        parts_by_flow: dict[tuple[object, ...], list[_FlowPart]] = {}
+        for at, (port, connection) in enumerate(connections):
+            for part in self._list_parts(port, connection):
+                way = connection.shell_port or at
+                parts_by_flow.setdefault((port.id, way, part.source, part.reader, part.style), []).append(part)
+        return (self._make_flow(parts) for parts in parts_by_flow.values())
+
+    def _make_flow(self, parts: Sequence[_FlowPart]) -> ComponentFlow:
+        first = parts[0]
+        source, reader = first.source, first.reader
+        types = tuple(dict.fromkeys(name for part in parts for name in part.types))
+        names = ", ".join(dict.fromkeys(name for part in parts for name in part.names))
+        return ComponentFlow(
+            first.connection,
+            *((reader, source) if first.style in {"service", "action"} else (source, reader)),
+            first.style,
+            types,
+            first.port.optional,
+            f"{self.find_component(source).title} · {names}"
+            f"{' (' + ', '.join(types) + ')' if types else ''}"
+            f" → {self.find_component(reader).title} · {self._name_port(first.port.id, reader)}",
+        )
+
+    def _list_parts(self, port: Input, connection: Connection) -> Iterator[_FlowPart]:
+        """Yield what a connection brings, for each component that it comes from."""
+        architecture = self.architecture
+        if port.component in self.open_shells and port.id not in architecture.inputs:
+            return
+        passed_shell = component_nesting.find_passed_shell(architecture, port.component, connection)
+        if passed_shell is not None and passed_shell not in self.open_shells:
+            return
+        reader = self.find_box(port.component)
+        outputs = [architecture.outputs[each] for each in connection.outputs if each in architecture.outputs]
+        for producer in dict.fromkeys(output.component for output in outputs):
+            source = self._find_source(connection, producer)
+            # What stays inside of a closed component is not drawn; what a leaf sends to itself is.
+            if source == reader and reader in architecture.shells:
+                continue
+            own_outputs = [output for output in outputs if output.component == producer]
+            names = tuple(self._name_port(output.id, source, connection) for output in own_outputs)
+            types = tuple(dict.fromkeys(output.type for output in own_outputs if output.type))
+            style = flow_style(architecture, own_outputs[0].id)
+            yield _FlowPart(port, connection, source, reader, style, names, types)
+
+    def _find_source(self, connection: Connection, producer: str) -> str:
+        """Return the box that a connection comes from: of a closed component that gives on what it reads, itself."""
+        port_id = connection.shell_port or ""
+        for holder in (port_id, port_id.rpartition(".")[0]):
+            if holder in self.architecture.shells and connection.input.startswith(f"{holder}."):
+                break
+            if holder in self.architecture.shells and holder not in self.open_shells:
+                return self.find_box(holder)
+        return self.find_box(producer)
+
+    def _name_port(self, port_id: str, box_id: str, connection: Connection | None = None) -> str:
+        """Return a port as seen at a box: its name there, else its path inside of the box."""
+        shell_port = connection.shell_port if connection else None
+        if shell_port and shell_port.rpartition(".")[0] == box_id and shell_port not in self.architecture.shells:
+            return shell_port.rpartition(".")[2]
+        inner_path = port_id.removeprefix(f"{box_id}.")
+        return inner_path if inner_path != port_id else port_id.rpartition(".")[2]
+
+
+def list_open_shells(architecture: Architecture, component_ids: Collection[str]) -> frozenset[str]:
+    """Return the composed components that a picture of some leaves must open: some inside are shown, some are not."""
+    return frozenset(
+        shell
+        for shell in architecture.shells
+        if len({leaf in component_ids for leaf in architecture.leaves_of(shell)}) > 1
+    )

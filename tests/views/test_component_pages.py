@@ -1,0 +1,195 @@
+"""The site's pages of composed components and of component types, and what the search finds of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.emit.site.page_links import collect_links
+from archgen.emit.site.site_navigation import build_navigation
+from archgen.model.architecture import Architecture
+from archgen.views.lookup import make_lookup
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.pages.single_page import make_page
+from archgen.views.pages.site_pages import make_pages
+from archgen.views.search import make_search_entries
+from archgen.views.shapes import Facts, Inlines, Page, Table
+
+ROBOT = """
+archgen: 1
+component_types:
+  motor:
+    title: Motor
+    functionality: Turns.
+    inputs: {target: Goal}
+    outputs: {state: State}
+    timing: {period: 10 ms, wcet: 1 ms}
+  fast_motor: {is: motor, title: Fast motor}
+  filter: {generic: [T], inputs: {raw: T}, outputs: {clean: T}}
+groups:
+  arms:
+    components:
+      arm:
+        functionality: Moves.
+        inputs: {goal: planner.goal}
+        outputs: {state: {from: elbow.state}}
+        components:
+          shoulder: {is: motor, inputs: {target: self.goal}}
+          elbow: {is: fast_motor, inputs: {target: self.goal}, timing: {wcet: 2 ms}, functionality: Bends.}
+          hand: {inputs: {goal: self.goal}, components: {finger: {same_as: motor, inputs: {target: self.goal}}}}
+      planner: {inputs: {state: arm.state}, outputs: {goal: Goal}}
+      smooth: {is: "filter<State>", inputs: {raw: arm.state}}
+"""
+PLAIN = "archgen: 1\ngroups: {g: {components: {a: {outputs: {x: X}}, b: {inputs: {x: a.x}}}}}\n"
+
+
+def read_project(tmp_path: Path, text: str) -> Architecture:
+    """Return the architecture of a one-file project."""
+    (tmp_path / "archgen.yaml").write_text(text)
+    return pipeline.check_project(tmp_path).architecture
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Architecture:
+    """Return an arm with a hand inside, and motors of two types."""
+    return read_project(tmp_path, ROBOT)
+
+
+def list_pages(architecture: Architecture) -> dict[str, Page]:
+    """Return the pages by their anchors."""
+    return {page.anchor: page for page in make_pages(make_lookup(architecture), DocumentEdition())}
+
+
+def read_text(inlines: Inlines) -> str:
+    """Return runs as text, lines with ` | ` between them."""
+    return "".join(f"{' | ' if run.line_break else ''}{run.text}" for run in inlines)
+
+
+def read_facts(page: Page) -> dict[str, str]:
+    """Return the facts of a page."""
+    facts = next(block for block in page.section.blocks if isinstance(block, Facts))
+    return {name: read_text(value) for name, value in facts.rows}
+
+
+def read_table(page: Page, caption: str) -> list[list[str]]:
+    """Return the rows of the table with this caption."""
+    tables = {block.caption: block for block in page.section.blocks if isinstance(block, Table)}
+    return [[read_text(cell) for cell in row] for row in tables[caption].rows]
+
+
+def test_pages_lie_inside_of_one_another_as_components_do(robot: Architecture) -> None:
+    pages = list_pages(robot)
+    assert [title for title, _ in pages["component:arms.arm.hand.finger"].crumbs] == ["Overview", "Arms", "Arm", "Hand"]
+    assert pages["component:arms.arm.hand"].path == "components/arms.arm.hand.html"
+    assert pages["component:arms.arm"].lead == "Composed component with 3 components inside"
+    assert read_table(pages["group:arms"], "Components of Arms")[0][:2] == ["Arm (3 components)", ""]
+
+
+def test_the_page_of_a_composed_component_says_what_stands_behind_its_ports(robot: Architecture) -> None:
+    page = list_pages(robot)["component:arms.arm"]
+    assert read_table(page, "Arm: inputs") == [
+        ["goal", "Planner · goal", "Goal", "Shoulder · target | Elbow · target | Hand · goal", "digital"]
+    ]
+    assert read_table(page, "Arm: outputs") == [
+        ["state", "State", "Elbow · state", "Planner · state | Smooth · raw", "digital"]
+    ]
+    assert [row[:2] for row in read_table(page, "Components of Arm")] == [
+        ["Shoulder", "Motor"],
+        ["Elbow", "Fast motor"],
+        ["Hand (1 component)", ""],
+    ]
+
+
+def test_a_source_inside_of_a_composed_component_is_named_with_the_port(robot: Architecture) -> None:
+    pages = list_pages(robot)
+    assert read_table(pages["component:arms.planner"], "Planner: inputs")[0][1] == "Elbow · state through Arm · state"
+    assert read_table(pages["component:arms.arm.shoulder"], "Shoulder: inputs")[0][1] == (
+        "Planner · goal through Arm · goal"
+    )
+
+
+def test_an_instance_says_its_type_and_what_it_says_otherwise(robot: Architecture) -> None:
+    pages = list_pages(robot)
+    facts = read_facts(pages["component:arms.arm.elbow"])
+    assert facts["Type"] == "Fast motor"
+    assert facts["Otherwise than its type"] == "functionality: Bends. | wcet: 2 ms archgen.yaml:21"
+    assert "Otherwise than its type" not in read_facts(pages["component:arms.arm.shoulder"])
+    assert read_facts(pages["component:arms.arm.hand.finger"])["Type"] == "Motor, exactly (a reference)"
+    assert read_facts(pages["component:arms.smooth"])["Type"] == "Filter<State>"
+
+
+def test_a_type_has_a_page_with_its_ports_and_instances(robot: Architecture) -> None:
+    pages = list_pages(robot)
+    page = pages["component_type:motor"]
+    assert read_facts(page) == {"Made from it": "Fast motor", "Instances": "3 instances"}
+    assert read_table(page, "Ports of Motor") == [["in", "target", "Goal"], ["out", "state", "State"]]
+    assert read_table(page, "Instances of Motor") == [
+        ["Shoulder", "Arms · Arm", "Motor", ""],
+        ["Elbow", "Arms · Arm", "Fast motor", "functionality: Bends. | wcet: 2 ms archgen.yaml:21"],
+        ["Finger", "Arms · Arm · Hand", "Motor", "a reference: exactly its type"],
+    ]
+    assert read_facts(pages["component_type:fast_motor"])["Made from"] == "Motor"
+    assert read_table(pages["component_type:filter"], "Ports of Filter")[0] == ["in", "raw", "T (generic)"]
+    assert [row[0] for row in read_table(pages["page:component_types"], "Types of components")] == [
+        "Motor",
+        "Fast motor",
+        "Filter",
+    ]
+
+
+def test_without_types_nothing_is_said_of_them(tmp_path: Path) -> None:
+    plain = read_project(tmp_path, PLAIN)
+    pages = list_pages(plain)
+    assert "page:component_types" not in pages
+    assert pages["page:index"].lead == "Software architecture: 2 components, 1 group, 1 connection and 2 nodes"
+    assert "Type" not in read_facts(pages["component:g.a"])
+    assert "Components" not in read_facts(pages["group:g"])
+    assert [row[0] for row in read_table(pages["group:g"], "Components of G")] == ["A", "B"]
+
+
+@pytest.mark.parametrize(
+    "anchor", ["component:arms.arm", "component:arms.arm.hand.finger", "component_type:motor", "page:component_types"]
+)
+def test_a_page_by_itself_is_the_same(robot: Architecture, anchor: str) -> None:
+    assert make_page(make_lookup(robot), DocumentEdition(), anchor) == list_pages(robot)[anchor]
+
+
+def test_a_composed_component_that_is_not_designed_to_its_end_has_one_page(tmp_path: Path) -> None:
+    text = """
+archgen: 1
+groups:
+  g:
+    components:
+      shell: {outputs: {o: State}, components: {leaf: {outputs: {x: X}}}}
+      reader: {inputs: {o: shell.o}}
+"""
+    lookup = make_lookup(read_project(tmp_path, text))
+    pages = make_pages(lookup, DocumentEdition())
+    assert [page.path for page in pages if page.anchor == "component:g.shell"] == ["components/g.shell.html"]
+    page = next(page for page in pages if page.anchor == "component:g.shell")
+    assert read_table(page, "Shell: outputs") == [["o", "State", "nothing inside yet", "Reader · o", "digital"]]
+    titles = [entry.title for entry in make_search_entries(lookup, pages) if entry.kind == "component"]
+    assert sorted(titles) == ["Leaf", "Reader", "Shell"]
+
+
+def test_the_search_finds_composed_components_and_types(robot: Architecture) -> None:
+    lookup = make_lookup(robot)
+    entries = {entry.refs[0]: entry for entry in make_search_entries(lookup, make_pages(lookup, DocumentEdition()))}
+    assert entries["component:arms.arm"].line == "composed of 3 components · Arms"
+    assert entries["component:arms.arm.hand.finger"].line == "Arms · Arm · Hand"
+    assert (entries["component_type:motor"].kind, entries["component_type:motor"].title) == ("component type", "Motor")
+
+
+def test_the_tree_is_open_down_to_the_reader(robot: Architecture) -> None:
+    pages = tuple(list_pages(robot).values())
+    navigation = build_navigation(pages, collect_links(pages), [("groups", "Groups")])
+    by_anchor = {page.anchor: page for page in pages}
+    inner_tree = navigation.write_tree(by_anchor["component:arms.arm.hand.finger"], "")
+    assert '<li><a href="components/arms.arm.hand.finger.html" aria-current="page">Finger</a></li>' in inner_tree
+    assert ">Elbow</a>" in inner_tree
+    # Elsewhere in the group the arm is closed.
+    outer_tree = navigation.write_tree(by_anchor["component:arms.planner"], "")
+    assert ">Arm</a>" in outer_tree
+    assert ">Elbow</a>" not in outer_tree
