@@ -40,7 +40,7 @@ def test_values_are_handed_in_to_any_depth(tmp_path: Path) -> None:
     limits = [components[f"g.{side}.brake"].parameters["limit"] for side in ("left", "right")]
     assert [(each.value, each.type) for each in limits] == [(0.5, "float"), (0.2, "float")]
     # The type's value for one, the instance's for the other: each says where it is written.
-    assert [each.value_at.line for each in limits] == [4, 17]
+    assert [each.value_at.line for each in limits] == [4, 18]
 
 
 def test_each_instance_has_frames_of_its_own(tmp_path: Path) -> None:
@@ -64,6 +64,6 @@ def test_what_the_component_around_lacks_is_told_once() -> None:
 
 
 def test_there_must_be_a_component_around() -> None:
-    text = "groups: {g: {components: {a: {parameters: {side: {from: self.side}}}}}}"
+    text = "groups: {g: {components: {a: {functionality: F., parameters: {side: {from: self.side}}}}}}"
     wrong = [finding.message for finding in pipeline.check_text(text) if finding.rule == "unknown-reference"]
     assert wrong == ["`self.side` names a parameter of the component around `g.a`, but there is none"]
