@@ -39,17 +39,13 @@ class OpenShells:
         carried: dict[str, tuple[str, ...]] = {}
         for shell in self._outline.shells.values():
             for kind, port_id in self._list_ports(shell):
-                behind = tuple(self._readers.get(port_id, ())) if kind == "input" else tuple(self._list_given(port_id))
+                behind = (
+                    tuple(self._readers.get(port_id, ()))
+                    if kind == "input"
+                    else tuple(source.target.id for source in self._sources.list_sources((kind, port_id)))
+                )
                 carried[f"{kind} {port_id}"] = behind
         return carried
-
-    def _list_given(self, output_id: str) -> Iterator[str]:
-        """Yield the outputs that an output gives on; where it passes an input on, those that feed that from outside."""
-        for source in self._sources.list_sources(("output", output_id)):
-            if source.target.kind == "input":
-                yield from self._sources.outputs_behind(source.target, "")
-            else:
-                yield source.target.id
 
     def _list_ports(self, shell: ComponentShell) -> Iterator[PortKey]:
         yield from (("input", f"{shell.id}.{name}") for name in self._outline.inputs[shell.id])
