@@ -9,6 +9,7 @@ import pytest
 
 from archgen.analyses.size_counts import measure_size
 from archgen.compose.project_expansion import expand_project
+from archgen.link import mapping_values
 from archgen.pipeline import CheckedProject, check_project
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
 from archgen.syntax.yaml_writer import write_yaml
@@ -84,9 +85,9 @@ def test_the_same_written_out_by_hand_is_more_than_twice_as_long(checked: Checke
 def write_out(checked: CheckedProject) -> dict[str, Any]:
     """Return a project without component types: every instance has all that its type has."""
     expansion = expand_project(checked.merged_table)
-    data = read_data(expansion.root)
+    data = read_mapping(expansion.root)
     del data["component_types"], data["sources"]
-    bodies = {shell.id: read_data(shell.entry.value) for shell in expansion.shells.values()}
+    bodies = {shell.id: read_mapping(mapping_values.get_body(shell.entry)) for shell in expansion.shells.values()}
     for group_id, group in data["groups"].items():
         leaves = group.pop("components")
         bodies |= {f"{group_id}.{path}": body for path, body in leaves.items()}
@@ -99,8 +100,13 @@ def write_out(checked: CheckedProject) -> dict[str, Any]:
     return data
 
 
-def read_data(node: YamlNode) -> Any:
+def read_mapping(mapping: MappingNode) -> dict[str, Any]:
+    """Return what a mapping of the tree holds."""
+    return {entry.key: read_value(entry.value) for entry in mapping}
+
+
+def read_value(node: YamlNode) -> object:
     """Return what a node of the tree holds."""
     if isinstance(node, MappingNode):
-        return {entry.key: read_data(entry.value) for entry in node}
-    return [read_data(item) for item in node.items] if isinstance(node, SequenceNode) else node.value
+        return read_mapping(node)
+    return [read_value(item) for item in node.items] if isinstance(node, SequenceNode) else node.value
