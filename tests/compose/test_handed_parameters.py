@@ -67,3 +67,22 @@ def test_there_must_be_a_component_around() -> None:
     text = "groups: {g: {components: {a: {functionality: F., parameters: {side: {from: self.side}}}}}}"
     wrong = [finding.message for finding in pipeline.check_text(text) if finding.rule == "unknown-reference"]
     assert wrong == ["`self.side` names a parameter of the component around `g.a`, but there is none"]
+
+
+def test_the_node_and_the_ports_of_an_instance_are_named_by_its_parameters(tmp_path: Path) -> None:
+    architecture = read_architecture(
+        tmp_path,
+        "component_types:\n"
+        "  eye:\n"
+        "    parameters: {side: {type: string}, rate: {type: float, unit: Hz, range: [1, 9], value: 2}}\n"
+        '    outputs: {image: {type: T, frame: "$(self.side)_eye"}}\n'
+        "    components: {lens: {functionality: F., parameters: {rate: {from: self.rate}}}}\n"
+        '    node: {whole: true, package: e, namespace: "/$(self.side)", publishes: {image: "$(self.side)_image"}}\n'
+        '    frames: {"$(self.side)_eye": body}\n'
+        "groups: {g: {components: {left: {is: eye, parameters: {side: left}}}}}\n"
+        "frames: {body: {}}\n",
+    )
+    assert architecture.shells["g.left"].outputs["image"].frame == "left_eye"
+    assert [(node.namespace, node.uses[0].topics) for node in architecture.nodes.values()] == [("/left", ("left_image",))]
+    rate = architecture.components["g.left.lens"].parameters["rate"]
+    assert (rate.value, rate.unit, rate.range) == (2, "Hz", (1, 9))
