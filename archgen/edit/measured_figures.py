@@ -160,10 +160,17 @@ class FigureSorter:
         if node.written and len(node.implements) <= 1:
             return ("nodes", node.id, "timing")
         sharing_nodes = [other for other in self._architecture.nodes.values() if component in other.implements]
-        if component is None or len(sharing_nodes) > 1:
+        if component is None or len(sharing_nodes) > 1 or self._find_reference(component):
             return None
-        group, _, own_id = component.rpartition(".")
-        return ("groups", group, "components", own_id, "timing")
+        # Of a component inside of others the whole path is one key: that changes this one, and never its type.
+        group, _, inner_path = component.partition(".")
+        return ("groups", group, "components", inner_path, "timing")
+
+    def _find_reference(self, component_id: str | None) -> str | None:
+        """Return the component that is exactly its type (`same_as`), of a component and those around it."""
+        component = self._architecture.components.get(component_id or "")
+        around = (component, *self._architecture.list_around(component)) if component else ()
+        return next((each.id for each in around if each.is_reference), None)
 
     def _find_body(self, path: ElementPath) -> _TimingData:
         body: _TimingData = self._data
