@@ -25,7 +25,7 @@ def _observe(element: str, **figures: Fraction | int) -> Observation:
 
 def _sort(folder: Path, data: dict[str, Any], *observations: Observation) -> FigureSorter:
     (folder / "archgen.yaml").write_text(OPEN, encoding="utf-8")
-    sorter = FigureSorter(pipeline.check_project(folder).architecture, data)
+    sorter = FigureSorter(pipeline.check_project(folder), data)
     for times in collect_times(observations):
         list(sorter.add_times(times))
     return sorter
