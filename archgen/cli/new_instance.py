@@ -43,7 +43,7 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
     if base is not None:
         _find_type_body(checked_project, base, name, is_base=True)
     body = element_adding.drop_missing(
-        **{"is": base}, title=title or title_from_id(name), owner=owner, generic=generic or None
+        **{"is": base}, title=title or title_from_id(name), owner=owner, generic=tuple(dict.fromkeys(generic)) or None
     )
     # An empty key would take away what the type that it is made from has.
     open_keys = {"functionality": functionality, "inputs": None, "outputs": None}
@@ -100,7 +100,7 @@ def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
         dry_run=dry_run,
     )
     if input_hints and not dry_run:
-        click.echo(f"say what feeds {join_words([f'`{port}`' for port in input_hints])}, where nothing does yet.")
+        click.echo(f"Say what feeds {join_words([f'`{port}`' for port in input_hints])}, where nothing does yet.")
 
 
 def _find_type_body(

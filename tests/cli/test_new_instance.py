@@ -83,7 +83,7 @@ def test_the_inputs_to_feed_are_said_in_braces_too(run: Run, tmp_path: Path) -> 
     (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
     ran = run("new", "instance", "body.b", "motor", "-C", tmp_path / "robot.yaml")
     assert (tmp_path / "robot.yaml").read_text(encoding="utf-8") == f"{text}      b: {{is: motor, title: B}}\n"
-    assert "say what feeds `target`, where nothing does yet." in ran.out
+    assert "Say what feeds `target`, where nothing does yet." in ran.out
 
 
 def test_an_instance_of_a_generic_type_has_the_types_that_it_names(run: Run, robot: Path) -> None:
