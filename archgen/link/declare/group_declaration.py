@@ -18,7 +18,7 @@ from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
 from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import PortEdge
+from archgen.model.architecture import PortEdge, list_leaf_ports
 from archgen.model.component import (
     Component,
     ComponentRole,
@@ -53,8 +53,7 @@ class DeclaredGroups(NamedTuple):
 
     def list_leaf_ports(self, kind: str, port_id: str) -> tuple[str, ...]:
         """Return the ports of leaves that carry a port: itself, or those behind that of a composed component."""
-        behind = self.shell_ports.get(f"{kind} {port_id}", ())
-        return tuple(leaf for each in behind for leaf in self.list_leaf_ports(kind, each)) or (port_id,)
+        return tuple(list_leaf_ports(self.shells, self.shell_ports, kind, port_id)) or (port_id,)
 
 
 def declare_groups(
