@@ -86,3 +86,9 @@ def test_the_node_and_the_ports_of_an_instance_are_named_by_its_parameters(tmp_p
     assert [(node.namespace, node.uses[0].topics) for node in architecture.nodes.values()] == [("/left", ("left_image",))]
     rate = architecture.components["g.left.lens"].parameters["rate"]
     assert (rate.value, rate.unit, rate.range) == (2, "Hz", (1, 9))
+
+
+def test_a_wrong_value_that_is_handed_in_is_told_where_it_is_written() -> None:
+    text = TEXT.replace("value: 0.5, unit: m/s}", "value: 0.5, range: [0, 1]}").replace("speed: 0.2", "speed: 2")
+    wrong = [finding for finding in pipeline.check_text(text) if finding.rule == "wrong-parameter"]
+    assert [(finding.span.line, finding.element) for finding in wrong] == [(18, "g.right")]
