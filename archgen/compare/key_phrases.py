@@ -31,6 +31,8 @@ _PARTS_OF: Mapping[str, frozenset[str]] = {
     "operations": frozenset({"title", "request", "response", "call", "visibility", "description"}),
 }
 """Sections whose keys may be parts of what they name, behind a colon."""
+_PARTS_OF_TYPES = {"inputs": "input", "outputs": "output", "components": "component", "node": "node"}
+"""What sentences call the parts of a component type, by the section."""
 _ACCEPTED_PREFIX = "review.accepted."
 _TIMING_SECTIONS = {"calls": "calls of", "uses": "use of"}
 """What sentences call the keys below a key of `timing`, by that key."""
@@ -58,7 +60,7 @@ def describe_key_change(change: Change) -> str:
         # What is called a topic in the files is the name of a service or action here.
         noun = "name"
     else:
-        noun = spec.noun or _key_noun(key)
+        noun = _part_noun(change.element_kind, key) or spec.noun or _key_noun(key)
     if isinstance(before, list) or isinstance(after, list):
         fields_phrase = _fields_phrase(before, after) if (change.element_kind, key) == ("message", "fields") else ""
         return subject + (fields_phrase or _list_phrase(noun, spec.list_verbs, before, after))
@@ -67,7 +69,25 @@ def describe_key_change(change: Change) -> str:
 
 def name_key(kind: str, key: str) -> str:
     """Return what sentences call a key of a kind of element."""
-    return find_key(kind, key).noun or _key_noun(key)
+    return _part_noun(kind, key) or find_key(kind, key).noun or _key_noun(key)
+
+
+def _part_noun(kind: str, key: str) -> str:
+    """Return what sentences call what a component type says of a part of it, empty for any other key."""
+    section, _, path = key.partition(".")
+    part_kind = _PARTS_OF_TYPES.get(section) if kind == "component_type" and path else None
+    if part_kind is None:
+        return ""
+    if part_kind == "node":
+        return f"{name_key('node', path)} of the node"
+    part, _, part_key = path.partition(":")
+    return f"{name_key(_inner_kind(part_kind, part_key), part_key or 'type')} of the {part_kind} `{shorten_text(part)}`"
+
+
+def _inner_kind(part_kind: str, part_key: str) -> str:
+    """Return the kind whose words a key takes: a part of a part is named as a type's own part is."""
+    is_nested = part_kind == "component" and part_key.partition(".")[0] in _PARTS_OF_TYPES
+    return "component_type" if is_nested else part_kind
 
 
 def _has_verb_form(key: str, before: object, after: object) -> bool:

@@ -197,25 +197,6 @@ COMPOSED = KindSpec(
     parent=lambda shell, context: ("group", context.matched_ids.common_id("group", shell.group)),
     owner=read_owner,
 )
-COMPONENT_TYPE = KindSpec(
-    "component_type",
-    "Component types",
-    (
-        TITLE,
-        prose_key("functionality"),
-        DESCRIPTION,
-        KeySpec("owner", effect=Effect.SYSTEM, verb="belongs to"),
-        KeySpec("is", lambda each, _: each.base, Effect.SYSTEM, verb="is made from"),
-        KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
-        KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
-        KeySpec("inputs.", lambda each, _: {name: kind or "?" for name, kind in each.inputs.items()}, Effect.SYSTEM),
-        KeySpec("outputs.", lambda each, _: {name: kind or "?" for name, kind in each.outputs.items()}, Effect.SYSTEM),
-        KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
-    ),
-    Effect.SYSTEM,
-    elements=lambda version: version.architecture.component_types,
-    word="component type",
-)
 COMPONENT = KindSpec(
     "component",
     None,
@@ -347,4 +328,4 @@ INPUT = KindSpec(
 )
 # Which outputs an input reads: compared by `connection_maps`, since it has no keys.
 CONNECTION = KindSpec("connection", None)
-FUNCTIONAL_KINDS = (COMPONENT_TYPE, GROUP, COMPOSED, COMPONENT, OUTPUT, INPUT, CONNECTION)
+FUNCTIONAL_KINDS = (GROUP, COMPOSED, COMPONENT, OUTPUT, INPUT, CONNECTION)
