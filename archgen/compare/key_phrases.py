@@ -49,6 +49,9 @@ def describe_key_change(change: Change) -> str:
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         values = [f"{_spell_out(name)} {format_value(before[name])} → {format_value(after[name])}" for name in before]
         return f"{subject}: {spec.noun} {join_words(values)}"
+    if change.element_kind == "component_type" and _is_port_key(key) and None in {before, after}:
+        port = f"the {_PARTS_OF_TYPES[key.partition('.')[0]]} `{shorten_text(key.partition('.')[2])}`"
+        return f"{subject} {'now has' if before is None else 'no longer has'} {port}"
     if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):
         phrase = _count_lines(before, after) if key == "text" else _rewrite_phrase(before, after)
         return f"the {_spell_out(key)} of {subject} {phrase}"
@@ -82,6 +85,11 @@ def _part_noun(kind: str, key: str) -> str:
         return f"{name_key('node', path)} of the node"
     part, _, part_key = path.partition(":")
     return f"{name_key(_inner_kind(part_kind, part_key), part_key or 'type')} of the {part_kind} `{shorten_text(part)}`"
+
+
+def _is_port_key(key: str) -> bool:
+    section, _, name = key.partition(".")
+    return section in {"inputs", "outputs"} and bool(name) and ":" not in name
 
 
 def _inner_kind(part_kind: str, part_key: str) -> str:

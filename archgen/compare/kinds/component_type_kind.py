@@ -21,8 +21,10 @@ PART_MARK = ":"
 """Stands in a key between a part of a type and what is said of it."""
 _INSTANCE_KEYS = frozenset({"owner", "co_owners", "layout", "urls", "inputs", "outputs", "mapped"})
 """Keys that belong to each instance, or to elements of their own."""
-_TYPE_KEYS = frozenset({"title", "functionality", "description", "is", *_INSTANCE_KEYS})
-"""Keys of which a type has its own."""
+OWN_KEYS = frozenset({"title", "is", *_INSTANCE_KEYS})
+"""Keys that neither an instance has from its type, nor a type from what it is made from."""
+_WRITTEN_KEYS = frozenset({"functionality", "description"})
+"""Keys that are read off the type itself."""
 _NODE_KEYS = frozenset({"kind", "package", "executable", "plugin", "parameters."})
 """Keys of a node that a type says; the others depend on the instance."""
 _PART_KEYS = tuple(key for key in COMPONENT.keys if key.name not in _INSTANCE_KEYS)
@@ -109,7 +111,7 @@ COMPONENT_TYPE = KindSpec(
         *(
             replace(key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER)
             for key in COMPONENT.keys
-            if key.name not in _TYPE_KEYS
+            if key.name not in OWN_KEYS | _WRITTEN_KEYS
         ),
     ),
     Effect.SYSTEM,
