@@ -21,6 +21,7 @@ MATCHING_ORDER = (
     *(
         "partner",
         "group",
+        "composed",
         "component",
         "output",
         "input",

@@ -150,6 +150,10 @@ def _mark_neighbours(relations: ElementRelations, component: Component) -> froze
     return relations.common_ids("component", _components_of([*sources, *readers]))
 
 
+def _names_of(component_ids: Sequence[str]) -> list[str]:
+    return [component_id.rpartition(".")[2] for component_id in component_ids]
+
+
 def _components_of(ports: Sequence[str]) -> list[str]:
     return [port.rpartition(".")[0] for port in ports]
 
@@ -191,6 +195,19 @@ COMPOSED = KindSpec(
     ),
     Effect.SYSTEM,
     elements=lambda version: version.architecture.shells,
+    features=(
+        FeatureSpec("name", 2, lambda _, shell: letter_pairs(shell.name)),
+        FeatureSpec(
+            "title",
+            2,
+            lambda _, shell: word_set(shell.title),
+            lambda shell: shell.title in {title_from_id(shell.name), shell.name},
+        ),
+        # What it holds and gives on. Instances of one type are alike in this: of these the name decides.
+        FeatureSpec("components", 6, lambda _, shell: frozenset(_names_of(shell.children))),
+        FeatureSpec("ports", 2, _mark_ports),
+        text_feature(3, "functionality", "description"),
+    ),
     word="composed component",
     has_path_id=True,
     parent_kind="group",
