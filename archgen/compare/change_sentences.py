@@ -55,7 +55,7 @@ def _describe_place(old_parent: str, new_parent: str) -> str:
 
 def _describe_following_names(change: Change, versions: VersionPair) -> str:
     """Describe which topics, services and actions get another name because nobody named them."""
-    if change.element_kind not in {"group", "component", "output"}:
+    if change.element_kind not in {"group", "composed", "component", "output"}:
         return ""
     inner_outputs = {
         port
