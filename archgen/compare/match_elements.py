@@ -113,10 +113,10 @@ class _Matcher:
         for old_id, component in old_leaves.items():
             new_place = self.matched_ids.common_id("group", component.group) + old_id.removeprefix(component.group)
             if new_place in new_shells and new_place not in new_leaves:
-                self._pair_only_one(kind, [(old_id, each) for each in _list_alike(component, new_place, new_leaves)])
+                self._pair_only_one(kind, [(old_id, each) for each in _list_alike(component, new_shells[new_place], new_leaves)])
         for new_id, component in new_leaves.items():
             if new_id in old_shells and new_id not in old_leaves:
-                self._pair_only_one(kind, [(each, new_id) for each in _list_alike(component, new_id, old_leaves)])
+                self._pair_only_one(kind, [(each, new_id) for each in _list_alike(component, old_shells[new_id], old_leaves)])
 
     def _pair_only_one(self, kind: KindSpec, pairs: Sequence[tuple[str, str]]) -> None:
         if len(pairs) == 1 and not self._is_settled(kind, *pairs[0]):
@@ -150,12 +150,10 @@ class _Matcher:
         return self.matched_ids.find_new_id(kind.parent_kind, element_id.rpartition(".")[0])
 
 
-def _list_alike(component: Component, shell_id: str, leaves: Mapping[str, Component]) -> list[str]:
+def _list_alike(component: Component, shell: Component, leaves: Mapping[str, Component]) -> list[str]:
     """Return the leaves directly inside of a composed component that have the ports of a component."""
     ports = _list_port_types(component)
-    return [
-        leaf_id for leaf_id, leaf in leaves.items() if leaf.parent == shell_id and _list_port_types(leaf) == ports
-    ]
+    return [each for each in shell.children if each in leaves and _list_port_types(leaves[each]) == ports]
 
 
 def _list_port_types(component: Component) -> set[tuple[str, str, str | None]]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 from archgen.compare.change_sentences import describe_change
 from archgen.compare.comparison import Change, Comparison
-from archgen.compare.kinds.component_type_kind import PART_MARK
 from archgen.compare.partner_titles import name_partner
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.type_origins import OriginFinder, TypeKey
@@ -43,7 +42,7 @@ def find_type_edits(comparison: Comparison, changes: Sequence[Change]) -> Iterat
     for change in changes:
         origin = finder.find_origin(change)
         if origin:
-            followers[_find_main_key(origin, finder)].append(change)
+            followers[origin].append(change)
     if not followers:
         return
     own_changes = {
@@ -51,10 +50,6 @@ def find_type_edits(comparison: Comparison, changes: Sequence[Change]) -> Iterat
         for change in changes
         if change.element_kind == "component_type" and change.kind == "changed" and change.key
     }
-    for type_key in own_changes:
-        main_key = _find_main_key(type_key, finder)
-        if main_key != type_key and main_key in own_changes:
-            followers[main_key].append(own_changes[type_key])
     followed = {id(change) for members in followers.values() for change in members}
     edits: dict[tuple[str, tuple[str, ...]], TypeEdit] = {}
     for type_key, members in sorted(followers.items()):
@@ -67,17 +62,6 @@ def find_type_edits(comparison: Comparison, changes: Sequence[Change]) -> Iterat
         edit.texts.append((own_change or _make_change(type_key, finder, comparison.versions)).text)
         edit.changes += [*([own_change] if own_change else []), *members]
     yield from (_tell_instances(edit, comparison) for edit in edits.values())
-
-
-def _find_main_key(type_key: TypeKey, finder: OriginFinder) -> TypeKey:
-    """Return the key of a port that came or went for what else is said of it, else the key itself."""
-    section, _, path = type_key.key.partition(".")
-    port, mark, _ = path.partition(PART_MARK)
-    main_key = TypeKey(type_key.component_type, f"{section}.{port}")
-    if section in {"inputs", "outputs"} and mark:
-        difference = finder.find_difference(main_key)
-        return main_key if difference and None in difference else type_key
-    return type_key
 
 
 def _make_change(type_key: TypeKey, finder: OriginFinder, versions: VersionPair) -> Change:

@@ -22,7 +22,7 @@ DataPath = tuple[str | int, ...]
 _BARE_KEYS = frozenset(
     {
         *("archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core", "measured"),
-        *("reentrant", "large_paper", "static"),
+        *("reentrant", "large_paper", "static", "abstract", "whole"),
     },
 )
 """Keys whose values are numbers or booleans; everything else outside of parameters is text."""

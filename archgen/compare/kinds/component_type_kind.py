@@ -99,7 +99,7 @@ COMPONENT_TYPE = KindSpec(
         prose_key("functionality"),
         DESCRIPTION,
         KeySpec("owner", effect=Effect.SYSTEM, verb="belongs to"),
-        KeySpec("is", lambda each, _: each.base, Effect.SYSTEM, verb="is made from"),
+        KeySpec("is", lambda each, _: each.base, Effect.SYSTEM, verb="is made from", noun="base"),
         KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
         KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
         KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),

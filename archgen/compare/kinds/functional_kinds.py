@@ -177,7 +177,7 @@ def _read_component_type(component: Component, _context: ReadContext) -> str | N
     return f"same as {component.component_type}" if component.is_reference else component.component_type
 
 
-_IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from")
+_IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from", noun="component type")
 COMPOSED = KindSpec(
     "composed",
     None,
