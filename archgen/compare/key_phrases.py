@@ -49,14 +49,15 @@ def describe_key_change(change: Change) -> str:
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         values = [f"{_spell_out(name)} {format_value(before[name])} → {format_value(after[name])}" for name in before]
         return f"{subject}: {spec.noun} {join_words(values)}"
-    if change.element_kind == "component_type" and _is_port_key(key) and None in {before, after}:
-        port = f"the {_PARTS_OF_TYPES[key.partition('.')[0]]} `{shorten_text(key.partition('.')[2])}`"
-        return f"{subject} {'now has' if before is None else 'no longer has'} {port}"
     if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):
         phrase = _count_lines(before, after) if key == "text" else _rewrite_phrase(before, after)
         return f"the {_spell_out(key)} of {subject} {phrase}"
-    if change.element_kind in {"input", "output"} and key in {"type", "optional"}:
-        return f"{subject} {_port_phrase(change, spec.verb)}"
+    if (
+        port_phrase := _name_new_port(change)
+        if change.element_kind == "component_type"
+        else _port_phrase(change, spec.verb)
+    ):
+        return f"{subject} {port_phrase}"
     if spec.verb and _has_verb_form(key, before, after):
         return f"{subject} {_verb_phrase(spec.verb, before, after)}"
     if key == "topic" and (".serves." in change.element_id or ".calls." in change.element_id):
@@ -87,9 +88,13 @@ def _part_noun(kind: str, key: str) -> str:
     return f"{name_key(_inner_kind(part_kind, part_key), part_key or 'type')} of the {part_kind} `{shorten_text(part)}`"
 
 
-def _is_port_key(key: str) -> bool:
-    section, _, name = key.partition(".")
-    return section in {"inputs", "outputs"} and bool(name) and ":" not in name
+def _name_new_port(change: Change) -> str:
+    """Return that a component type has a port now, or no longer; empty for any other key."""
+    section, _, name = (change.key or "").partition(".")
+    if section not in {"inputs", "outputs"} or not name or ":" in name or None not in {change.before, change.after}:
+        return ""
+    verb = "now has" if change.before is None else "no longer has"
+    return f"{verb} the {_PARTS_OF_TYPES[section]} `{shorten_text(name)}`"
 
 
 def _inner_kind(part_kind: str, part_key: str) -> str:
@@ -109,6 +114,9 @@ def _verb_phrase(verb: str, before: object, after: object) -> str:
 
 
 def _port_phrase(change: Change, verb: str) -> str:
+    """Return what a port carries, or whether it may stay without a source; empty for any other key."""
+    if change.element_kind not in {"input", "output"} or change.key not in {"type", "optional"}:
+        return ""
     if change.key == "optional":
         return "is optional now" if change.after else "is no longer optional"
     return f"now {verb} {_instead_phrase(change.before, change.after, 'nothing named')}"

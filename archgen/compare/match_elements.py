@@ -113,10 +113,14 @@ class _Matcher:
         for old_id, component in old_leaves.items():
             new_place = self.matched_ids.common_id("group", component.group) + old_id.removeprefix(component.group)
             if new_place in new_shells and new_place not in new_leaves:
-                self._pair_only_one(kind, [(old_id, each) for each in _list_alike(component, new_shells[new_place], new_leaves)])
+                self._pair_only_one(
+                    kind, [(old_id, each) for each in _list_alike(component, new_shells[new_place], new_leaves)]
+                )
         for new_id, component in new_leaves.items():
             if new_id in old_shells and new_id not in old_leaves:
-                self._pair_only_one(kind, [(each, new_id) for each in _list_alike(component, old_shells[new_id], old_leaves)])
+                self._pair_only_one(
+                    kind, [(each, new_id) for each in _list_alike(component, old_shells[new_id], old_leaves)]
+                )
 
     def _pair_only_one(self, kind: KindSpec, pairs: Sequence[tuple[str, str]]) -> None:
         if len(pairs) == 1 and not self._is_settled(kind, *pairs[0]):

@@ -67,9 +67,7 @@ def find_type_edits(comparison: Comparison, changes: Sequence[Change]) -> Iterat
 def _make_change(type_key: TypeKey, finder: OriginFinder, versions: VersionPair) -> Change:
     """Return the change of a type where only what follows it was selected."""
     before, after = finder.find_difference(type_key) or (None, None)
-    change = Change(
-        "changed", "component_type", type_key.component_type, key=type_key.key, before=before, after=after
-    )
+    change = Change("changed", "component_type", type_key.component_type, key=type_key.key, before=before, after=after)
     return replace(change, text=describe_change(change, versions))
 
 

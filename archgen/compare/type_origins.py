@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare.comparison import Change, Comparison
-from archgen.compare.kinds.component_type_kind import PART_MARK, OWN_KEYS
+from archgen.compare.kinds.component_type_kind import OWN_KEYS, PART_MARK
 from archgen.compare.normal_values import to_plain_data
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
@@ -32,9 +32,7 @@ class OriginFinder:
         self._comparison = comparison
         self._base_chains: dict[str, tuple[str, ...]] = {}
         self._differences: dict[TypeKey, tuple[object, object] | None] = {}
-        self._has_types = any(
-            version.architecture.component_types for version in (comparison.before, comparison.after)
-        )
+        self._has_types = any(version.architecture.component_types for version in (comparison.before, comparison.after))
 
     def find_origin(self, change: Change) -> TypeKey | None:
         """Return the key of a component type that a change of an instance, or of a type made from it, follows."""

@@ -30,8 +30,10 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     """
     if not architecture.component_types:
         return TypePatterns()
-    type_bodies = expand_project(merged_table).type_bodies
-    expansion = expand_project(_write_patterns(merged_table, type_bodies))
+    outer_entries = {name: entry for name, entry in merged_table.entries.items() if name in _OUTER_SECTIONS}
+    # Without the groups: their instances may be thousands.
+    type_bodies = expand_project(MappingNode(outer_entries, NO_SPAN)).type_bodies
+    expansion = expand_project(_write_patterns(outer_entries, type_bodies))
     patterns = _link_expansion(expansion, architecture)
     components = {**patterns.components, **patterns.shells}
     return TypePatterns(
@@ -40,14 +42,12 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     )
 
 
-def _write_patterns(merged_table: MappingNode, type_bodies: Mapping[str, MappingNode]) -> MappingNode:
+def _write_patterns(outer_entries: Mapping[str, MappingEntry], type_bodies: Mapping[str, MappingNode]) -> MappingNode:
     """Return a project of one group, which has a component for each type."""
     components = {
-        name: MappingEntry(name, merged_table.entries["component_types"].key_span, body)
-        for name, body in type_bodies.items()
+        name: MappingEntry(name, outer_entries["component_types"].key_span, body) for name, body in type_bodies.items()
     }
     groups = _nest_mapping(_nest_mapping(MappingNode(components, NO_SPAN), "components"), _GROUP)
-    outer_entries = {name: entry for name, entry in merged_table.entries.items() if name in _OUTER_SECTIONS}
     return MappingNode({**outer_entries, **_nest_mapping(groups, "groups").entries}, NO_SPAN)
 
 

@@ -44,7 +44,7 @@ def _read_pattern(key: KeySpec) -> Callable[[ComponentType, ReadContext], object
 
 
 def _list_port_values(
-    component: Component, ports: Iterable[Input | Output], keys: tuple[KeySpec, ...], context: ReadContext
+    ports: Iterable[Input | Output], keys: tuple[KeySpec, ...], context: ReadContext
 ) -> Iterator[tuple[str, object]]:
     for port in ports:
         values = drop_unset_values(key_values(keys, port, context))
@@ -59,7 +59,7 @@ def _read_ports(side: str, keys: tuple[KeySpec, ...]) -> Callable[[ComponentType
         pattern = context.version.type_patterns.components.get(component_type.id)
         if pattern is None:
             return {name: kind or "?" for name, kind in getattr(component_type, side).items()}
-        return dict(_list_port_values(pattern, getattr(pattern, side).values(), keys, context))
+        return dict(_list_port_values(getattr(pattern, side).values(), keys, context))
 
     return read
 
@@ -75,7 +75,7 @@ def _read_parts(component_type: ComponentType, context: ReadContext) -> Mapping[
             ("inputs", pattern.inputs.values(), INPUT.keys),
             ("outputs", pattern.outputs.values(), OUTPUT.keys),
         ):
-            for key, value in _list_port_values(pattern, ports, keys, context):
+            for key, value in _list_port_values(ports, keys, context):
                 own_values[f"{side}.{key}"] = value
         values |= {f"{path}{PART_MARK}{key}": value for key, value in own_values.items()}
     return values
