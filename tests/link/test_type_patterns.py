@@ -44,7 +44,7 @@ def test_an_abstract_type_and_one_in_a_circle_have_patterns(tmp_path: Path) -> N
     text = "component_types:\n  a: {abstract: true, tags: [t]}\n  b: {components: {c: {is: b}}}\n  d: {is: d}\n"
     patterns = link_patterns(tmp_path, text + "groups: {g: {components: {x: {outputs: {o: T}}}}}\n")
     assert patterns.components["a"].tags == ("t",)
-    assert [path for path, _ in patterns.list_parts("b")] == ["c"]
+    assert [path for path, _ in patterns.list_parts("b")] == ["c", "c.c"]
 
 
 def test_a_project_without_types_has_none(tmp_path: Path) -> None:
