@@ -82,7 +82,9 @@ def unfed_output(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     for shell in architecture.shells.values():
         for port in shell.outputs.values():
-            if not architecture.shell_ports[f"output {port.id}"] and port.id not in architecture.suspected_ids:
+            # What only passes on what comes back to itself has nothing behind it either.
+            is_unfed = architecture.leaf_ports_of("output", port.id) == (port.id,)
+            if is_unfed and port.id not in architecture.suspected_ids:
                 yield Diagnostic(
                     "unfed-output",
                     f"nothing inside of `{shell.id}` feeds its output `{port.name}`",

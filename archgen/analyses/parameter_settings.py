@@ -144,9 +144,14 @@ def wrong_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
         nodes:
           planner: {implements: planner, parameters: {max_speed: 1}}
     """
-    for component in architecture.components.values():
+    # Composed components first: a value that they hand in is one slip, however many take it.
+    reported_values: set[Span] = set()
+    for component in architecture.list_described_components():
         for parameter in component.parameters.values():
-            yield from _judge_value(parameter, parameter.value, parameter.value_at, component.id)
+            if parameter.handed_from is None or parameter.value_at not in reported_values:
+                for finding in _judge_value(parameter, parameter.value, parameter.value_at, component.id):
+                    reported_values.add(parameter.value_at)
+                    yield finding
     # What every node is given is one slip, whoever declares it.
     seen_places: set[tuple[str, Span]] = set()
     ros_1 = is_ros_1(architecture.distro)

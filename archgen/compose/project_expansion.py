@@ -21,6 +21,8 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 MAX_ELEMENTS = 100_000
 """So many components a project may have when everything is written out: ten times the largest that people describe."""
+MAX_DEPTH = 60
+"""So deep components may stand inside of one another, written or made from types."""
 _COMPOSING_KEYS = frozenset({"is", "same_as", "components", "node", "containers", "from", "autoconnect"})
 """Keys of a component that make it more than a leaf with ports."""
 
@@ -181,6 +183,9 @@ class _ProjectExpander:
         return expansion
 
     def _make_expansion(self, body: MappingNode, component_id: str) -> _Expansion:
+        if component_id.count(".") > MAX_DEPTH:
+            self._report_depth(body, component_id)
+            return _Expansion(body, _drop_components(body), None, {}, 1)
         origin, full_body = self._lay_over_type(body, component_id)
         if origin:
             if origin.expression.name in self._open_types:
@@ -219,6 +224,13 @@ class _ProjectExpander:
             body = MappingNode({e.key: e for e in body if e.key not in _list_changed_keys(changes, body)}, body.span)
         full_body = self._overlay.lay_over_instance(type_body, body, component_id)
         return InstanceOrigin(expression, key == "same_as", reference.span), full_body
+
+    def _report_depth(self, body: MappingNode, component_id: str) -> None:
+        message = f"components stand more than {MAX_DEPTH} deep inside of one another"
+        help_line = "what is inside of this one is left out"
+        self._diagnostics.append(
+            Diagnostic("too-large", message, body.span, help=help_line, element=".".join(component_id.split(".")[:3]))
+        )
 
     def _report_circle(self, name: str) -> None:
         if name not in self._circular_types:

@@ -12,6 +12,8 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
+MAX_BASES = 60
+"""So many types a type may be made from, one of the other."""
 _TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
@@ -94,6 +96,12 @@ class TypeTable:
         base_reference = own_body.get("is")
         own_body.entries.pop("is", None)
         if not isinstance(base_reference, ScalarNode):
+            return own_body
+        if len(self._open_names) > MAX_BASES:
+            message = f"this type is made from a type that is made from a type, more than {MAX_BASES} times"
+            self.diagnostics.append(
+                Diagnostic("too-large", message, base_reference.span, help="name a type further up", element=entry.key)
+            )
             return own_body
         self._open_names.append(expression.name)
         base = self.find_type(base_reference, expression.name, is_base=True)

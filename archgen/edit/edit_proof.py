@@ -16,11 +16,12 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit.new_element import NewElement
 from archgen.model.architecture import Architecture
+from archgen.model.node import Node
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import LoadedProject, load_from_files
 from archgen.syntax import yaml_parser
 from archgen.syntax.overlaid_files import OverlaidFiles
-from archgen.syntax.yaml_tree import node_to_data
+from archgen.syntax.yaml_tree import MappingNode, node_to_data
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +30,8 @@ class EditConsequences:
 
     errors: tuple[Diagnostic, ...]
     changed_elements: tuple[str, ...]
+    renamed_nodes: tuple[tuple[str, str], ...] = ()
+    """Nodes that components bring along, by old and new id: the old one is no longer unique."""
 
 
 def adds_only_element(old_text: str, new_text: str, path: tuple[str, ...], element: NewElement) -> bool:
@@ -74,9 +77,9 @@ def find_consequences(checked_project: CheckedProject, file: str, text: str, ele
     # Changes the project that was passed in: errors about the new text are shown with lines of the new text.
     checked_project.sources.add_text(file, text)  # what is quoted of it now
     errors = list_new_errors(checked_project, judged)
-    return EditConsequences(
-        tuple(errors), tuple(_changed_elements(checked_project.architecture, judged.architecture, element_id))
-    )
+    renamed_nodes = dict(_list_renamed_nodes(checked_project, judged))
+    changed_elements = _changed_elements(checked_project, judged, element_id, renamed_nodes)
+    return EditConsequences(tuple(errors), tuple(changed_elements), tuple(renamed_nodes.items()))
 
 
 def list_new_errors(old: CheckedProject, new: CheckedProject) -> Iterator[Diagnostic]:
@@ -99,19 +102,47 @@ def first_file_of(checked_project: CheckedProject) -> str:
     return checked_project.sources.file_names()[0]
 
 
-def _changed_elements(old: Architecture, new: Architecture, element_id: str) -> Iterator[str]:
+def list_written_nodes(checked_project: CheckedProject) -> list[Node]:
+    """Return the nodes that stand below `nodes`: others follow from what components say of theirs, and have no file."""
+    section = checked_project.merged_table.get("nodes")
+    written_ids = section.entries.keys() if isinstance(section, MappingNode) else frozenset()
+    return [node for node in checked_project.architecture.nodes.values() if node.id in written_ids]
+
+
+def _list_renamed_nodes(old: CheckedProject, new: CheckedProject) -> Iterator[tuple[str, str]]:
+    """Yield nodes that components bring along and that have another id now: a second instance needs longer ones."""
+    kept_ids = {node.id for node in (*list_written_nodes(old), *list_written_nodes(new))}
+    new_ids = {node.implements: node.id for node in new.architecture.nodes.values() if node.id not in kept_ids}
+    for node in old.architecture.nodes.values():
+        if node.written and node.id not in kept_ids and new_ids.get(node.implements, node.id) != node.id:
+            yield node.id, new_ids[node.implements]
+
+
+def _changed_elements(
+    old_project: CheckedProject, new_project: CheckedProject, element_id: str, renamed_nodes: Mapping[str, str]
+) -> Iterator[str]:
     """Yield the elements that differ from before, whatever their kind; edges show where references lead."""
+    old, new = old_project.architecture, new_project.architecture
     # No rename is looked for: what is called otherwise now is another element, and its references are lost.
     matched_ids = MatchedIds()
     for name in old.components:
         if name in new.components:
             # So that a component's second node does not move its timing to the node in one version only.
             matched_ids.add_pair("component", name, name)
+    for old_id, new_id in renamed_nodes.items():
+        matched_ids.add_pair("node", old_id, new_id)
     elements_before, elements_after = list_elements(ArchitectureVersion(old), ArchitectureVersion(new), matched_ids)
-    sharing_nodes = _find_sharing_nodes(new, element_id)
+    new_nodes = {node.id: node for node in list_written_nodes(new_project)}
+    new_node = (
+        None if element_id in {node.id for node in list_written_nodes(old_project)} else new_nodes.get(element_id)
+    )
+    sharing_nodes = _find_sharing_nodes(new, new_node)
+    expected_changes = {*_list_replaced_nodes(old, new, new_node), *_list_made_elements(old, new, element_id)}
     for key, element in elements_before.items():
-        old_values = _own_values(element, sharing_nodes)
-        new_values = _own_values(elements_after[key], sharing_nodes) if key in elements_after else None
+        if (element.kind, element.own_id) in expected_changes:
+            continue
+        old_values = _own_values(element, sharing_nodes, renamed_nodes)
+        new_values = _own_values(elements_after[key], sharing_nodes, renamed_nodes) if key in elements_after else None
         # A port of which a node says nothing but that it carries it is not written.
         if old_values != new_values and (old_values or element.kind != "port"):
             yield element.own_id
@@ -119,29 +150,55 @@ def _changed_elements(old: Architecture, new: Architecture, element_id: str) -> 
         {(edge.output, edge.input) for edge in old.edges},
         {(edge.output, edge.input) for edge in new.edges},
     )
+    is_component = element_id in new.components or element_id in new.shells
     yield from sorted(
         f"{output} -> {input_port}"
         for output, input_port in old_edges ^ new_edges
-        if element_id not in {output.rpartition(".")[0], input_port.rpartition(".")[0]}
+        if not (is_component and any(port.startswith(f"{element_id}.") for port in (output, input_port)))
     )
 
 
-def _find_sharing_nodes(architecture: Architecture, element_id: str) -> frozenset[str]:
+def _find_sharing_nodes(architecture: Architecture, new_node: Node | None) -> frozenset[str]:
     """Return the nodes that share a component with a new node."""
-    new_node = architecture.nodes.get(element_id)
     components = set(new_node.implements) if new_node else set()
     return frozenset(node.id for node in architecture.nodes.values() if not components.isdisjoint(node.implements))
 
 
-def _own_values(element: ComparedElement, sharing_nodes: frozenset[str]) -> Mapping[str, object]:
+def _list_replaced_nodes(old: Architecture, new: Architecture, new_node: Node | None) -> Iterator[tuple[str, str]]:
+    """Yield the nodes that components brought along which a new node implements: it stands in their place."""
+    if new_node is None:
+        return
+    components = set(new_node.implements)
+    for node in old.nodes.values():
+        is_gone = node.id not in new.nodes or node.id == new_node.id
+        if is_gone and node.implements and components.issuperset(node.implements):
+            yield "node", node.id
+
+
+def _list_made_elements(old: Architecture, new: Architecture, element_id: str) -> Iterator[tuple[str, str]]:
+    """Yield what was written as made from a new component type before there was one."""
+    if element_id not in new.component_types or element_id in old.component_types:
+        return
+    for component in (*new.components.values(), *new.shells.values()):
+        if element_id in new.list_types_of(component):
+            yield "composed" if component.id in new.shells else "component", component.id
+
+
+def _own_values(
+    element: ComparedElement, sharing_nodes: frozenset[str], renamed_nodes: Mapping[str, str]
+) -> Mapping[str, object]:
     """Return an element's values without what a node beside it is there to change.
 
     That a component is mapped, which ports a node carries without writing them, and what timing a node has from a
-    component that no other node implements: whoever adds a second node to a component asks for that.
+    component that no other node implements: whoever adds a second node to a component asks for that. Nor the name and
+    title that a node has of its id where that has to be longer now.
     """
+    is_renamed = element.kind == "node" and element.id in renamed_nodes.values()
     is_sharing = element.kind == "node" and element.id in sharing_nodes
     return {
         key: value
         for key, value in element.values.items()
-        if key not in {MAPPED_KEY, "carried"} and not (is_sharing and key.startswith("timing."))
+        if key not in {MAPPED_KEY, "carried"}
+        and not (is_sharing and key.startswith("timing."))
+        and not (is_renamed and key in {"name", "title"})
     }

@@ -32,12 +32,16 @@ class EditRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class FileEdit:
-    """One file's bytes before (None: the file is new) and after, and the line at which the element begins."""
+    """One file's bytes before (None: the file is new) and after, and the line at which the element begins.
+
+    `renamed_nodes` are the old and new ids of nodes that components bring along, where the edit makes them longer.
+    """
 
     file: str
     old_content: bytes | None
     new_content: bytes
     line: int
+    renamed_nodes: tuple[tuple[str, str], ...] = ()
 
     def unified_diff(self) -> Iterator[str]:
         """Yield a unified diff, as git writes it."""
@@ -67,7 +71,8 @@ def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: New
         )
         message = f"it would change what other elements mean: {names}"
         raise EditRefusedError(message, "Choose another id, or write out the references that now lead to it.")
-    return FileEdit(place.file, old_content, new_text.encode(), _first_changed_line(text, new_text))
+    line = _first_changed_line(text, new_text)
+    return FileEdit(place.file, old_content, new_text.encode(), line, consequences.renamed_nodes)
 
 
 _BYTE_ORDER_MARK = codecs.BOM_UTF8.decode()

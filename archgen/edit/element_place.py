@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from archgen.edit.edit_proof import first_file_of
+from archgen.edit.edit_proof import first_file_of, list_written_nodes
 from archgen.pipeline import CheckedProject
 from archgen.project import PROJECT_FILE
 from archgen.syntax import file_patterns
@@ -52,22 +52,45 @@ def place_for_partner(checked_project: CheckedProject) -> ElementPlace:
     return ElementPlace(file, ("partners",))
 
 
-def place_for_component(checked_project: CheckedProject, group: str) -> ElementPlace:
-    """Return the file that says most about the group."""
-    path = ("groups", group, "components")
+def place_for_type(checked_project: CheckedProject) -> ElementPlace:
+    """Return the file with most of the component types."""
+    type_counts = {file: len(table.entries) for file, table in _section_tables(checked_project, "component_types")}
+    file = max(type_counts, key=lambda name: type_counts[name], default=first_file_of(checked_project))
+    return ElementPlace(file, ("component_types",))
+
+
+def place_for_component(checked_project: CheckedProject, holder_id: str) -> ElementPlace:
+    """Return the file that says most about what takes the component: a group, or a composed component."""
+    group, *inner_ids = holder_id.split(".")
     weights = {
-        file: _weigh_slice(table.get(group))
+        file: [_weigh_slice(part) for part in _follow_ids(table, (group, *inner_ids))]
         for file, table in _section_tables(checked_project, "groups")
         if group in table.entries
     }
-    return ElementPlace(max(weights, key=lambda file: weights[file]), path)
+    # Of files that say the same of the innermost, the one that says most about what is around it.
+    file = max(weights, key=lambda name: (len(weights[name]), weights[name][::-1]))
+    return ElementPlace(
+        file, ("groups", group, "components", *(key for id_ in inner_ids for key in (id_, "components")))
+    )
+
+
+def _follow_ids(groups: MappingNode, ids: tuple[str, ...]) -> Iterator[YamlNode]:
+    """Yield a group and the components inside of one another that a file writes, from the outside to the inside."""
+    table: YamlNode | None = groups
+    for element_id in ids:
+        part = table.get(element_id) if isinstance(table, MappingNode) else None
+        if part is None:
+            return
+        yield part
+        table = part.get("components") if isinstance(part, MappingNode) else None
 
 
 def place_for_node(checked_project: CheckedProject, components: tuple[str, ...]) -> ElementPlace:
     """Return the file with nodes of the same components, else of the same groups, else with most nodes."""
     groups = {component.partition(".")[0] for component in components}
-    written_nodes = [node for node in checked_project.architecture.nodes.values() if node.written]
-    same_components = Counter(node.at.file for node in written_nodes if set(node.implements) & set(components))
+    leaves = {leaf for component in components for leaf in checked_project.architecture.leaves_of(component)}
+    written_nodes = list_written_nodes(checked_project)
+    same_components = Counter(node.at.file for node in written_nodes if leaves.intersection(node.implements))
     same_groups = Counter(
         node.at.file for node in written_nodes if groups & {name.partition(".")[0] for name in node.implements}
     )
@@ -90,12 +113,12 @@ def _section_tables(checked_project: CheckedProject, section: str) -> Iterator[t
             yield document.file, table
 
 
-def _weigh_slice(group: YamlNode | None) -> tuple[int, int]:
-    """Return how much a slice says about a group: first its components' keys, then its own."""
-    components = group.get("components") if isinstance(group, MappingNode) else None
+def _weigh_slice(holder: YamlNode) -> tuple[int, int]:
+    """Return how much a file says about a group or component: first its components' keys, then its own."""
+    components = holder.get("components") if isinstance(holder, MappingNode) else None
     component_values = [entry.value for entry in components] if isinstance(components, MappingNode) else []
     keys = sum(len(value.entries) for value in component_values if isinstance(value, MappingNode))
-    return len(component_values) + keys, len(group.entries) if isinstance(group, MappingNode) else 0
+    return len(component_values) + keys, len(holder.entries) if isinstance(holder, MappingNode) else 0
 
 
 def _is_source(checked_project: CheckedProject, file: str) -> bool:

@@ -8,11 +8,13 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.edit.edit_proof import list_written_nodes
 from archgen.frozen import dataclass
-from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.quantity import parse_quantity
+from archgen.pipeline import CheckedProject
+from archgen.syntax.yaml_tree import MappingNode
 from archgen.syntax.yaml_writer import ElementPath, format_flow
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system.activity_builder import name_activities
@@ -72,14 +74,17 @@ def collect_times(observations: Iterable[Observation]) -> tuple[AdoptedTimes, ..
 class FigureSorter:
     """Puts measured times into the data of a slice, and lists those that have no place in it."""
 
-    def __init__(self, architecture: Architecture, data: dict[str, Any]) -> None:
-        """Take the architecture without the slice, and the slice's data, which are added to."""
+    def __init__(self, checked_project: CheckedProject, data: dict[str, Any]) -> None:
+        """Take the project without the slice, and the slice's data, which are added to."""
         self.left_out: list[LeftOutFigure] = []
         self.storing_paths: list[ElementPath] = []
         """Where times of storing callbacks stand in the slice."""
-        self._architecture = architecture
+        self._architecture = checked_project.architecture
         self._data = data
-        self._owners = {name: key for key, name in name_activities(architecture).items()}
+        self._owners = {name: key for key, name in name_activities(self._architecture).items()}
+        self._written_nodes = {node.id for node in list_written_nodes(checked_project)}
+        types = checked_project.merged_table.get("component_types")
+        self._type_spans = [entry.value.span for entry in types] if isinstance(types, MappingNode) else []
 
     def add_times(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
         """Add what was measured of one element; yield the element and the key of what is in the slice now."""
@@ -157,13 +162,20 @@ class FigureSorter:
 
     def _find_timing_path(self, node: Node, component: str | None) -> ElementPath | None:
         """Return where an activity's timing is written: at its node, or at the component of which it has several."""
-        if node.written and len(node.implements) <= 1:
+        if node.id in self._written_nodes and len(node.implements) <= 1:
             return ("nodes", node.id, "timing")
         sharing_nodes = [other for other in self._architecture.nodes.values() if component in other.implements]
-        if component is None or len(sharing_nodes) > 1:
+        if component is None or len(sharing_nodes) > 1 or self._find_reference(component):
             return None
-        group, _, own_id = component.rpartition(".")
-        return ("groups", group, "components", own_id, "timing")
+        # Of a component inside of others the whole path is one key: that changes this one, and never its type.
+        group, _, inner_path = component.partition(".")
+        return ("groups", group, "components", inner_path, "timing")
+
+    def _find_reference(self, component_id: str | None) -> str | None:
+        """Return the component that is exactly its type (`same_as`), of a component and those around it."""
+        component = self._architecture.components.get(component_id or "")
+        around = (component, *self._architecture.list_around(component)) if component else ()
+        return next((each.id for each in around if each.is_reference), None)
 
     def _find_body(self, path: ElementPath) -> _TimingData:
         body: _TimingData = self._data
@@ -176,12 +188,33 @@ class FigureSorter:
 
     def _leave_out(self, times: AdoptedTimes, key: str, why: str, value: object, at: Span) -> None:
         text = value if isinstance(value, str) else format_flow(value)
-        self.left_out.append(LeftOutFigure(times.element, key, why, f"{key}: {text}", at))
+        proposal = f"{key}: {text}"
+        component = times.element.rpartition(".")[0] if times.is_input else self._owners[times.element][1]
+        if component and any(_contains_span(type_span, at) for type_span in self._type_spans):
+            why = f"{why}, in its type"
+            if not self._find_reference(component):
+                # Written into the type it would hold for all instances.
+                group, _, inner_path = component.partition(".")
+                proposal = f"{inner_path}: {{timing: {{{proposal}}}}}, below `components` of `{group}`"
+        self.left_out.append(LeftOutFigure(times.element, key, why, proposal, at))
 
     def _leave_out_homeless(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
-        why = "the language has no place for it: it is no input of a component, or several nodes share the component"
+        component = times.element.rpartition(".")[0] if times.is_input else self._owners[times.element][1]
+        reference = self._find_reference(component)
+        why = (
+            f"`{reference}` is exactly its type (`same_as`): only the type can have it"
+            if reference
+            else "the language has no place for it: it is no input of a component, or several nodes share the component"
+        )
         self._leave_out(times, "wcet", why, _write_up(times.longest or Fraction(0)), NO_SPAN)
         return iter(())
+
+
+def _contains_span(outer: Span, inner: Span) -> bool:
+    return outer.file == inner.file and (outer.line, outer.column) <= (inner.line, inner.column) < (
+        outer.end_line,
+        outer.end_column,
+    )
 
 
 def _write_longest(times: AdoptedTimes) -> dict[str, object]:

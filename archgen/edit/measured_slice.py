@@ -54,7 +54,7 @@ def make_measured_slice(
         return MeasuredSlice(file, "", (), (), tuple(errors), is_read=True)
     # Without the slice itself, so that what it holds already is not taken for written elsewhere.
     others = pipeline.judge_project(load_with_text(checked_project, file, "{}\n")) if old_text else checked_project
-    sorter = FigureSorter(others.architecture, data)
+    sorter = FigureSorter(others, data)
     adopted = [entry for times in collect_times(observations) for entry in sorter.add_times(times)]
     text = MEASURED_HEADER + write_yaml(data, dict.fromkeys(sorter.storing_paths, "measured, not proven"))
     loaded_project = load_with_text(checked_project, file, text)

@@ -32,7 +32,7 @@ class NewElement:
 
     def without_empty_keys(self) -> NewElement:
         """Return the element as it is written in braces, where a key cannot be left empty."""
-        return NewElement(self.id, {key: value for key, value in self.body.items() if value is not None})
+        return NewElement(self.id, _drop_empty_keys(self.body))
 
     def to_block(self, indent: str, unit: int) -> list[str]:
         """Write the element as the lines of a block."""
@@ -41,6 +41,14 @@ class NewElement:
     def to_flow(self) -> str:
         """Write the element in braces, on one line."""
         return f"{format_scalar(self.id)}: {format_flow(self.body)}"
+
+
+def _drop_empty_keys(body: Mapping[str, ElementValue]) -> dict[str, ElementValue]:
+    """Return a body without keys that are empty, and without mappings in which all are."""
+    compact_body = {
+        key: _drop_empty_keys(value) if isinstance(value, Mapping) else value for key, value in body.items()
+    }
+    return {key: value for key, value in compact_body.items() if value is not None and value != {}}
 
 
 def _parsed_value(value: ElementValue) -> object:

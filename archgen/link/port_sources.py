@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
@@ -47,7 +47,6 @@ class PortSources:
         self._references = SourceReferences(outline, resolver)
         self._sources: dict[PortKey, tuple[PortSource, ...]] = {}
         self._outputs_behind: dict[PortKey, tuple[str, ...]] = {}
-        self._open_ports: set[PortKey] = set()
         self.ambiguous_ports: set[PortKey] = set()
         """Ports that could be joined in several ways, which is reported: no rule calls them unfed besides."""
 
@@ -140,32 +139,84 @@ class PortSources:
         component_id = output_id.rpartition(".")[0]
         if component_id not in self.outline.shells:
             return (output_id,)
-        return self._follow_port(("output", output_id)) or (output_id,)
+        return self._follow_port(("output", output_id)) or self._stand_for_itself(output_id)
+
+    def _stand_for_itself(self, output_id: str) -> tuple[str, ...]:
+        """Return an output of a composed component that nothing inside feeds; nothing for one that only passes on."""
+        return () if self.list_sources(("output", output_id)) else (output_id,)
 
     def _follow_port(self, port: PortKey) -> tuple[str, ...]:
-        if port not in self._outputs_behind:
-            if port in self._open_ports:  # what comes back to itself brings nothing new
-                return ()
-            self._open_ports.add(port)
-            component_id = port[1].rpartition(".")[0]
+        """Return the outputs of leaves that feed a port.
+
+        Without recursion: what only passes on may stand behind one another in thousands. What comes back to itself
+        brings nothing new.
+        """
+        pending = [port]
+        open_ports: set[PortKey] = set()
+        while pending:
+            current = pending[-1]
+            if current in self._outputs_behind:
+                pending.pop()
+                continue
+            asked_ports = [] if current in open_ports else self._list_asked_ports(current)
+            unknown_ports = [
+                each for each in asked_ports if each not in self._outputs_behind and each not in open_ports
+            ]
+            open_ports.add(current)
+            if unknown_ports:
+                pending += unknown_ports
+                continue
+            component_id = current[1].rpartition(".")[0]
             behind = (
                 output
-                for source in self.list_sources(port)
-                for output in self.outputs_behind(source.target, component_id)
+                for source in self.list_sources(current)
+                for output in self._find_known_outputs(source.target, component_id)
             )
-            self._outputs_behind[port] = tuple(dict.fromkeys(behind))
-            self._open_ports.remove(port)
+            self._outputs_behind[current] = tuple(dict.fromkeys(behind))
+            pending.pop()
         return self._outputs_behind[port]
+
+    def _list_asked_ports(self, port: PortKey) -> list[PortKey]:
+        """Return the ports of composed components that what feeds a port stands behind."""
+        asked_ports: list[PortKey] = []
+        for source in self.list_sources(port):
+            target = source.target
+            if target.kind == "input":
+                asked_ports.append(("input", target.id))
+            elif target.kind == "output":
+                asked_ports += [("output", target.id)] if self._is_shell_port(target.id) else []
+            else:
+                asked_ports += [
+                    ("output", output.id)
+                    for member in self._list_members(target)
+                    if member in self.outline.shells
+                    for output in self.outline.outputs[member].values()
+                ]
+        return asked_ports
+
+    def _find_known_outputs(self, target: ElementRef, reader_id: str) -> tuple[str, ...]:
+        """Return what stands behind something of which all asked ports are known, or come back to themselves."""
+        if target.kind == "input":
+            return self._outputs_behind.get(("input", target.id), ())
+        if target.kind == "output" and self._is_shell_port(target.id):
+            return self._outputs_behind.get(("output", target.id), ()) or self._stand_for_itself(target.id)
+        return self.outputs_behind(target, reader_id)
+
+    def _is_shell_port(self, port_id: str) -> bool:
+        return port_id.rpartition(".")[0] in self.outline.shells
 
     def find_outside(self, port: PortKey) -> MappingNode:
         """Return what an input of a composed component around says of where it comes from outside of the system."""
-        entry = self.find_entry(port)
-        body = mapping_values.get_body(entry) if entry else mapping_values.EMPTY_MAPPING
-        if body.get("external") is not None:
-            return body
-        for source in self.list_sources(port):
-            if source.target.kind == "input":
-                return self.find_outside(("input", source.target.id))
+        seen_ports: set[PortKey] = set()
+        current: PortKey | None = port
+        while current is not None and current not in seen_ports:
+            seen_ports.add(current)
+            entry = self.find_entry(current)
+            body = mapping_values.get_body(entry) if entry else mapping_values.EMPTY_MAPPING
+            if body.get("external") is not None:
+                return body
+            targets = (source.target for source in self.list_sources(current))
+            current = next((("input", target.id) for target in targets if target.kind == "input"), None)
         return mapping_values.EMPTY_MAPPING
 
     def list_given_outside(self) -> dict[str, MappingNode]:
@@ -195,7 +246,3 @@ class PortSources:
         prefix = f"{target.id}."
         members = [*self.outline.components, *self.outline.shells]
         return [each for each in members if each.startswith(prefix) and each not in parents]
-
-    def label_output(self, output_id: str) -> Label:
-        """Return where an output is written, as a label of a finding."""
-        return Label(self._resolver.spans["output"][output_id], f"`{output_id}`")

@@ -50,11 +50,12 @@ def link_project(  # noqa: PLR0913 - all by name
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
-    declared_groups = declare_groups(element_outline, resolver, types)
+    parameters = HandedParameters(element_outline, diagnostics)
+    declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
     containers = deployment_declaration.declare_containers(root, resolver)
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, diagnostics)
+    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, parameters)
     implements = implemented.implements
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
@@ -65,9 +66,7 @@ def link_project(  # noqa: PLR0913 - all by name
     links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
-    frames = declare_frames(
-        root, {**element_outline.components, **shell_entries}, resolver, HandedParameters(element_outline, diagnostics)
-    )
+    frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference

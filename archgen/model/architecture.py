@@ -130,6 +130,24 @@ class ProjectInfo:
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
+def list_leaf_ports(
+    shells: Mapping[str, Component], shell_ports: Mapping[str, tuple[str, ...]], kind: str, port_id: str
+) -> Iterator[str]:
+    """Yield the ports of leaves behind an `input` or `output` of a composed component; nothing for that of a leaf.
+
+    What passes an input on has behind it what feeds that from outside.
+    """
+    component_id = port_id.rpartition(".")[0]
+    for each in shell_ports.get(f"{kind} {port_id}", ()):
+        inner_id, _, name = each.rpartition(".")
+        if kind == "output" and inner_id == component_id:
+            yield from (
+                output for connection in shells[component_id].inputs[name].connections for output in connection.outputs
+            )
+        else:
+            yield from tuple(list_leaf_ports(shells, shell_ports, kind, each)) or (each,)
+
+
 @dataclass(frozen=True, slots=True)
 class Architecture:
     """An architecture with all references resolved. Mappings keep the order of first appearance.
@@ -219,8 +237,7 @@ class Architecture:
 
     def leaf_ports_of(self, kind: str, port_id: str) -> tuple[str, ...]:
         """Return the ports of leaves behind an `input` or `output`; that of a leaf stands for itself."""
-        behind = self.shell_ports.get(f"{kind} {port_id}", ())
-        return tuple(leaf for each in behind for leaf in self.leaf_ports_of(kind, each)) or (port_id,)
+        return tuple(list_leaf_ports(self.shells, self.shell_ports, kind, port_id)) or (port_id,)
 
     def list_types_of(self, component: Component) -> Iterator[str]:
         """Yield the component types that a component is an instance of, or is part of: with bindings, without, and bases."""

@@ -101,7 +101,7 @@ nodes:
     assert _rules(text) == [
         "7 unknown-key",
         "9 unknown-key",
-        "11 wrong-type",
+        "11 wrong-value",
         "12 unfed-input",
         "14 unknown-key",
     ]

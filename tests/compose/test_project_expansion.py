@@ -206,9 +206,15 @@ def test_names_of_today_stay_where_a_component_stands_deeper(tmp_path: Path) -> 
 
 def test_the_example_has_nothing_to_complain_about() -> None:
     checked = pipeline.check_project(ROOT / "examples" / "cleaning_robot")
-    assert [str(finding) for finding in checked.findings if finding.severity != "note"] == []
+    assert [str(finding) for finding in checked.findings] == []
     size = measure_size(checked.architecture)
     assert (size.components, size.composed, size.component_types, size.connections) == (14, 3, 6, 18)
+    motors = [checked.architecture.components[f"cleaning.{arm}.elbow"] for arm in ("left_arm", "right_arm")]
+    assert [{name: each.value for name, each in motor.parameters.items()} for motor in motors] == [
+        {"joint": "left_elbow", "max_speed": 1.0},
+        {"joint": "right_elbow", "max_speed": 0.7},
+    ]
+    assert set(checked.architecture.frames) == {"map", "base_link", "left_hand", "right_hand"}
 
 
 def test_a_packed_project_of_types_is_the_project(tmp_path: Path, short: Architecture) -> None:

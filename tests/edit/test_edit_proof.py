@@ -72,3 +72,53 @@ def test_a_new_element_that_catches_a_reference_changes_what_refers_to_it(tmp_pa
 )
 def test_a_new_element_alone_changes_nothing_else(tmp_path: Path, old: str, new: str, element_id: str) -> None:
     assert changed_elements(tmp_path, old, new, element_id) == ()
+
+
+ARMS = """\
+archgen: 1
+component_types:
+  motor: {inputs: {target: Goal}, outputs: {state: Goal}, node: {package: arms, executable: motor}}
+  arm: {inputs: {target: Goal}, components: {elbow: {is: motor, inputs: {target: self.target}}}}
+groups:
+  body:
+    autoconnect: ports
+    components:
+      left: {is: arm}
+      planner: {outputs: {target: Goal}}
+"""
+
+
+def _judge_arms(folder: Path, added: str, element_id: str) -> edit_proof.EditConsequences:
+    """Return what follows from text at the end of ARMS."""
+    (folder / "archgen.yaml").write_text(ARMS, encoding="utf-8")
+    checked_project = pipeline.check_project(folder / "archgen.yaml")
+    return edit_proof.find_consequences(checked_project, "archgen.yaml", ARMS + added, element_id)
+
+
+def test_what_flows_into_the_leaves_of_a_new_instance_changes_nothing_else(tmp_path: Path) -> None:
+    consequences = _judge_arms(tmp_path, "      right: {is: arm}\n", "body.right")
+    assert (consequences.errors, consequences.changed_elements) == ((), ())
+    assert consequences.renamed_nodes == (("elbow", "left_elbow"),)
+
+
+def test_a_second_source_that_takes_a_connection_away_changes_it(tmp_path: Path) -> None:
+    consequences = _judge_arms(tmp_path, "      second: {outputs: {target: Goal}}\n", "body.second")
+    assert consequences.changed_elements == ("body.planner.target -> body.left.elbow.target",)
+
+
+def test_a_new_node_takes_the_place_of_the_one_that_its_component_brings_and_no_other(tmp_path: Path) -> None:
+    own = _judge_arms(tmp_path, "nodes: {elbow: {implements: left.elbow, status: planned}}\n", "elbow")
+    assert (own.errors, own.changed_elements) == ((), ())
+    other = _judge_arms(tmp_path, "nodes: {elbow: {implements: planner, status: planned}}\n", "elbow")
+    assert other.changed_elements == ("elbow",)
+
+
+def test_a_type_called_like_a_node_hides_no_change_of_the_node(tmp_path: Path) -> None:
+    text = "nodes: {left_elbow: {implements: left.elbow}}\n"
+    (tmp_path / "archgen.yaml").write_text(ARMS + text, encoding="utf-8")
+    checked_project = pipeline.check_project(tmp_path / "archgen.yaml")
+    changed = (ARMS + text.replace("left.elbow}", "left.elbow, host: pc}")).replace(
+        "groups:", "  left_elbow: {title: x}\nhosts: {pc: {}}\ngroups:", 1
+    )
+    consequences = edit_proof.find_consequences(checked_project, "archgen.yaml", changed, "left_elbow")
+    assert consequences.changed_elements == ("left_elbow",)

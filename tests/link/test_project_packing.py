@@ -62,7 +62,9 @@ def packed_again(checked: CheckedProject, folder: Path) -> CheckedProject:
     return again
 
 
-@pytest.mark.parametrize("example", ["examples/first_robot", "example_ramcip"])
+@pytest.mark.parametrize(
+    "example", ["examples/first_robot", "examples/cleaning_robot", "examples/arm", "example_ramcip"]
+)
 def test_the_examples(example: str, tmp_path: Path) -> None:
     packed_again(check_project(ROOT / example), tmp_path)
 

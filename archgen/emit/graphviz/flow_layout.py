@@ -102,6 +102,7 @@ def _lay_out_framed_boxes(
     """Lay out the boxes of a frame and their neighbours, the former in these rows."""
     graph, names = styled_graph.graph, styled_graph.dot_names
     statements = [styled_graph.write_node(item) for item in graph.boxes] + _rank_statements(styled_graph)
+    statements += _hold_ports(styled_graph)
     statements += [*wrapped.write_statements(), *_join_neighbours(styled_graph, wrapped)] if wrapped else []
     statements += [
         styled_graph.write_edge(
@@ -111,6 +112,19 @@ def _lay_out_framed_boxes(
     ]
     settings = f'{_layout_settings(styled_graph, 0.16)} splines="{splines}"'
     return read_layout(styled_graph, layout_engine.lay_out_dot(write_dot(settings, statements)))
+
+
+def _hold_ports(styled_graph: StyledGraph) -> list[str]:
+    """Return invisible edges that keep the ports of a frame beside its boxes: neighbours stand farther out.
+
+    Only pictures of composed components have ports; in others these edges cost three times the time.
+    """
+    names, boxes = styled_graph.dot_names, styled_graph.graph.boxes
+    inside = [names[box.id] for box in boxes if box.cluster]
+    ports = {box.side: names[box.id] for box in reversed(boxes) if box.side and box.style == "port"}
+    pairs = [(ports["left"], name) for name in inside if "left" in ports]
+    pairs += [(name, ports["right"]) for name in inside if "right" in ports]
+    return [f'{tail} -> {head} [style="invis" weight="0"];' for tail, head in pairs]
 
 
 def _join_neighbours(styled_graph: StyledGraph, wrapped: WrappedRanks) -> list[str]:

@@ -10,6 +10,7 @@ from archgen.compose.project_expansion import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.link import mapping_values
 from archgen.link.declare.group_declaration import DeclaredGroups
+from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.element_outline import ElementOutline
 from archgen.model.derived_names import derive_node_ids
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
@@ -42,14 +43,14 @@ def declare_component_nodes(
     expansion: ExpandedProject,
     written_targets: dict[str, tuple[str, ...]],
     declared_groups: DeclaredGroups,
-    diagnostics: list[Diagnostic],
+    parameters: HandedParameters,
 ) -> ImplementingNodes:
     """Return all nodes: those that are written, and those that components bring along."""
     root = expansion.root
     if expansion.is_plain:
         return ImplementingNodes(root, written_targets, {}, lambda _kind, port: (port,))
     written_nodes = mapping_values.get_mapping(root, "nodes")
-    made = ComponentNodes(outline, expansion, written_nodes, written_targets, diagnostics)
+    made = ComponentNodes(outline, expansion, written_nodes, written_targets, parameters)
     targets = {**written_targets, **made.implements}
     section = MappingEntry("nodes", written_nodes.span, MappingNode(made.entries, written_nodes.span))
     return ImplementingNodes(
@@ -73,7 +74,7 @@ class ComponentNodes:
         expansion: ExpandedProject,
         written_nodes: MappingNode,
         implements: Mapping[str, tuple[str, ...]],
-        diagnostics: list[Diagnostic],
+        parameters: HandedParameters,
     ) -> None:
         """Make them: for components that no written node implements, and under those of written nodes."""
         self.entries: dict[str, MappingEntry] = {}
@@ -82,7 +83,8 @@ class ComponentNodes:
         """Nodes of which nothing says yet what runs."""
         self._outline = outline
         self._expansion = expansion
-        self._diagnostics = diagnostics
+        self._parameters = parameters
+        self._diagnostics = parameters.diagnostics
         self._bodies: dict[str, MappingNode] = {}
         self._lay_under_written(written_nodes, implements)
         self._make_nodes(written_nodes, implements)
@@ -173,7 +175,7 @@ class ComponentNodes:
     def _find_body(self, component_id: str) -> MappingNode:
         """Return what a component's node has: its own keys over those of what is around it."""
         if component_id not in self._bodies:
-            own = self._own_node(component_id)
+            own = self._parameters.fill_in_body(self._own_node(component_id), component_id)
             parent = self._expansion.parents.get(component_id)
             around = self._find_body(parent) if parent else mapping_values.EMPTY_MAPPING
             inherited = {key: entry for key, entry in around.entries.items() if key in _INHERITED_KEYS}

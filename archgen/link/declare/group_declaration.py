@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, get_args
+from typing import NamedTuple, TypeVar, get_args
 
 from archgen.compose.project_expansion import ComponentShell
 from archgen.link import mapping_values
@@ -18,7 +18,7 @@ from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
 from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import PortEdge
+from archgen.model.architecture import PortEdge, list_leaf_ports
 from archgen.model.component import (
     Component,
     ComponentRole,
@@ -32,6 +32,7 @@ from archgen.model.component import (
 from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
+_Port = TypeVar("_Port", Input, Output)
 _ROLES = frozenset(get_args(ComponentRole))
 
 
@@ -53,12 +54,14 @@ class DeclaredGroups(NamedTuple):
 
     def list_leaf_ports(self, kind: str, port_id: str) -> tuple[str, ...]:
         """Return the ports of leaves that carry a port: itself, or those behind that of a composed component."""
-        behind = self.shell_ports.get(f"{kind} {port_id}", ())
-        return tuple(leaf for each in behind for leaf in self.list_leaf_ports(kind, each)) or (port_id,)
+        return tuple(list_leaf_ports(self.shells, self.shell_ports, kind, port_id)) or (port_id,)
 
 
 def declare_groups(
-    outline: ElementOutline, resolver: ReferenceResolver, types: Mapping[str, ConceptualType]
+    outline: ElementOutline,
+    resolver: ReferenceResolver,
+    types: Mapping[str, ConceptualType],
+    parameters: HandedParameters,
 ) -> DeclaredGroups:
     """Declare every group with its components, and wire their inputs."""
     sources = None
@@ -70,7 +73,7 @@ def declare_groups(
         outline,
         resolver,
         wiring,
-        HandedParameters(outline, resolver.diagnostics),
+        parameters,
         outside_readers=sources.list_given_outside() if sources else {},
     )
     open_shells = OpenShells(outline, sources) if sources else None
@@ -177,6 +180,12 @@ class _GroupDeclarer:
         component = self._declare_component(shell.group, shell.entry, inputs, outputs)
         return replace(component, requirements=(), requirements_known=True, performance=(), timing=None)
 
+    def _fill_in_frame(self, port: _Port) -> _Port:
+        """Return a port whose frame is named by parameters of its component: `$(self.prefix)base_link`."""
+        if port.frame is None or "$" not in port.frame:
+            return port
+        return replace(port, frame=self.parameters.fill_in_name(port.frame, port.component, port.frame_at))
+
     def _find_owners(self, component_id: str, group_id: str, entry: MappingEntry) -> tuple[str, ...]:
         """Return a component's owners: those written, else those of the component around it, else of its group."""
         if component_id not in self.owners:
@@ -210,10 +219,10 @@ class _GroupDeclarer:
             requirements=tuple(_read_requirements(body)),
             requirements_known=body.get("requirements") is not None,
             performance=tuple(_read_performance(body)),
-            inputs=inputs,
+            inputs={port_name: self._fill_in_frame(port) for port_name, port in inputs.items()},
             # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=body.get("inputs") is not None,
-            outputs=outputs,
+            outputs={port_name: self._fill_in_frame(port) for port_name, port in outputs.items()},
             outputs_known=body.get("outputs") is not None,
             parameters=self.parameters.find_parameters(component_id),
             open=mapping_values.get_texts(body, "open"),

@@ -12,6 +12,7 @@ from archgen.link import mapping_values
 from archgen.link.declare.parameter_declaration import declare_parameters, fill_in_text, hand_in_value
 from archgen.link.element_outline import ElementOutline
 from archgen.model.parameter import Parameter
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 
 class HandedParameters:
@@ -20,7 +21,7 @@ class HandedParameters:
     def __init__(self, outline: ElementOutline, diagnostics: list[Diagnostic]) -> None:
         """Take what the project declares; what the component around lacks goes to `diagnostics`."""
         self._outline = outline
-        self._diagnostics = diagnostics
+        self.diagnostics = diagnostics
         self._parameters: dict[str, dict[str, Parameter]] = {}
 
     def find_parameters(self, component_id: str) -> dict[str, Parameter]:
@@ -39,7 +40,7 @@ class HandedParameters:
         parameters = self.find_parameters(component_id)
         value, missing_names = fill_in_text(text, parameters)
         for name in missing_names:
-            self._diagnostics.append(
+            self.diagnostics.append(
                 Diagnostic(
                     "unknown-reference",
                     f"`{component_id}` has no parameter `{name}`",
@@ -49,6 +50,25 @@ class HandedParameters:
                 )
             )
         return str(value)
+
+    def fill_in_body(self, body: MappingNode, component_id: str) -> MappingNode:
+        """Return what a component says of its node with its parameters filled in; parameters of the node are data."""
+        if not any(_holds_reference(entry.value) for entry in body):
+            return body
+        return MappingNode({entry.key: self._fill_in_entry(entry, component_id) for entry in body}, body.span)
+
+    def _fill_in_entry(self, entry: MappingEntry, component_id: str) -> MappingEntry:
+        if entry.key == "parameters" or not _holds_reference(entry.value):
+            return entry
+        return MappingEntry(entry.key, entry.key_span, self._fill_in_node(entry.value, component_id))
+
+    def _fill_in_node(self, node: YamlNode, component_id: str) -> YamlNode:
+        if isinstance(node, MappingNode):
+            return self.fill_in_body(node, component_id)
+        if isinstance(node, SequenceNode):
+            return SequenceNode([self._fill_in_node(item, component_id) for item in node.items], node.span)
+        text = self.fill_in_name(node.text, component_id, node.span)
+        return node if text == node.text else ScalarNode(text, text, node.span)
 
     def _hand_in(self, component_id: str, written: Mapping[str, Parameter]) -> dict[str, Parameter]:
         parent = self._outline.expansion.parents.get(component_id) if self._outline.expansion else None
@@ -79,4 +99,13 @@ class HandedParameters:
         else:
             message = f"`{parent}` has no parameter `{name}` to hand in"
             help_line = did_you_mean(name, around) or f"declare `{name}` among the parameters of `{parent}`"
-        self._diagnostics.append(Diagnostic("unknown-reference", message, place, help=help_line, element=component_id))
+        self.diagnostics.append(Diagnostic("unknown-reference", message, place, help=help_line, element=component_id))
+
+
+def _holds_reference(node: YamlNode) -> bool:
+    """Whether a text in a tree may name a parameter."""
+    if isinstance(node, MappingNode):
+        return any(_holds_reference(entry.value) for entry in node)
+    if isinstance(node, SequenceNode):
+        return any(map(_holds_reference, node.items))
+    return "$" in node.text

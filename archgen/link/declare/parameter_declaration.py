@@ -56,15 +56,23 @@ def _declare_parameter(entry: MappingEntry, declaration: MappingNode) -> Paramet
 def hand_in_value(parameter: Parameter, outer_parameters: Mapping[str, Parameter]) -> Parameter | None:
     """Return a parameter with the value that the component around it hands in; None where that has no such parameter.
 
-    `outer_parameters` are those of the component around it. A parameter without `from` stays as it is, and so does one
-    that has a type of its own. The value keeps the place where it is written.
+    `outer_parameters` are those of the component around it. A parameter without `from` stays as it is. What
+    it says itself of its type, unit and limits stays, too. The value keeps the place where it is written.
     """
     if parameter.handed_from is None:
         return parameter
     source = outer_parameters.get(parameter.handed_from.removeprefix(_HANDED_PREFIX))
     if source is None:
         return None
-    return replace(parameter, value=source.value, value_at=source.value_at, type=parameter.type or source.type)
+    return replace(
+        parameter,
+        value=source.value,
+        value_at=source.value_at,
+        type=parameter.type or source.type,
+        unit=parameter.unit or source.unit,
+        range=parameter.range or source.range,
+        choices=parameter.choices or source.choices,
+    )
 
 
 def fill_in_text(text: str, outer_parameters: Mapping[str, Parameter]) -> tuple[object, tuple[str, ...]]:

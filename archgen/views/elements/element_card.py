@@ -190,6 +190,9 @@ def _composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         ("inputs", inputs),
         ("outputs", outputs),
         ("components", shell.children),
+        *_drop_empty_lists(
+            ("parameters", tuple(list_parameter_lines(shell))), ("operations", tuple(list_operation_lines(shell)))
+        ),
         ("findings", tuple(_format_findings(lookup, shell.id))),
     )
     return ElementCard("composed", shell.id, shell.title, shell.at, _known_facts(facts), lists)

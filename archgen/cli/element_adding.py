@@ -1,0 +1,174 @@
+"""What the verbs of `archgen new` share: their options, ids that are free, and the edit that is proven before it is written."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.diagnostics.source_span import Span
+    from archgen.edit.element_place import ElementPlace
+    from archgen.edit.new_element import NewElement
+    from archgen.model.component import Component
+    from archgen.pipeline import CheckedProject
+
+
+def add_shared_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options that all verbs share but `new partner`, and the argument ID."""
+    # click lists options in the reverse order of application: the first of these is the last in the help.
+    for option in (
+        click.option("--dry-run", is_flag=True, help="Print the difference and write nothing."),
+        shared_options.project_option,
+        click.option("--owner", metavar="PARTNER", help="The partner whose it is."),
+        click.option("--title", metavar="TEXT", help="The title.  [default: made from the ID]"),
+        click.argument("name", metavar="ID"),
+    ):
+        function = option(function)
+    return function
+
+
+def drop_missing(**keys: Any) -> dict[str, Any]:  # noqa: ANN401 - text, tuples of text, None
+    """Return the keys that have a value."""
+    return {key: value for key, value in keys.items() if value is not None}
+
+
+def require_free_id(element_id: str, kind: str, existing_spans: dict[str, Span]) -> None:
+    """Raise UsageError where a text is not a valid id, or the id is taken."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.model import element_ids
+
+    if not element_ids.is_id(element_id):
+        suggestion = element_ids.make_id(element_id, kind)
+        msg = f"'{make_visible(element_id)}' is no id: lower-case words joined by '_', at most 64 characters; write '{suggestion}'"
+        raise click.UsageError(msg)
+    if element_id in existing_spans:
+        msg = f"there is a {kind} '{element_id}' already: {make_visible(str(existing_spans[element_id]))}"
+        raise click.UsageError(msg)
+
+
+def find_group(checked_project: CheckedProject, group_id: str | None) -> str:
+    """Return a group by its id, or the only one. Raise UsageError."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    groups = checked_project.architecture.groups
+    if group_id is None and len(groups) == 1:
+        return next(iter(groups))
+    if group_id is None:
+        msg = f"say in which group with --group: {', '.join(groups)}" if groups else "no group yet: `archgen new group`"
+        raise click.UsageError(msg)
+    if group_id not in groups:
+        guess = did_you_mean(group_id, groups) or f"`archgen new group {make_visible(group_id)}` makes one"
+        msg = f"there is no group '{make_visible(group_id)}'; {guess}"
+        raise click.UsageError(msg)
+    return group_id
+
+
+def find_place_of_component(checked_project: CheckedProject, name: str, group: str | None) -> tuple[str, str]:
+    """Return what takes a new component (a group, or a composed component) and its id there. Raise UsageError."""
+    holder_id, dot, component_id = name.rpartition(".")
+    if dot and group not in {None, holder_id}:
+        msg = f"'{name}' is in the group '{holder_id}', and --group says '{group}'"
+        raise click.UsageError(msg)
+    holder_id = _find_holder(checked_project, holder_id or group)
+    architecture = checked_project.architecture
+    sibling_spans = {
+        component.id.rpartition(".")[2]: component.at
+        for component in architecture.list_described_components()
+        if (component.parent or component.group) == holder_id
+    }
+    require_free_id(component_id, "component", sibling_spans)
+    return holder_id, component_id
+
+
+def _find_holder(checked_project: CheckedProject, holder_id: str | None) -> str:
+    """Return the group, or the composed component, of this complete id. Raise UsageError."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    if holder_id is None or "." not in holder_id:
+        return find_group(checked_project, holder_id)
+    architecture = checked_project.architecture
+    holder = architecture.shells.get(holder_id) or architecture.components.get(holder_id)
+    if holder is None:
+        _find_holder(checked_project, holder_id.rpartition(".")[0])
+        guess = did_you_mean(holder_id, architecture.shells) or f"`archgen new component {make_visible(holder_id)}`"
+        msg = f"there is no component '{make_visible(holder_id)}'; {guess}"
+        raise click.UsageError(msg)
+    instance = next((each for each in (holder, *architecture.list_around(holder)) if each.component_type), None)
+    if instance is not None:
+        msg = (
+            f"'{instance.id}' is an instance of the type '{make_visible(instance.component_type or '')}', which says "
+            f"what is inside; add it to the type: {make_visible(str(_find_type_span(checked_project, instance)))}"
+        )
+        raise click.UsageError(msg)
+    if holder_id not in architecture.shells:
+        msg = f"'{holder_id}' holds no components yet; write `components:` with the first one below it: {make_visible(str(holder.at))}"
+        raise click.UsageError(msg)
+    return holder_id
+
+
+def _find_type_span(checked_project: CheckedProject, instance: Component) -> Span:
+    name = (instance.component_type or "").partition("<")[0]
+    component_type = checked_project.architecture.component_types.get(name)
+    return component_type.at if component_type else instance.at
+
+
+def explain_no_place() -> Any:  # noqa: ANN401 - a context
+    """Return a context that shows NoPlaceError as an error of the command line."""
+    # Made inside, since the exception's module is imported only where something is to be placed.
+    from contextlib import contextmanager
+
+    from archgen.edit.element_place import NoPlaceError
+
+    @contextmanager
+    def phrased() -> Any:  # noqa: ANN401 - a generator
+        try:
+            yield
+        except NoPlaceError as error:
+            raise click.ClickException(str(error)) from None
+
+    return phrased()
+
+
+def add_element(
+    checked_project: CheckedProject, place: ElementPlace, element: NewElement, full_id: str, *, dry_run: bool
+) -> None:
+    """Write an element to its place, or print the difference; refuse what is not proven."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.edit import element_edit
+    from archgen.emit import file_tree
+
+    try:
+        edit = element_edit.plan_edit(checked_project, place, element, full_id)
+    except element_edit.EditRefusedError as error:
+        _raise_refusal(checked_project, error)
+    for old_id, new_id in edit.renamed_nodes:
+        click.echo(f"the node `{old_id}` gets the id `{new_id}`, since its id follows from its component", err=True)
+    if dry_run:
+        sys.stdout.writelines(f"{make_visible(line)}\n" for line in edit.unified_diff())
+        return
+    target = (checked_project.root / edit.file).resolve()
+    with command_support.explain_write_errors():
+        # `write_file` puts a new file in place of the old one, which would lose its permissions.
+        mode = target.stat().st_mode if edit.old_content is not None else None
+        file_tree.write_file(target, edit.new_content)
+        if mode is not None:
+            target.chmod(mode)
+    command_support.print_written(checked_project.root / edit.file, f"`{full_id}` at line {edit.line}")
+    click.echo("`archgen check` says what it still lacks.")
+
+
+def _raise_refusal(checked_project: CheckedProject, error: Any) -> NoReturn:  # noqa: ANN401 - imported where it is needed
+    from archgen.diagnostics.safe_text import make_visible
+
+    if error.errors:
+        command_support.print_findings(error.errors, checked_project, sys.stderr)
+    by_hand = "".join(f"\n{make_visible(line)}" for line in error.by_hand.split("\n")) if error.by_hand else ""
+    msg = f"{make_visible(error.message)}; nothing was written{by_hand}"
+    raise click.ClickException(msg)

@@ -1,0 +1,137 @@
+"""`archgen new type` and `archgen new instance`: component types, and components that are made from them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, element_adding
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
+    from archgen.syntax.yaml_tree import MappingNode
+
+
+@click.command("type")
+@click.option("--is", "base", metavar="TYPE", help="The type that it is made from.")
+@click.option(
+    "--generic", metavar="NAME", multiple=True, help="A name that stands for a conceptual type; may be repeated."
+)
+@click.option("--functionality", metavar="TEXT", help="What it does, in a sentence or two.")
+@element_adding.add_shared_options
+def add_type(  # noqa: PLR0913, PLR0917 - one for each option
+    name: str,
+    base: str | None,
+    generic: tuple[str, ...],
+    functionality: str | None,
+    title: str | None,
+    owner: str | None,
+    project: Path | None,
+    *,
+    dry_run: bool,
+) -> None:
+    """Add a component type, in the file that holds most of them."""
+    from archgen.edit import element_place
+    from archgen.edit.new_element import NewElement
+    from archgen.model.path_resolver import title_from_id
+
+    checked_project = command_support.check_or_exit(project)
+    types = checked_project.architecture.component_types
+    element_adding.require_free_id(name, "component type", {key: value.at for key, value in types.items()})
+    if base is not None:
+        _find_type_body(checked_project, base, name, is_base=True)
+    body = element_adding.drop_missing(
+        **{"is": base}, title=title or title_from_id(name), owner=owner, generic=tuple(dict.fromkeys(generic)) or None
+    )
+    # An empty key would take away what the type that it is made from has.
+    open_keys = {"functionality": functionality, "inputs": None, "outputs": None}
+    body |= element_adding.drop_missing(functionality=functionality) if base else open_keys
+    hints = {
+        "functionality": "what it does, in a sentence or two",
+        "inputs": "id: conceptual type",
+        "outputs": "id: conceptual type",
+    }
+    element_adding.add_element(
+        checked_project,
+        element_place.place_for_type(checked_project),
+        NewElement(name, body, hints),
+        name,
+        dry_run=dry_run,
+    )
+
+
+@click.command("instance")
+@click.option("--group", "group_", metavar="GROUP", help="Its group.  [default: the only one]")
+@element_adding.add_shared_options
+@click.argument("type_text", metavar="TYPE")
+def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
+    name: str,
+    type_text: str,
+    group_: str | None,
+    title: str | None,
+    owner: str | None,
+    project: Path | None,
+    *,
+    dry_run: bool,
+) -> None:
+    """Add an instance of a component type, with its inputs to be filled. ID is GROUP.ID; TYPE is as in `filter<Pose>`."""
+    from archgen.diagnostics.common_wording import join_words
+    from archgen.edit import element_place
+    from archgen.edit.new_element import NewElement
+    from archgen.model.path_resolver import title_from_id
+
+    checked_project = command_support.check_or_exit(project)
+    holder_id, component_id = element_adding.find_place_of_component(checked_project, name, group_)
+    full_id = f"{holder_id}.{component_id}"
+    input_hints = _describe_open_inputs(_find_type_body(checked_project, type_text, full_id))
+    body = element_adding.drop_missing(
+        **{"is": type_text.strip()},
+        title=title or title_from_id(component_id),
+        owner=owner,
+        inputs=dict.fromkeys(input_hints) or None,
+    )
+    element_adding.add_element(
+        checked_project,
+        element_place.place_for_component(checked_project, holder_id),
+        NewElement(component_id, body, input_hints),
+        full_id,
+        dry_run=dry_run,
+    )
+    if input_hints and not dry_run:
+        click.echo(f"Say what feeds {join_words([f'`{port}`' for port in input_hints])}, where nothing does yet.")
+
+
+def _find_type_body(
+    checked_project: CheckedProject, type_text: str, element_id: str, *, is_base: bool = False
+) -> MappingNode:
+    """Return what a component type has, with what it is made from and generic names bound. Raise UsageError."""
+    from archgen.compose.type_table import TypeTable
+    from archgen.diagnostics.diagnostic import Diagnostic
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.source_span import NO_SPAN
+    from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+    types = checked_project.merged_table.get("component_types")
+    diagnostics: list[Diagnostic] = []
+    table = TypeTable(types.entries if isinstance(types, MappingNode) else {}, diagnostics)
+    expression = table.find_type(ScalarNode(type_text, type_text, NO_SPAN), element_id, is_base=is_base)
+    if expression is None:
+        msg = "; ".join(make_visible(text) for text in (diagnostics[0].message, diagnostics[0].help) if text)
+        raise click.UsageError(msg)
+    # A type that is made from itself has no body; the project's findings say so already.
+    return table.get_body(expression) or MappingNode({}, NO_SPAN)
+
+
+def _describe_open_inputs(type_body: MappingNode) -> dict[str, str]:
+    """Return, for each input that needs a source, what is to be written there."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.link import mapping_values
+
+    return {
+        name: f"component.output of type {make_visible(type_text)}" if type_text else "component.output"
+        for name, _, port in mapping_values.iterate_elements(type_body, "inputs")
+        if {"from", "external"}.isdisjoint(port.entries) and not mapping_values.get_flag(port, "optional")
+        for type_text in [mapping_values.get_text(port, "type")]
+    }
