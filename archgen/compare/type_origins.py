@@ -111,13 +111,22 @@ class OriginFinder:
     def _list_type_keys(self, change: Change) -> Iterator[TypeKey]:
         """Yield where a key of a type may come from: the type of the part that it is about, or what it is made from."""
         path, _, key = (change.key or "").removeprefix("components.").partition(PART_MARK)
-        patterns = self._comparison.after.type_patterns.components
-        part = patterns.get(f"{change.element_id}.{path}") if key else None
-        if part and (change.key or "").startswith("components."):
-            yield from (TypeKey(name, key) for name in self._list_types(part) if key not in OWN_KEYS)
+        if key and (change.key or "").startswith("components."):
+            yield from self._list_part_keys(change.element_id, path, key)
         own_chain = self._list_bases(change.element_id)
         if change.key not in OWN_KEYS:
             yield from (TypeKey(name, change.key or "") for name in own_chain if name != change.element_id)
+
+    def _list_part_keys(self, type_id: str, path: str, key: str) -> Iterator[TypeKey]:
+        """Yield a key of a part inside of a type at the part's own types, then at those of the parts around it."""
+        patterns, outer_path, inner_path = self._comparison.after.type_patterns.components, path, ""
+        while outer_path:
+            part = patterns.get(f"{type_id}.{outer_path}")
+            if part and (inner_path or key not in OWN_KEYS):
+                whole_key = f"components.{inner_path}{PART_MARK}{key}" if inner_path else key
+                yield from (TypeKey(name, whole_key) for name in self._list_types(part))
+            outer_path = outer_path.rpartition(".")[0]
+            inner_path = path.removeprefix(outer_path).removeprefix(".")
 
     def _list_types(self, component: Component) -> Sequence[str]:
         return self._list_bases(component.component_type) if component.component_type else ()

@@ -184,3 +184,19 @@ def test_a_thousand_instances_are_one_item(compared: Compared) -> None:
     assert list_texts(compared(text, text.replace("2 ms", "3 ms"))) == [
         "component type `motor`: worst case execution time `2 ms` → `3 ms`; in 1000 instances: `g.m0`, `g.m1` and 998 more"
     ]
+
+
+def test_what_changed_inside_of_a_nested_type_is_told_at_the_type_that_says_it(compared: Compared) -> None:
+    text = """\
+component_types:
+  motor: {outputs: {state: S}}
+  arm: {components: {m: {is: motor}, n: {timing: {wcet: 2 ms}}}}
+  robot: {components: {left: {is: arm}}}
+groups: {g: {components: {r: {is: robot}}}}
+"""
+    assert list_texts(compared(text, text.replace("2 ms", "3 ms"))) == [
+        (
+            "component type `arm`: worst case execution time of the component `n` `2 ms` → `3 ms`; in its instance "
+            "`g.r.left.n`"
+        )
+    ]
