@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
+from archgen.model.type_patterns import TypePatterns
 from archgen.timing.analysis import Analysis
 
 
@@ -36,3 +37,5 @@ class ArchitectureVersion:
     """The files that could not be read, or not as a whole."""
     waiting_rules: frozenset[str] = frozenset()
     """The rules that errors of reading and linking kept from being judged."""
+    type_patterns: TypePatterns = field(default_factory=TypePatterns)
+    """What component types say to their instances."""

@@ -36,17 +36,26 @@ def describe_rename(change: Change, versions: VersionPair) -> str:
     if change.kind == "moved":
         old_path, new_path = old_id.rpartition("."), change.element_id.rpartition(".")
         name_note = "" if old_path[2] == new_path[2] else f" and is called `{new_path[2]}` now"
-        sentence = f"{kind_word} `{old_id}` moved to the group `{new_path[0]}`{name_note}"
-    elif change.element_kind in {"component", "input", "output"}:
+        sentence = f"{kind_word} `{old_id}` moved {_describe_place(old_path[0], new_path[0])}{name_note}"
+    elif change.element_kind in {"composed", "component", "input", "output"}:
         sentence = f"{kind_word} `{old_id}` is called `{change.element_id.rpartition('.')[2]}` now"
     else:
         sentence = f"{kind_word} `{shorten_text(old_id)}` is called `{shorten_text(change.element_id)}` now"
     return sentence + note_confidence(change.confidence) + _describe_following_names(change, versions)
 
 
+def _describe_place(old_parent: str, new_parent: str) -> str:
+    """Return where a component moved to: a group or a composed component, by their ids."""
+    if "." in new_parent:
+        return f"into the composed component `{new_parent}`"
+    if old_parent.partition(".")[0] == new_parent:
+        return f"out of the composed component `{old_parent}`"
+    return f"to the group `{new_parent}`"
+
+
 def _describe_following_names(change: Change, versions: VersionPair) -> str:
     """Describe which topics, services and actions get another name because nobody named them."""
-    if change.element_kind not in {"group", "component", "output"}:
+    if change.element_kind not in {"group", "composed", "component", "output"}:
         return ""
     inner_outputs = {
         port

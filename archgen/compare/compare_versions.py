@@ -95,7 +95,8 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
 
 def _find_unnamed_outputs(architecture: Architecture) -> frozenset[str]:
     """Return the outputs of written nodes whose topic, service or action has no written name."""
-    written_nodes = {node.id for node in architecture.nodes.values() if node.written}
+    # What runs as a whole has the names of the composed component, which stay where leaves inside move.
+    written_nodes = {node.id for node in architecture.nodes.values() if node.written and not node.wholes}
     offered_endpoints = (
         endpoint
         for endpoint in architecture.endpoints

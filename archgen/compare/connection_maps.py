@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from archgen.compare.matched_ids import MatchedIds
@@ -18,6 +18,12 @@ class ConnectionMap:
 
     sources_by_input: OppositeEnds
     readers_by_output: OppositeEnds
+    made_pairs: frozenset[tuple[str, str]] = frozenset()
+    """The outputs and inputs that nobody joined: `autoconnect` did."""
+
+    def is_made(self, input_id: str, outputs: Collection[str]) -> bool:
+        """Whether an input and all of these outputs are joined by themselves."""
+        return bool(outputs) and all((output, input_id) in self.made_pairs for output in outputs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,15 +49,18 @@ def map_connections(architecture: Architecture, matched_ids: MatchedIds) -> Conn
     """Return the connections of a version. A reference to something without an output yet is kept under its own id."""
     sources: dict[str, set[str]] = defaultdict(set)
     readers: dict[str, set[str]] = defaultdict(set)
+    made_pairs = set[tuple[str, str]]()
     for connection in architecture.connections:
         reader = matched_ids.common_id("input", connection.input)
         for output in connection.outputs:
             output_id = matched_ids.common_id("output", output)
             sources[reader].add(output_id)
             readers[output_id].add(reader)
+            if connection.is_made:
+                made_pairs.add((output_id, reader))
         if not connection.outputs:
             sources[reader].add(matched_ids.common_id(connection.kind, connection.target))
-    return ConnectionMap(_freeze_ends(sources), _freeze_ends(readers))
+    return ConnectionMap(_freeze_ends(sources), _freeze_ends(readers), frozenset(made_pairs))
 
 
 def _freeze_ends(ends: Mapping[str, set[str]]) -> OppositeEnds:

@@ -14,6 +14,9 @@ def describe_connection(rewired_input: RewiredInput, versions: VersionPair) -> s
     if versions.is_removed("input", rewired_input.input_id):
         return _describe_removed_reader(rewired_input, reader, versions)
     sentence = _describe_reading(rewired_input, reader, versions)
+    # Nobody wrote it: `autoconnect` joined it.
+    if versions.connections_after.is_made(rewired_input.input_id, rewired_input.gained_sources):
+        sentence += ", joined by itself"
     unread_outputs = [
         output_id
         for output_id in sorted(rewired_input.lost_sources)
@@ -48,6 +51,8 @@ def _describe_reading(rewired_input: RewiredInput, reader: str, versions: Versio
         lost_outputs = [_old_name(name, versions) for name in sorted(rewired_input.lost_sources)]
         all_removed = all(versions.is_removed("output", name) for name in rewired_input.lost_sources)
         removal_note = f", which {'was' if len(lost_outputs) == 1 else 'were'} removed" if all_removed else ""
+        was_made = versions.connections_before.is_made(rewired_input.input_id, rewired_input.lost_sources)
+        removal_note = removal_note or (", joined by itself before" if was_made else "")
         return f"{reader} no longer reads {tick_names(lost_outputs)}{removal_note}{'' if rewired_input.sources_after else '; it has no source any more'}"
     if versions.is_added("input", rewired_input.input_id):
         return f"{reader} reads {tick_names(gained_outputs)}"

@@ -49,6 +49,8 @@ def _follows_by_kind(
                 if key in {"inputs", "outputs"}
                 else _follows_mapping(key, old_element, new_element)
             )
+        case "component_type":
+            return _came_with_part(key, old_element) != _came_with_part(key, new_element)
         case "type":
             return key.startswith("fields.") and _follows_definition(key, old_element, new_element, before, after)
         case "node":
@@ -62,6 +64,21 @@ def _follows_by_kind(
             )
     is_unnamed = new_element.kind == "project" and key in {"id", "title"} and None in {old_value, new_value}
     return is_unnamed or key == "carried" or (key == "chapters" and _only_chapters_differ(old_value, new_value))
+
+
+def _came_with_part(key: str, component_type: ComparedElement) -> bool:
+    """Whether a component type has the port, or the component inside, that a key says something of."""
+    section, _, path = key.partition(".")
+    part, mark, inner_key = path.partition(":")
+    if not mark or section not in {"inputs", "outputs", "components"}:
+        return True
+    if section != "components":
+        return f"{section}.{part}" in component_type.values
+    if f"{section}.{part}:title" not in component_type.values:
+        return False
+    port, inner_mark, _ = inner_key.partition(":")
+    is_port = inner_mark and port.partition(".")[0] in {"inputs", "outputs"}
+    return not is_port or f"{section}.{part}:{port}" in component_type.values
 
 
 def _follows_definition(

@@ -96,12 +96,22 @@ class DifferenceFinder:
     def _add_renames(self) -> None:
         for (kind, name), confidence in self.matched_ids.confidence.items():
             old_id = self.matched_ids.old_ids[kind][name]
-            is_moved = kind == "component" and self._common_group(old_id) != self.elements_after[kind, name].parent_key
+            old_parent, new_parent = self._common_parent(old_id), name.rpartition(".")[0]
+            is_nested = kind in {"component", "composed"}
+            if is_nested and (old_parent, old_id.rpartition(".")[2]) == (new_parent, name.rpartition(".")[2]):
+                continue  # its id follows that of what is around it
+            is_moved = is_nested and old_parent != new_parent
             change = Change("moved" if is_moved else "renamed", kind, name, old_id=old_id, confidence=confidence)
             self.top_changes.append(replace(change, text=change_sentences.describe_rename(change, self.versions)))
 
-    def _common_group(self, component_id: str) -> ElementKey:
-        return "group", self.matched_ids.common_id("group", component_id.partition(".")[0])
+    def _common_parent(self, component_id: str) -> str:
+        """Return the common id of the group or composed component around a component."""
+        parent = component_id.rpartition(".")[0]
+        new_shell = self.matched_ids.find_new_id("composed", parent)
+        if new_shell is not None:
+            return new_shell
+        group, dot, path = parent.partition(".")
+        return f"{self.matched_ids.common_id('group', group)}{dot}{path}"
 
     def _add_changed_keys(self, old_element: ComparedElement, new_element: ComparedElement) -> None:
         if old_element.values == new_element.values:

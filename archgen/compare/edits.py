@@ -17,6 +17,7 @@ from archgen.compare.left_out_files import find_left_out
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.reshaping import Reshaping
 from archgen.compare.sentence_words import tick_names
+from archgen.compare.type_edits import find_type_edits
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 
@@ -78,6 +79,9 @@ def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) ->
     project_id = comparison.after.architecture.project.id
     for left_out in find_left_out(comparison, left_changes):
         yield Edit("removed", "project", project_id, left_out.text, left_out.removals)
+    for type_edit in find_type_edits(comparison, left_changes):
+        members = tuple(type_edit.changes)
+        yield Edit("changed", "component_type", type_edit.component_type, type_edit.text, members)
     for reshaping in find_reshapings(comparison):
         members = tuple(change for change in left_changes if reshaping.brought_about(change))
         if members:

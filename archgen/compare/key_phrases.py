@@ -31,6 +31,8 @@ _PARTS_OF: Mapping[str, frozenset[str]] = {
     "operations": frozenset({"title", "request", "response", "call", "visibility", "description"}),
 }
 """Sections whose keys may be parts of what they name, behind a colon."""
+_PARTS_OF_TYPES = {"inputs": "input", "outputs": "output", "components": "component", "node": "node"}
+"""What sentences call the parts of a component type, by the section."""
 _ACCEPTED_PREFIX = "review.accepted."
 _TIMING_SECTIONS = {"calls": "calls of", "uses": "use of"}
 """What sentences call the keys below a key of `timing`, by that key."""
@@ -50,15 +52,19 @@ def describe_key_change(change: Change) -> str:
     if spec.is_prose and (key == "text" or not (_is_brief(before) and _is_brief(after))):
         phrase = _count_lines(before, after) if key == "text" else _rewrite_phrase(before, after)
         return f"the {_spell_out(key)} of {subject} {phrase}"
-    if change.element_kind in {"input", "output"} and key in {"type", "optional"}:
-        return f"{subject} {_port_phrase(change, spec.verb)}"
+    if (
+        port_phrase := _name_new_port(change)
+        if change.element_kind == "component_type"
+        else _port_phrase(change, spec.verb)
+    ):
+        return f"{subject} {port_phrase}"
     if spec.verb and _has_verb_form(key, before, after):
         return f"{subject} {_verb_phrase(spec.verb, before, after)}"
     if key == "topic" and (".serves." in change.element_id or ".calls." in change.element_id):
         # What is called a topic in the files is the name of a service or action here.
         noun = "name"
     else:
-        noun = spec.noun or _key_noun(key)
+        noun = _part_noun(change.element_kind, key) or spec.noun or _key_noun(key)
     if isinstance(before, list) or isinstance(after, list):
         fields_phrase = _fields_phrase(before, after) if (change.element_kind, key) == ("message", "fields") else ""
         return subject + (fields_phrase or _list_phrase(noun, spec.list_verbs, before, after))
@@ -67,7 +73,34 @@ def describe_key_change(change: Change) -> str:
 
 def name_key(kind: str, key: str) -> str:
     """Return what sentences call a key of a kind of element."""
-    return find_key(kind, key).noun or _key_noun(key)
+    return _part_noun(kind, key) or find_key(kind, key).noun or _key_noun(key)
+
+
+def _part_noun(kind: str, key: str) -> str:
+    """Return what sentences call what a component type says of a part of it, empty for any other key."""
+    section, _, path = key.partition(".")
+    part_kind = _PARTS_OF_TYPES.get(section) if kind == "component_type" and path else None
+    if part_kind is None:
+        return ""
+    if part_kind == "node":
+        return f"{name_key('node', path)} of the node"
+    part, _, part_key = path.partition(":")
+    return f"{name_key(_inner_kind(part_kind, part_key), part_key or 'type')} of the {part_kind} `{shorten_text(part)}`"
+
+
+def _name_new_port(change: Change) -> str:
+    """Return that a component type has a port now, or no longer; empty for any other key."""
+    section, _, name = (change.key or "").partition(".")
+    if section not in {"inputs", "outputs"} or not name or ":" in name or None not in {change.before, change.after}:
+        return ""
+    verb = "now has" if change.before is None else "no longer has"
+    return f"{verb} the {_PARTS_OF_TYPES[section]} `{shorten_text(name)}`"
+
+
+def _inner_kind(part_kind: str, part_key: str) -> str:
+    """Return the kind whose words a key takes: a part of a part is named as a type's own part is."""
+    is_nested = part_kind == "component" and part_key.partition(".")[0] in _PARTS_OF_TYPES
+    return "component_type" if is_nested else part_kind
 
 
 def _has_verb_form(key: str, before: object, after: object) -> bool:
@@ -81,6 +114,9 @@ def _verb_phrase(verb: str, before: object, after: object) -> str:
 
 
 def _port_phrase(change: Change, verb: str) -> str:
+    """Return what a port carries, or whether it may stay without a source; empty for any other key."""
+    if change.element_kind not in {"input", "output"} or change.key not in {"type", "optional"}:
+        return ""
     if change.key == "optional":
         return "is optional now" if change.after else "is no longer optional"
     return f"now {verb} {_instead_phrase(change.before, change.after, 'nothing named')}"

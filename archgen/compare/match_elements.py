@@ -6,17 +6,18 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import CERTAIN, Feature, FeatureMap, find_likely_pairs
-from archgen.compare.element_relations import ElementRelations
+from archgen.compare.element_relations import ElementRelations, ports_of
 from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.reassigned_ids import REASSIGNABLE_KINDS, find_reassigned_ids
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 
 
 def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
@@ -37,6 +38,8 @@ def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
     for kind in kinds:
         if kind.parent_kind is not None:
             matcher.pair_below_parents(kind, kind.parent_kind)
+        if kind.name == "component":
+            matcher.pair_wrapped_components(kind)
         matcher.pair_by_likeness(kind)
     return matched_ids
 
@@ -86,12 +89,42 @@ class _Matcher:
         """Pair elements that have the same name below a matched parent: ids change when a parent is renamed."""
         new_ids = _declared_elements(kind, self.new_relations)
         for element_id in _declared_elements(kind, self.old_relations):
-            # A component's path may lead through composed components: below its group it is one name.
-            parent, _, own_name = element_id.partition(".") if parent_kind == "group" else element_id.rpartition(".")
-            new_parent = self.matched_ids.find_new_id(parent_kind, parent)
-            new_id = f"{new_parent}.{own_name}"
-            if new_parent is not None and new_id in new_ids and not self._is_settled(kind, element_id, new_id):
+            new_id = self._find_id_below_parent(parent_kind, element_id)
+            if new_id in new_ids and not self._is_settled(kind, element_id, new_id):
                 self.matched_ids.add_pair(kind.name, element_id, new_id)
+
+    def _find_id_below_parent(self, parent_kind: str, element_id: str) -> str:
+        """Return the id that an element has if only what is around it is called otherwise, "" if that is not known."""
+        parent, _, own_name = element_id.rpartition(".")
+        if parent_kind == "group" and "." in parent:
+            new_shell = self.matched_ids.find_new_id("composed", parent)
+            if new_shell is not None:
+                return f"{new_shell}.{own_name}"
+            # A component's path may lead through composed components: below its group it is one name.
+            parent, _, own_name = element_id.partition(".")
+        new_parent = self.matched_ids.find_new_id(parent_kind, parent)
+        return f"{new_parent}.{own_name}" if new_parent is not None else ""
+
+    def pair_wrapped_components(self, kind: KindSpec) -> None:
+        """Pair leaves that got a composed component around them in their place, or are no longer in one."""
+        relations = self.old_relations, self.new_relations
+        old_leaves, new_leaves = (_declared_elements(kind, side) for side in relations)
+        old_shells, new_shells = (side.architecture.shells for side in relations)
+        for old_id, component in old_leaves.items():
+            new_place = self.matched_ids.common_id("group", component.group) + old_id.removeprefix(component.group)
+            if new_place in new_shells and new_place not in new_leaves:
+                self._pair_only_one(
+                    kind, [(old_id, each) for each in _list_alike(component, new_shells[new_place], new_leaves)]
+                )
+        for new_id, component in new_leaves.items():
+            if new_id in old_shells and new_id not in old_leaves:
+                self._pair_only_one(
+                    kind, [(each, new_id) for each in _list_alike(component, old_shells[new_id], old_leaves)]
+                )
+
+    def _pair_only_one(self, kind: KindSpec, pairs: Sequence[tuple[str, str]]) -> None:
+        if len(pairs) == 1 and not self._is_settled(kind, *pairs[0]):
+            self.matched_ids.add_pair(kind.name, *pairs[0], CERTAIN)
 
     def pair_by_likeness(self, kind: KindSpec) -> None:
         """Pair the remaining elements by likeness; ports only within each pair of components."""
@@ -119,6 +152,16 @@ class _Matcher:
         if not kind.stays_in_parent or kind.parent_kind is None:
             return ""
         return self.matched_ids.find_new_id(kind.parent_kind, element_id.rpartition(".")[0])
+
+
+def _list_alike(component: Component, shell: Component, leaves: Mapping[str, Component]) -> list[str]:
+    """Return the leaves directly inside of a composed component that have the ports of a component."""
+    ports = _list_port_types(component)
+    return [each for each in shell.children if each in leaves and _list_port_types(leaves[each]) == ports]
+
+
+def _list_port_types(component: Component) -> set[tuple[str, str, str | None]]:
+    return {(type(port).__name__, port.name, port.type) for port in ports_of(component)}
 
 
 def _declared_elements(kind: KindSpec, relations: ElementRelations) -> Mapping[str, Any]:

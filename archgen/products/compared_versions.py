@@ -10,6 +10,7 @@ from archgen import git, pipeline, project
 from archgen.compare import ArchitectureVersion, Comparison, compare_versions
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.rule_options import format_percentage
+from archgen.link.type_patterns import link_type_patterns
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.syntax.yaml_tree import MappingNode
 
@@ -182,6 +183,7 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         sound_files=frozenset(checked_project.yaml_files).difference(unread_files),
         unread_files=tuple(sorted(unread_files)),
         waiting_rules=checked_project.waiting_rules,
+        type_patterns=link_type_patterns(checked_project.merged_table, checked_project.architecture),
     )
 
 

@@ -88,6 +88,10 @@ _INSIDE = {
     "node": "the node that it makes",
     "containers": "elements of their own",
 }
+READ_OFF_PATTERNS = frozenset(
+    {"node", "open", "operations", "parameters", "performance", "requirements", "role", "tags", "timing", "urls"}
+)
+"""Keys of component types that only comparisons need: they are linked for these."""
 SCHEMA_ONLY = {
     **{f"component {key}": reason for key, reason in _INSIDE.items()},
     "component same_as": "the key `is`",
@@ -98,7 +102,7 @@ SCHEMA_ONLY = {
         f"component_type {key}": "what its instances have"
         for key in SCHEMA["$defs"]["component_type"]["properties"]
         if key not in {"title", "functionality", "description", "owner", "is", "generic", "abstract"}
-        and key not in {"inputs", "outputs", "components"}
+        and key not in {"inputs", "outputs", "components"} | READ_OFF_PATTERNS
     },
     "group components": "elements of their own",
     "input from": "the kind `connection`",
@@ -152,6 +156,7 @@ MODEL_ONLY = {
 }
 TABLE_ONLY_FOR_MODEL = {
     "component is": "the fields `component_type` and `is_reference`",
+    **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS},
     "component_type is": "the field `base`",
     "component_type abstract": "the field `is_abstract`",
     **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
@@ -184,6 +189,7 @@ RECORD_ONLY = {
 NOT_IN_RECORD = {
     **dict.fromkeys(("group layout", "component layout", "project layout"), "only for pictures"),
     "component mapped": "follows from the nodes",
+    **{f"component_type {key}": "what its instances have" for key in READ_OFF_PATTERNS},
     "link latency": "the keys `best` and `worst`",
     **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules", "site")},
 }

@@ -4,6 +4,7 @@ A new field of a kind is one `KeySpec` (and a `FeatureSpec`, if elements are rec
 tests/compare/test_element_kinds.py compares the table with the schema, the model, the resolved record and the cards.
 """
 
+from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
 from archgen.compare.kinds.functional_kinds import FUNCTIONAL_KINDS
 from archgen.compare.kinds.kind_spec import Effect, KeySpec, KindSpec, Worsening
 from archgen.compare.kinds.project_kinds import PROJECT_KINDS
@@ -11,7 +12,7 @@ from archgen.compare.kinds.ros_kinds import ROS_KINDS
 from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
 
 ELEMENT_KINDS: dict[str, KindSpec] = {
-    kind.name: kind for kind in (*PROJECT_KINDS, *FUNCTIONAL_KINDS, *ROS_KINDS, *SYSTEM_KINDS)
+    kind.name: kind for kind in (*PROJECT_KINDS, COMPONENT_TYPE, *FUNCTIONAL_KINDS, *ROS_KINDS, *SYSTEM_KINDS)
 }
 """All kinds by name, in the order in which changes are reported."""
 KIND_ORDER = {name: position for position, name in enumerate(ELEMENT_KINDS)}
@@ -20,6 +21,7 @@ MATCHING_ORDER = (
     *(
         "partner",
         "group",
+        "composed",
         "component",
         "output",
         "input",

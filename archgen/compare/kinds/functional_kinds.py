@@ -150,6 +150,10 @@ def _mark_neighbours(relations: ElementRelations, component: Component) -> froze
     return relations.common_ids("component", _components_of([*sources, *readers]))
 
 
+def _names_of(component_ids: Sequence[str]) -> list[str]:
+    return [component_id.rpartition(".")[2] for component_id in component_ids]
+
+
 def _components_of(ports: Sequence[str]) -> list[str]:
     return [port.rpartition(".")[0] for port in ports]
 
@@ -173,7 +177,7 @@ def _read_component_type(component: Component, _context: ReadContext) -> str | N
     return f"same as {component.component_type}" if component.is_reference else component.component_type
 
 
-_IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from")
+_IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from", noun="component type")
 COMPOSED = KindSpec(
     "composed",
     None,
@@ -191,30 +195,24 @@ COMPOSED = KindSpec(
     ),
     Effect.SYSTEM,
     elements=lambda version: version.architecture.shells,
+    features=(
+        FeatureSpec("name", 2, lambda _, shell: letter_pairs(shell.name)),
+        FeatureSpec(
+            "title",
+            2,
+            lambda _, shell: word_set(shell.title),
+            lambda shell: shell.title in {title_from_id(shell.name), shell.name},
+        ),
+        # What it holds and gives on. Instances of one type are alike in this: of these the name decides.
+        FeatureSpec("components", 6, lambda _, shell: frozenset(_names_of(shell.children))),
+        FeatureSpec("ports", 2, _mark_ports),
+        text_feature(3, "functionality", "description"),
+    ),
     word="composed component",
     has_path_id=True,
     parent_kind="group",
     parent=lambda shell, context: ("group", context.matched_ids.common_id("group", shell.group)),
     owner=read_owner,
-)
-COMPONENT_TYPE = KindSpec(
-    "component_type",
-    "Component types",
-    (
-        TITLE,
-        prose_key("functionality"),
-        DESCRIPTION,
-        KeySpec("owner", effect=Effect.SYSTEM, verb="belongs to"),
-        KeySpec("is", lambda each, _: each.base, Effect.SYSTEM, verb="is made from"),
-        KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
-        KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
-        KeySpec("inputs.", lambda each, _: {name: kind or "?" for name, kind in each.inputs.items()}, Effect.SYSTEM),
-        KeySpec("outputs.", lambda each, _: {name: kind or "?" for name, kind in each.outputs.items()}, Effect.SYSTEM),
-        KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
-    ),
-    Effect.SYSTEM,
-    elements=lambda version: version.architecture.component_types,
-    word="component type",
 )
 COMPONENT = KindSpec(
     "component",
@@ -347,4 +345,4 @@ INPUT = KindSpec(
 )
 # Which outputs an input reads: compared by `connection_maps`, since it has no keys.
 CONNECTION = KindSpec("connection", None)
-FUNCTIONAL_KINDS = (COMPONENT_TYPE, GROUP, COMPOSED, COMPONENT, OUTPUT, INPUT, CONNECTION)
+FUNCTIONAL_KINDS = (GROUP, COMPOSED, COMPONENT, OUTPUT, INPUT, CONNECTION)

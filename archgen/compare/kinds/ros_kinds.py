@@ -25,6 +25,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.node import Node, PortUse, Qos
 from archgen.transform import ros_names
 
@@ -138,7 +139,10 @@ NODE = KindSpec(
         KeySpec("parameter_commands.", _read_commands, Effect.SYSTEM),
         timing_key(_read_timing),
     ),
-    elements=lambda version: {name: node for name, node in version.architecture.nodes.items() if node.written},
+    # Of a node that is planned since its component says where it will run, that is written: it has a place in the files.
+    elements=lambda version: {
+        name: node for name, node in version.architecture.nodes.items() if node.written or node.at != NO_SPAN
+    },
     features=(
         *NAME_FEATURES,
         FeatureSpec("implements", 4, lambda relations, node: relations.common_ids("component", node.implements)),

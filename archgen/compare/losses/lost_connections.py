@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.composed_places import find_component_renames, needs_other_id
 from archgen.compare.losses.loss_wording import tick_sorted_names
 
 _MAX_RENAMES = 2
@@ -50,7 +51,12 @@ def find_renamed_sources(context: ChangeContext) -> Iterator[PartnerLoss]:
         for index in find_output_causes(context, output) if old_id != new_output else ():
             for partner, inputs in inputs_by_partner.items():
                 # Who no longer asks for anything turned away by itself.
-                present_inputs = tuple(name for name in inputs if ("input", name) in context.versions.elements_after)
+                present_inputs = tuple(
+                    name
+                    for name in inputs
+                    if ("input", name) in context.versions.elements_after
+                    and needs_other_id(context, name, output, new_output)
+                )
                 if present_inputs:
                     sources[index, partner][_RenamedSource(old_id, new_output)] = present_inputs
     partners_by_note: dict[tuple[int, str], list[str]] = defaultdict(list)
@@ -86,9 +92,10 @@ def find_output_causes(context: ChangeContext, output_id: str) -> list[int]:
         return context.indices_by_change_kind("output", output_id, "removed")
     component_id = output_id.rpartition(".")[0]
     group_id = component_id.partition(".")[0]
-    element_keys = (("output", output_id), ("component", component_id), ("group", group_id))
     return [
-        index for kind, name in element_keys for index in context.indices_by_change_kind(kind, name, "renamed", "moved")
+        *context.indices_by_change_kind("output", output_id, "renamed", "moved"),
+        *find_component_renames(context, component_id),
+        *context.indices_by_change_kind("group", group_id, "renamed", "moved"),
     ][:1]
 
 

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.composed_places import find_component_renames
 from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.model.node import Endpoint, FlowKind
 
@@ -92,7 +93,7 @@ def _find_causes(context: ChangeContext, node_id: str, port_id: str) -> list[int
         context.change_indices("node", node_id, "name", "namespace"),
         context.indices_by_change_kind("node", node_id, "renamed", "removed"),
         context.indices_by_change_kind("output", port_id, "renamed"),
-        context.indices_by_change_kind("component", component_id, "renamed", "moved"),
+        find_component_renames(context, component_id),
         context.indices_by_change_kind("group", group_id, "renamed"),
         context.change_indices("node", node_id),
         context.change_indices("output", port_id, "medium"),

@@ -6,6 +6,7 @@ from typing import Any
 
 from archgen.compare import ChainChange, Change, Comparison
 from archgen.compare.edits import list_edits
+from archgen.compare.type_origins import TypeKey, trace_origins
 from archgen.diagnostics.safe_text import format_json
 from archgen.emit.data.figures_json import boundary_record, load_record
 from archgen.emit.data.findings_json import finding_to_json
@@ -25,9 +26,10 @@ def write_comparison_json(comparison: Comparison, reading_errors: ReadingErrors)
 
 def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> dict[str, Any]:
     """Return a comparison as plain data."""
+    origins = trace_origins(comparison, comparison.changes)
     return {
         "version": FORMAT_VERSION,
-        "changes": [change_record(item) for item in comparison.changes],
+        "changes": [change_record(item, origins.get(id(item))) for item in comparison.changes],
         "edits": _list_edit_records(comparison),
         "findings": {
             "new": [finding_to_json(item) for item in sort_by_severity(comparison.new_findings)],
@@ -72,8 +74,8 @@ def _list_edit_records(comparison: Comparison) -> list[dict[str, Any]]:
     ]
 
 
-def change_record(architecture_change: Change) -> dict[str, Any]:
-    """Return one change with its parts as plain data."""
+def change_record(architecture_change: Change, origin: TypeKey | None = None) -> dict[str, Any]:
+    """Return one change with its parts as plain data; `origin` is the component type that it follows, if any."""
     return {
         "kind": architecture_change.kind,
         "sort": architecture_change.element_kind,
@@ -99,6 +101,7 @@ def change_record(architecture_change: Change) -> dict[str, Any]:
             {"file": entry.at.file, "key": entry.key, "reason": entry.reason} for entry in architecture_change.claims
         ],
         "text": architecture_change.text,
+        **({"type": origin.component_type} if origin else {}),
         "parts": [change_record(part) for part in architecture_change.parts],
     }
 

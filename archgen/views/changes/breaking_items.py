@@ -98,8 +98,9 @@ def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[Shar
         SharedLoss(reason, category, name_each(sorted(names), partner_names))
         for (reason, category), names in partners.items()
     ]
-    # With a file that is not read any more goes all that it held: one cause, and not one more reason for each element.
-    yield from _limit_losses(shared) if edit.element_kind == "project" else shared
+    # With a file that is not read any more goes all that it held, with a type all its instances change: one cause, and
+    # not one more reason for each element.
+    yield from _limit_losses(shared) if edit.element_kind in {"project", "component_type"} else shared
 
 
 def _limit_losses(losses: Sequence[SharedLoss]) -> Iterator[SharedLoss]:

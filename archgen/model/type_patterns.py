@@ -1,0 +1,29 @@
+"""What component types say to their instances, as components that say nothing of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import field
+
+from archgen.frozen import dataclass
+from archgen.model.component import Component
+from archgen.model.node import Node
+
+
+@dataclass(frozen=True, slots=True)
+class TypePatterns:
+    """Patterns by the id of their type; of what is inside of a type by the path: `arm.shoulder`."""
+
+    components: Mapping[str, Component] = field(default_factory=dict)
+    """Composed ones and leaves."""
+    nodes: Mapping[str, Node] = field(default_factory=dict)
+    """The nodes that components bring along, by the id of their pattern as it was linked."""
+
+    def list_parts(self, path: str) -> Iterator[tuple[str, Component]]:
+        """Yield what is inside of a type, to any depth, each with its path below the type."""
+        pattern = self.components.get(path)
+        for child in pattern.children if pattern else ():
+            inner_path = f"{path}.{child.rpartition('.')[2]}"
+            if inner_path in self.components:
+                yield inner_path.partition(".")[2], self.components[inner_path]
+                yield from self.list_parts(inner_path)
