@@ -83,7 +83,9 @@ def test_the_node_and_the_ports_of_an_instance_are_named_by_its_parameters(tmp_p
         "frames: {body: {}}\n",
     )
     assert architecture.shells["g.left"].outputs["image"].frame == "left_eye"
-    assert [(node.namespace, node.uses[0].topics) for node in architecture.nodes.values()] == [("/left", ("left_image",))]
+    assert [(node.namespace, node.uses[0].topics) for node in architecture.nodes.values()] == [
+        ("/left", ("left_image",))
+    ]
     rate = architecture.components["g.left.lens"].parameters["rate"]
     assert (rate.value, rate.unit, rate.range) == (2, "Hz", (1, 9))
 
