@@ -12,6 +12,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Hashable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -112,8 +113,11 @@ def _count_elsewhere(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment
     ) as process:
         if process.stdin and process.stdout:
-            process.stdin.write(json.dumps(request).encode())
-            process.stdin.close()
+            # One that died before it read anything: what it did not count is counted here.
+            with suppress(BrokenPipeError):
+                process.stdin.write(json.dumps(request).encode())
+            with suppress(BrokenPipeError):
+                process.stdin.close()
             for line in process.stdout:
                 try:
                     item = point_from_data(json.loads(line))

@@ -71,14 +71,14 @@
   // --- loading --------------------------------------------------------------------------------------------------
   let loading = false, loaded = 0, failed = false;
 
-  function loadScript(name, then) {
+  function loadScript(name, then, otherwise = draw) {
     // Not `async`: scripts that are asked for together run in this order.
     const script = element("script", { src: base + "assets/search/" + name + ".js", async: false });
     script.addEventListener("load", then);
     script.addEventListener("error", () => {
       failed = true;
       list.ariaBusy = "false";
-      draw();
+      otherwise();
     });
     document.head.append(script);
   }
@@ -108,14 +108,16 @@
       if (stale) load();
       return;
     }
-    loadScript(parts[loaded], () => {
+    const goOn = () => {
       loaded += 1;
       // Results while the rest is still being read, but not anew for each of many small parts.
       const due = loaded === parts.length || performance.now() - lastSearch > DRAW_AGAIN;
       if (due && field.value.trim()) search();
       // One after another, so that keys and drawing have their turn between two parts.
       loadPart();
-    });
+    };
+    // Without a part the others are searched all the same.
+    loadScript(parts[loaded], goOn, goOn);
   }
 
   const isReady = () => typeof archgenSearch !== "undefined";
