@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
@@ -15,6 +16,24 @@ _MAX_NAMED = 3
 """So many further instances are named."""
 
 
+class _TypePlaces:
+    """Whether a place lies in a component type. Types are written beside each other, never in one another."""
+
+    def __init__(self, type_spans: Iterable[Span]) -> None:
+        self._spans: dict[str, list[Span]] = {}
+        for span in sorted(type_spans, key=_start_of):
+            self._spans.setdefault(span.file, []).append(span)
+
+    def __contains__(self, span: Span) -> bool:
+        spans = self._spans.get(span.file, [])
+        index = bisect_right(spans, _start_of(span), key=_start_of) - 1
+        return index >= 0 and _start_of(span) <= (spans[index].end_line, spans[index].end_column)
+
+
+def _start_of(span: Span) -> tuple[int, int]:
+    return span.line, span.column
+
+
 def gather_instance_findings(
     diagnostics: Iterable[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]
 ) -> list[Diagnostic]:
@@ -24,18 +43,19 @@ def gather_instance_findings(
     """
     if not type_spans:
         return list(diagnostics)
+    type_places = _TypePlaces(type_spans)
     gathered: dict[tuple[str, Span], list[Diagnostic]] = {}
     others: list[Diagnostic] = []
     for diagnostic in diagnostics:
-        if _is_within(diagnostic.span, type_spans) and _find_component(architecture, diagnostic.element):
+        if diagnostic.span in type_places and _find_component(architecture, diagnostic.element):
             gathered.setdefault((diagnostic.rule, diagnostic.span), []).append(diagnostic)
         else:
             others.append(_drop_repeated_labels(diagnostic))
-    return [*others, *(_join_findings(same, architecture, type_spans) for same in gathered.values())]
+    return [*others, *(_join_findings(same, architecture, type_places) for same in gathered.values())]
 
 
-def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]) -> Diagnostic:
-    instances = list({each.id: each for each in _list_instances(same, architecture, type_spans)}.values())
+def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_places: _TypePlaces) -> Diagnostic:
+    instances = list({each.id: each for each in _list_instances(same, architecture, type_places)}.values())
     if not instances:
         return same[0]
     first, further = instances[0], instances[1:]
@@ -54,14 +74,14 @@ def _drop_repeated_labels(diagnostic: Diagnostic) -> Diagnostic:
 
 
 def _list_instances(
-    same: Sequence[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]
+    same: Sequence[Diagnostic], architecture: Architecture, type_places: _TypePlaces
 ) -> Iterator[Component]:
     """Yield the instances that stand in no type themselves, around what findings are about."""
     for diagnostic in same:
         component = _find_component(architecture, diagnostic.element)
-        while component and component.parent and _is_within(component.at, type_spans):
+        while component and component.parent and component.at in type_places:
             component = architecture.shells.get(component.parent)
-        if component and not _is_within(component.at, type_spans):
+        if component and component.at not in type_places:
             yield component
 
 
@@ -74,12 +94,3 @@ def _find_component(architecture: Architecture, element_id: str | None) -> Compo
         if component:
             return component
     return None
-
-
-def _is_within(span: Span, type_spans: Sequence[Span]) -> bool:
-    return any(
-        span.file == each.file
-        and each.line <= span.line <= each.end_line
-        and (each.line, each.column) <= (span.line, span.column) <= (each.end_line, each.end_column)
-        for each in type_spans
-    )

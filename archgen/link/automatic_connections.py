@@ -33,7 +33,6 @@ class _AutomaticConnections:
         self._outline = outline
         self._sources = sources
         self._resolver = resolver
-        self._parents = outline.expansion.parents if outline.expansion else {}
 
     def join_all(self) -> None:
         instances = self._outline.expansion.instances if self._outline.expansion else {}
@@ -47,11 +46,7 @@ class _AutomaticConnections:
         for group_id, entry in self._outline.groups.items():
             mode = mapping_values.get_text(mapping_values.get_body(entry), "autoconnect")
             if mode:
-                self._join_inside(self._list_members(group_id), None, mode)
-
-    def _list_members(self, group_id: str) -> list[str]:
-        everything = [*self._outline.components, *self._outline.shells]
-        return [each for each in everything if each.startswith(f"{group_id}.") and each not in self._parents]
+                self._join_inside(self._outline.members[group_id], None, mode)
 
     def _feed_instance(self, component_id: str) -> None:
         """Give each input without a source every output of equal type of the components that the instance names."""
@@ -70,7 +65,7 @@ class _AutomaticConnections:
                 self._warn_several(port, [output_id for _, output_id in matches], matches[0][0])
 
     def _list_outputs(self, target: ElementRef, reader_id: str) -> list[str]:
-        members = [target.id] if target.kind == "component" else self._list_members(target.id)
+        members = [target.id] if target.kind == "component" else self._outline.members[target.id]
         return [output.id for each in members if each != reader_id for output in self._outline.outputs[each].values()]
 
     def _join_inside(self, children: Sequence[str], shell_id: str | None, mode: str) -> None:

@@ -31,6 +31,8 @@ class ElementOutline:
     """By component id and name, those of composed components included."""
     undeclared_inputs: list[tuple[str, MappingEntry]] = field(default_factory=list)
     """Inputs that `to` at an output names and nobody declares, with their components."""
+    members: dict[str, list[str]] = field(default_factory=dict)
+    """The components that stand directly in each group, leaves first, by complete ids."""
 
     @property
     def shells(self) -> Mapping[str, ComponentShell]:
@@ -41,6 +43,14 @@ class ElementOutline:
     def port_names(self) -> Mapping[str, Mapping[str, Collection[str]]]:
         """The names of the ports by kind (`input`, `output`) and component id."""
         return {"input": self.inputs, "output": self.outputs}
+
+    def list_inside(self, component_id: str) -> Iterator[str]:
+        """Yield all that a composed component holds, leaves and composed ones, by complete ids. A leaf holds nothing."""
+        shell = self.shells.get(component_id)
+        for child_id in shell.children if shell else ():
+            if child_id in self.inputs:
+                yield child_id
+                yield from self.list_inside(child_id)
 
     def list_outputs(self) -> Iterator[Output]:
         """Iterate over every output, those of composed components included."""
@@ -60,14 +70,20 @@ class ElementOutline:
 def build_outline(expansion: ExpandedProject) -> ElementOutline:
     """Return the outline of a merged project in which all types are written out, by complete ids."""
     element_outline = ElementOutline(expansion=None if expansion.is_plain else expansion)
+    members = element_outline.members
     for group_id, entry, body in mapping_values.iterate_elements(expansion.root, "groups"):
         element_outline.groups[group_id] = entry
+        members[group_id] = []
         for path, component, component_body in mapping_values.iterate_elements(body, "components"):
             component_id = f"{group_id}.{path}"
             element_outline.components[component_id] = component
+            if component_id not in expansion.parents:
+                members[group_id].append(component_id)
             _outline_ports(element_outline, component_id, component_body)
     for shell in expansion.shells.values():
         body = mapping_values.get_body(shell.entry)
+        if shell.parent is None:
+            members[shell.group].append(shell.id)
         _outline_ports(element_outline, shell.id, body)
         element_outline.given_outputs[shell.id] = {
             name: output_body for name, _, output_body in mapping_values.iterate_elements(body, "outputs")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from archgen.compose.project_expansion import ComponentShell
 from archgen.link.element_outline import ElementOutline
@@ -21,6 +21,10 @@ class OpenShells:
             for source in sources.list_sources(reader):
                 if source.target.kind == "input":
                     self._readers.setdefault(source.target.id, []).append(reader[1])
+        self._open_shells: dict[str, list[ComponentShell]] = {}
+        for shell in outline.shells.values():
+            if any(map(self.is_open, self._list_ports(shell))):
+                self._open_shells.setdefault(shell.group, []).append(shell)
 
     def is_open(self, port: PortKey) -> bool:
         """Whether nothing inside reads an input, or feeds an output."""
@@ -28,11 +32,9 @@ class OpenShells:
             return port[1] not in self._readers
         return not self._sources.list_sources(port)
 
-    def list_in_group(self, group_id: str) -> Iterator[ComponentShell]:
-        """Yield the composed components of a group that have open ports."""
-        for shell in self._outline.shells.values():
-            if shell.group == group_id and any(map(self.is_open, self._list_ports(shell))):
-                yield shell
+    def list_in_group(self, group_id: str) -> Sequence[ComponentShell]:
+        """Return the composed components of a group that have open ports."""
+        return self._open_shells.get(group_id, ())
 
     def list_carried_ports(self) -> dict[str, tuple[str, ...]]:
         """Return what stands behind each port: the outputs that an output gives on, the ports that read an input."""

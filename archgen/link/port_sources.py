@@ -240,9 +240,4 @@ class PortSources:
                     yield output.id
 
     def _list_members(self, target: ElementRef) -> list[str]:
-        if target.kind == "component":
-            return [target.id]
-        parents = self.outline.expansion.parents if self.outline.expansion else {}
-        prefix = f"{target.id}."
-        members = [*self.outline.components, *self.outline.shells]
-        return [each for each in members if each.startswith(prefix) and each not in parents]
+        return [target.id] if target.kind == "component" else self.outline.members[target.id]

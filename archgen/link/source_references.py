@@ -165,7 +165,9 @@ class SourceReferences:
         )
 
     def _warn_inside(self, reference: ScalarNode, path: str, writer_id: str) -> None:
-        shell_id = next(shell_id for shell_id in self._outline.shells if path.startswith(f"{shell_id}."))
+        ids = path.split(".")
+        outer_paths = (".".join(ids[:length]) for length in range(1, len(ids)))
+        shell_id = next(each for each in outer_paths if each in self._outline.shells)
         self._resolver.diagnostics.append(
             Diagnostic(
                 "reaches-inside",

@@ -6,7 +6,8 @@ They stand for what is written in one file, so they are gone before slices are m
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections import deque
+from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.diagnostics.suggestions import did_you_mean
@@ -22,23 +23,20 @@ _WORD_BREAK = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|[^A-Z
 _PORT_SIDES = ("inputs", "outputs")
 
 
-def list_components(root: MappingNode) -> Iterator[MappingNode]:
-    """Yield the bodies of all components and component types of a document, outer ones first."""
-    bodies = [entry.value for holder in _list_holders(root) for entry in _list_entries(holder)]
-    while bodies:
-        body = bodies.pop(0)
-        if isinstance(body, MappingNode):
-            yield body
-            bodies += [entry.value for entry in _list_entries(body.get("components"))]
+def list_components(root: MappingNode) -> Iterator[tuple[str, MappingNode]]:
+    """Yield the bodies of all components and component types of a document by complete id, outer ones first."""
+    for holder in _list_holders(root):
+        if not holder.is_group:
+            yield holder.id, holder.body
 
 
 def expand_sugar(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Replace the short forms of composed components in a validated document, in place."""
     diagnostics: list[Diagnostic] = []
-    for holder in _list_bodies_with_components(document.root):
-        _expand_components(holder, diagnostics)
-    for holder in _list_bodies_with_components(document.root):
-        _move_targets(holder, diagnostics)
+    for holder in _list_holders(document.root):
+        _expand_components(holder.body, diagnostics)
+    for holder in _list_holders(document.root):
+        _move_targets(holder.body, diagnostics)
     return tuple(diagnostics)
 
 
@@ -48,20 +46,24 @@ def name_port_after(type_name: str) -> str:
     return "_".join(word.lower() for word in _WORD_BREAK.split(last[0] if last else "") if word)
 
 
-def _list_holders(root: MappingNode) -> Iterator[YamlNode | None]:
-    yield root.get("component_types")
-    for group in _list_entries(root.get("groups")):
-        yield group.value.get("components") if isinstance(group.value, MappingNode) else None
+class _Holder(NamedTuple):
+    """What may hold components: a group, a component type, or a component, by complete id."""
+
+    id: str
+    body: MappingNode
+    is_group: bool = False
 
 
-def _list_bodies_with_components(root: MappingNode) -> Iterator[MappingNode]:
-    """Yield what may hold components: groups, component types, components. What is replaced on the way is followed."""
-    bodies = [entry.value for section in ("component_types", "groups") for entry in _list_entries(root.get(section))]
-    while bodies:
-        body = bodies.pop(0)
+def _list_holders(root: MappingNode) -> Iterator[_Holder]:
+    """Yield all that may hold components, outer ones first. What is replaced on the way is followed."""
+    waiting = deque((entry.key, entry.value, False) for entry in _list_entries(root.get("component_types")))
+    waiting.extend((entry.key, entry.value, True) for entry in _list_entries(root.get("groups")))
+    while waiting:
+        holder_id, body, is_group = waiting.popleft()
         if isinstance(body, MappingNode):
-            yield body
-            bodies += [entry.value for entry in _list_entries(body.get("components"))]
+            yield _Holder(holder_id, body, is_group)
+            parts = _list_entries(body.get("components"))
+            waiting.extend((f"{holder_id}.{entry.key}", entry.value, False) for entry in parts)
 
 
 def _list_entries(node: YamlNode | None) -> list[MappingEntry]:

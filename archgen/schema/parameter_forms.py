@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.parameter import MAX_NAME_LENGTH
+from archgen.schema.component_sugar import list_components
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.diagnostics.source_span import Span
-    from archgen.syntax.yaml_tree import YamlNode
 
 DECLARATION_KEYS = (
     *("type", "value", "unit", "range", "choices", "description", "read_only", "visibility", "from", "hints"),
@@ -31,29 +31,13 @@ _LIMIT_COUNT = 2
 
 def expand_parameters(root: MappingNode) -> Iterator[Diagnostic]:
     """Bring the parameters of all components into the normal form, in place: declarations by dotted name."""
-    for component_id, body in _list_components(root):
+    for component_id, body in list_components(root):
         entry = body.entries.get("parameters")
         if entry is not None and isinstance(entry.value, MappingNode):
             expander = _SetExpander(component_id)
             expander.expand_set(entry.value, "")
             entry.value = MappingNode(expander.declarations, entry.value.span)
             yield from expander.diagnostics
-
-
-def _list_components(root: MappingNode) -> Iterator[tuple[str, MappingNode]]:
-    """Yield the bodies of all components with their ids, those of types and those inside others included."""
-    pending = [(entry.key, entry.value, False) for entry in _list_entries(root.get("groups"))]
-    pending += [(entry.key, entry.value, True) for entry in _list_entries(root.get("component_types"))]
-    while pending:
-        element_id, body, is_component = pending.pop()
-        if isinstance(body, MappingNode):
-            if is_component:
-                yield element_id, body
-            pending += [(f"{element_id}.{e.key}", e.value, True) for e in _list_entries(body.get("components"))]
-
-
-def _list_entries(node: YamlNode | None) -> tuple[MappingEntry, ...]:
-    return tuple(node) if isinstance(node, MappingNode) else ()
 
 
 class _SetExpander:

@@ -15,11 +15,9 @@ from archgen.link.element_outline import ElementOutline
 from archgen.model.derived_names import derive_node_ids
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
-_INHERITED_KEYS = frozenset(
-    {"host", "container", "namespace", "remaps", "parameters", "environment", "directory", "user", "respawn", "start"}
-)
+_INHERITED_KEYS = frozenset({"host", "container", "namespace", "parameters"})
 """What a composed component says for all nodes inside."""
-_MAPPING_KEYS = frozenset({"package", "executable", "plugin", "command"})
+_MAPPING_KEYS = frozenset({"package", "executable", "plugin"})
 """Keys of a node that say what runs: with one of them its component is mapped."""
 
 
@@ -102,48 +100,36 @@ class ComponentNodes:
 
     def _report_unused(self, component_id: str, node: MappingEntry, *, is_one: bool) -> None:
         """Report `node` inside of what a node implements as a whole, and at one of several components of a node."""
-        prefix = f"{component_id}."
-        unused_ids = [
-            each
-            for each in (*self._outline.components, *self._outline.shells)
-            if (each.startswith(prefix) or (each == component_id and not is_one)) and self._own_node(each).entries
-        ]
-        for unused_id in unused_ids if self._outline.expansion else ():
-            self._diagnostics.append(
-                Diagnostic(
-                    "unused-node",
-                    f"the node `{node.key}` runs `{unused_id}`: what `{unused_id}` says of a node of its own is not used",
-                    self._entry_of(unused_id).key_span,
-                    labels=(Label(node.key_span, "the node"),),
-                    help="take one of the two out",
-                    element=unused_id,
+        own_ids = () if is_one else (component_id,)
+        for unused_id in (*own_ids, *self._outline.list_inside(component_id)):
+            if self._own_node(unused_id).entries:
+                self._diagnostics.append(
+                    Diagnostic(
+                        "unused-node",
+                        f"the node `{node.key}` runs `{unused_id}`: what `{unused_id}` says of a node of its own is not used",
+                        self._entry_of(unused_id).key_span,
+                        labels=(Label(node.key_span, "the node"),),
+                        help="take one of the two out",
+                        element=unused_id,
+                    )
                 )
-            )
 
     def _make_nodes(self, written_nodes: MappingNode, implements: Mapping[str, tuple[str, ...]]) -> None:
-        implemented = {leaf for ids in implements.values() for each in ids for leaf in self._list_below(each)}
-        wholes = [
-            shell_id
-            for shell_id in self._outline.shells
-            if mapping_values.get_flag(self._own_node(shell_id), "whole") and shell_id not in implemented
-        ]
-        wholes = [each for each in wholes if not any(each.startswith(f"{outer}.") for outer in wholes)]
-        inside = {leaf for whole in wholes for leaf in self._list_below(whole)}
+        implemented = {part for ids in implements.values() for each in ids for part in self._list_below(each)}
+        wholes: list[str] = []
+        for shell_id in self._outline.shells:
+            if shell_id not in implemented and mapping_values.get_flag(self._own_node(shell_id), "whole"):
+                wholes.append(shell_id)
+                implemented.update(self._list_below(shell_id))
         single_ids = [
-            each
-            for each in self._outline.components
-            if each not in implemented and each not in inside and self._find_body(each).entries
+            each for each in self._outline.components if each not in implemented and self._find_body(each).entries
         ]
         all_ids = (*self._outline.components, *self._outline.shells)
         node_ids = derive_node_ids([*single_ids, *wholes], all_ids, written_nodes.entries)
         used_names: set[tuple[str, str]] = set()
         for component_id, node_id in node_ids.items():
             self._add_node(component_id, node_id, used_names)
-            if component_id in wholes:
-                for inner_id in self._list_below(component_id):
-                    if inner_id != component_id and self._own_node(inner_id).entries:
-                        self._report_unused(component_id, self.entries[node_id], is_one=True)
-                        break
+            self._report_unused(component_id, self.entries[node_id], is_one=True)
 
     def _add_node(self, component_id: str, node_id: str, used_names: set[tuple[str, str]]) -> None:
         body, entry = _drop_whole(self._find_body(component_id)), self._entry_of(component_id)
@@ -161,9 +147,7 @@ class ComponentNodes:
 
     def _list_below(self, component_id: str) -> list[str]:
         """Return a component and all that is inside of it, leaves and composed ones."""
-        prefix = f"{component_id}."
-        everything = (*self._outline.components, *self._outline.shells) if component_id in self._outline.shells else ()
-        return [component_id, *(each for each in everything if each.startswith(prefix))]
+        return [component_id, *self._outline.list_inside(component_id)]
 
     def _entry_of(self, component_id: str) -> MappingEntry:
         shell = self._outline.shells.get(component_id)

@@ -108,9 +108,6 @@ class _GroupDeclarer:
         # Owners are inherited: a component without owners has those of its group, a node those of its components.
         owners = self.resolver.resolve_owners(body, group_id, ())
         self.owners[group_id] = owners
-        for shell in self.outline.shells.values():
-            if shell.group == group_id:
-                self.owners[shell.id] = self._find_owners(shell.id, group_id, shell.entry)
         components = {
             part.key: self._declare_leaf(group_id, part) for part in mapping_values.get_mapping(body, "components")
         }
@@ -189,8 +186,9 @@ class _GroupDeclarer:
     def _find_owners(self, component_id: str, group_id: str, entry: MappingEntry) -> tuple[str, ...]:
         """Return a component's owners: those written, else those of the component around it, else of its group."""
         if component_id not in self.owners:
-            parent = self.outline.expansion.parents.get(component_id) if self.outline.expansion else None
-            inherited_owners = self.owners[parent or group_id]
+            parent_id = self.outline.expansion.parents.get(component_id) if self.outline.expansion else None
+            parent = self.outline.shells[parent_id] if parent_id else None
+            inherited_owners = self._find_owners(parent.id, group_id, parent.entry) if parent else self.owners[group_id]
             body = mapping_values.get_body(entry)
             self.owners[component_id] = self.resolver.resolve_owners(body, component_id, inherited_owners)
         return self.owners[component_id]
