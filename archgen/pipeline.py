@@ -30,6 +30,7 @@ from archgen.link import (
     chapter_pictures,
     element_outline,
     interface_sources,
+    library_merging,
     parameter_files,
     parameter_reading,
     report_chapters,
@@ -109,9 +110,10 @@ class CheckedProject:
 
     @property
     def input_files(self) -> tuple[str, ...]:
-        """The paths of all files that outputs depend on: YAML, interface definitions, chapters, parameter files."""
+        """The paths of all files that outputs depend on: YAML, libraries, interface definitions, chapters, parameter files."""
         interface_paths = self.loaded_project.interface_files
-        return (*self.yaml_files, *interface_paths, *self.chapters.texts, *self.parameter_texts)
+        library_paths = self.loaded_project.library_files
+        return (*self.yaml_files, *library_paths, *interface_paths, *self.chapters.texts, *self.parameter_texts)
 
     @property
     def has_errors(self) -> bool:
@@ -138,6 +140,11 @@ class CheckedProject:
             self.packed_parameters,
         )
         ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
+        silenced_lines = {(each.span.file, each.span.line) for each in self.silenced_findings}
+        # In a packed file nobody knows that other projects need the rest.
+        ignores += (
+            each for each in self.loaded_project.library_ignores if (each.span.file, each.span.line) in silenced_lines
+        )
         return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
 
 
@@ -225,9 +232,11 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     merged_table, merge_findings = slice_merging.merge_documents(
         loaded_project.documents, loaded_project.lost_keys, damaged_elements
     )
-    expansion = compose.expand_project(merged_table)
+    merged_table, library_findings = library_merging.merge_libraries(merged_table, loaded_project.libraries)
+    merge_findings += library_findings
+    expansion = compose.expand_project(merged_table, loaded_project.incomplete_libraries)
     outline = element_outline.build_outline(expansion)
-    declared_types = declare_project_types(loaded_project, merged_table, outline, damaged_elements)
+    declared_types = declare_project_types(loaded_project, merged_table, expansion, outline, damaged_elements)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
         expansion,
@@ -281,12 +290,17 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         all_diagnostics, architecture, _list_type_spans(merged_table)
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
-    ignores += read_parameters.ignores
+    ignores += (*read_parameters.ignores, *loaded_project.library_ignores)
     # Only projects that ignore something pay for this.
     first_lines = ignore_comments.find_first_lines(architecture) if ignores else {}
     settled_findings = settle_diagnostics(
         ignore_comments.apply_ignores(
-            raw_diagnostics, ignores, _RULES_BY_NAME, first_lines, is_complete=not waiting_rules
+            raw_diagnostics,
+            ignores,
+            _RULES_BY_NAME,
+            first_lines,
+            shared_files=frozenset(loaded_project.library_files),
+            is_complete=not waiting_rules,
         ),
         _RULES_BY_NAME,
         loaded_project.rule_settings,
@@ -318,8 +332,7 @@ def _list_structural_errors(diagnostics: Iterable[Diagnostic]) -> list[Diagnosti
 
 def _list_type_spans(merged_table: MappingNode) -> list[Span]:
     """Return where component types are written."""
-    types = merged_table.get("component_types")
-    return [entry.value.span for entry in types] if isinstance(types, MappingNode) else []
+    return [entry.value.span for entry in compose.list_type_entries(merged_table).values()]
 
 
 def _find_silenced(

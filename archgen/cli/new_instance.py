@@ -107,15 +107,15 @@ def _find_type_body(
     checked_project: CheckedProject, type_text: str, element_id: str, *, is_base: bool = False
 ) -> MappingNode:
     """Return what a component type has, with what it is made from and generic names bound. Raise UsageError."""
+    from archgen.compose import list_type_entries
     from archgen.compose.type_table import TypeTable
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.diagnostics.safe_text import make_visible
     from archgen.diagnostics.source_span import NO_SPAN
     from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-    types = checked_project.merged_table.get("component_types")
     diagnostics: list[Diagnostic] = []
-    table = TypeTable(types.entries if isinstance(types, MappingNode) else {}, diagnostics)
+    table = TypeTable(list_type_entries(checked_project.merged_table), diagnostics)
     expression = table.find_type(ScalarNode(type_text, type_text, NO_SPAN), element_id, is_base=is_base)
     if expression is None:
         msg = "; ".join(make_visible(text) for text in (diagnostics[0].message, diagnostics[0].help) if text)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from archgen.compose.instance_containers import make_instance_containers
 from archgen.compose.instance_overlay import InstanceOverlay
+from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.reference_limits import find_changes_of_reference
 from archgen.compose.type_expressions import TypeExpression
 from archgen.compose.type_table import TypeTable, diagnose_circle, list_generic_names
@@ -57,7 +58,9 @@ class ExpandedProject:
     is_plain: bool = False
     """Whether nothing is composed and nothing an instance: it is as it was written."""
     type_bodies: dict[str, MappingNode] = field(default_factory=dict)
-    """Component types by id, with what they are made from."""
+    """Component types by name, with what they are made from: the project's own, then those it uses of libraries."""
+    type_entries: dict[str, MappingEntry] = field(default_factory=dict)
+    """The same component types as they are written."""
     shells: dict[str, ComponentShell] = field(default_factory=dict)
     """Composed components by complete id, outer ones first."""
     instances: dict[str, InstanceOrigin] = field(default_factory=dict)
@@ -69,13 +72,16 @@ class ExpandedProject:
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
-def expand_project(root: MappingNode) -> ExpandedProject:
-    """Return a merged project with types written out and composed components taken apart. The tree is not changed."""
+def expand_project(root: MappingNode, incomplete_libraries: frozenset[str] = frozenset()) -> ExpandedProject:
+    """Return a merged project with types written out and composed components taken apart. The tree is not changed.
+
+    Types that `incomplete_libraries` lack are not reported: something in them could not be read.
+    """
     groups = root.get("groups")
     groups = groups if isinstance(groups, MappingNode) else MappingNode({}, root.span)
     if "component_types" not in root.entries and not _uses_composition(groups):
         return ExpandedProject(root, is_plain=True)
-    return _ProjectExpander(root).expand_groups(groups)
+    return _ProjectExpander(root, incomplete_libraries).expand_groups(groups)
 
 
 def _uses_composition(groups: MappingNode) -> bool:
@@ -110,12 +116,10 @@ class _Expansion:
 class _ProjectExpander:
     """Expands the components of a project; equal parts of one type are expanded once and shared."""
 
-    def __init__(self, root: MappingNode) -> None:
+    def __init__(self, root: MappingNode, incomplete_libraries: frozenset[str]) -> None:
         self._root = root
         self._diagnostics: list[Diagnostic] = []
-        types = root.get("component_types")
-        entries = types.entries if isinstance(types, MappingNode) else {}
-        self._types = TypeTable(entries, self._diagnostics)
+        self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries)
         self._overlay = InstanceOverlay(self._diagnostics, self._types.may_replace)
         # By the identity of the written node, which the merged tree or a type's body keeps alive.
         self._expansions: dict[int, _Expansion] = {}
@@ -165,14 +169,24 @@ class _ProjectExpander:
             )
 
     def _judge_types(self) -> None:
-        """Find what is wrong in types of which there is no instance."""
-        for name, entry in self._types.entries.items():
-            body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
-            self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
-            self._open_types.append(name)
-            for part in _list_components(body):
-                self._expand(part.value, f"{name}.{part.key}")
-            self._open_types.pop()
+        """Find what is wrong in types of which there is no instance; of libraries only in those that are used."""
+        for name in self._types.entries:
+            if library_of_type(name) is None:
+                self._judge_type(name)
+        # To judge one may ask for others; sorted, since a packed file holds them in another order.
+        while names := sorted(name for name in self._types.library_names if name not in self._result.type_bodies):
+            for name in names:
+                self._judge_type(name)
+
+    def _judge_type(self, name: str) -> None:
+        entry = self._types.entries[name]
+        body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
+        self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
+        self._result.type_entries[name] = entry
+        self._open_types.append(name)
+        for part in _list_components(body):
+            self._expand(part.value, f"{name}.{part.key}")
+        self._open_types.pop()
 
     def _expand(self, node: object, component_id: str) -> _Expansion:
         body = node if isinstance(node, MappingNode) else MappingNode({}, self._root.span)

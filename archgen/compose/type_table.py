@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from archgen.compose.instance_overlay import InstanceOverlay
+from archgen.compose.library_types import library_of_type
 from archgen.compose.type_expressions import MAX_TYPE_LENGTH, TypeExpression, bind_type_name, parse_type_expression
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
@@ -22,10 +23,16 @@ _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 
 @dataclass(slots=True)
 class TypeTable:
-    """Finds component types by name. What is wrong with a type, or with the name of one, goes to `diagnostics` once."""
+    """Finds component types by name. What is wrong with a type, or with the name of one, goes to `diagnostics` once.
+
+    Of `incomplete_libraries` something could not be read: what they seem to lack is not reported.
+    """
 
     entries: Mapping[str, MappingEntry]
     diagnostics: list[Diagnostic]
+    incomplete_libraries: frozenset[str] = frozenset()
+    library_names: dict[str, None] = field(default_factory=dict)
+    """The types of libraries that were asked for, in that order."""
     _bodies: dict[TypeExpression, MappingNode | None] = field(default_factory=dict)
     _open_names: list[str] = field(default_factory=list)
 
@@ -39,6 +46,8 @@ class TypeTable:
             return None
         expression = parse_type_expression(reference.text)
         entry = self.entries.get(expression.name) if expression else None
+        if entry is None and library_of_type(reference.text) in self.incomplete_libraries:
+            return None
         if expression is None or entry is None:
             self.diagnostics.append(self._diagnose_unknown_type(reference, expression, element_id))
             return None
@@ -49,6 +58,8 @@ class TypeTable:
         if not is_base and is_abstract(entry):
             self.diagnostics.append(_diagnose_abstract(reference, entry, self._list_derived(entry.key), element_id))
             return None
+        if library_of_type(expression.name):
+            self.library_names[expression.name] = None
         return expression
 
     def get_body(self, expression: TypeExpression) -> MappingNode | None:

@@ -7,6 +7,7 @@ from dataclasses import field, replace
 from fractions import Fraction
 from typing import Any
 
+from archgen.compose import list_type_entries
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.edit.edit_proof import list_written_nodes
 from archgen.frozen import dataclass
@@ -14,7 +15,6 @@ from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.quantity import parse_quantity
 from archgen.pipeline import CheckedProject
-from archgen.syntax.yaml_tree import MappingNode
 from archgen.syntax.yaml_writer import ElementPath, format_flow
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system.activity_builder import name_activities
@@ -83,8 +83,7 @@ class FigureSorter:
         self._data = data
         self._owners = {name: key for key, name in name_activities(self._architecture).items()}
         self._written_nodes = {node.id for node in list_written_nodes(checked_project)}
-        types = checked_project.merged_table.get("component_types")
-        self._type_spans = [entry.value.span for entry in types] if isinstance(types, MappingNode) else []
+        self._type_spans = [entry.value.span for entry in list_type_entries(checked_project.merged_table).values()]
 
     def add_times(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
         """Add what was measured of one element; yield the element and the key of what is in the slice now."""

@@ -75,13 +75,14 @@ def apply_ignores(
     rules: Mapping[str, Rule],
     first_lines: Mapping[str, LineSet],
     *,
+    shared_files: frozenset[str] = frozenset(),
     is_complete: bool = True,
 ) -> Iterator[Diagnostic]:
     """Leave out what comments silence, and add what is wrong with the comments.
 
     This runs before findings are settled, so that a comment for a rule that is switched off counts as used. After read
     or link errors, or where rules wait for something (not `is_complete`), nobody knows what else would have been found:
-    then no comment is called unused.
+    then no comment is called unused. Nor are those in `shared_files`: another project may need them.
     """
     ignores = tuple(ignores)
     ignores_by_line: dict[tuple[str, str, int], list[SilencingComment]] = defaultdict(list)
@@ -108,6 +109,8 @@ def apply_ignores(
         if not matching_ignores:
             yield diagnostic
     for ignore in ignores:
+        if ignore.span.file in shared_files:
+            continue
         if not ignore.rules:
             help_text = "name the rule in brackets: `# archgen: ignore[unread-output] why`"
             yield Diagnostic("unused-ignore", "this comment names no rule", ignore.span, help=help_text)

@@ -13,6 +13,7 @@ from dataclasses import field
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
+from archgen.link.library_merging import keep_used_libraries
 from archgen.link.slice_merging import list_supported_elements
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
@@ -103,6 +104,7 @@ def pack_project(
 ) -> PackedProject:
     """Return the packed project. `silenced_findings` are what the comments silence."""
     placer = _CommentPlacer(ignores, silenced_findings)
+    root = keep_used_libraries(root, architecture)
     project_data = _pack_mapping(root, (), placer, is_raw=False)
     packed_project = PackedProject(comments=placer.place_comments())
     project_identity = {"id": architecture.project.id, "title": architecture.project.title}
@@ -126,7 +128,9 @@ def pack_project(
     types = _copy_dict(project_data.get("types"))
     # Of the shipped type mapper, what the project uses: another version of archgen may map these types differently.
     types |= {
-        t.name: _pack_type(t) for t in architecture.types.values() if t.origin == "shipped" and t.name not in types
+        t.name: _pack_type(t)
+        for t in architecture.types.values()
+        if t.origin == "shipped" and t.name not in types and t.library is None
     }
     optional_sections = {"ros": ros, "report": report, "types": types}
     project_data |= {key: value for key, value in optional_sections.items() if value}

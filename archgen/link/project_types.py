@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from archgen.compose import ExpandedProject
 from archgen.link.data_types.field_types import TypeSources
 from archgen.link.declare.section_declaration import declare_project
 from archgen.link.declare.type_declaration import DeclaredTypes, declare_types
 from archgen.link.element_outline import ElementOutline
+from archgen.link.library_data_types import add_library_types
 from archgen.link.shipped_types import load_shipped_types
 from archgen.model.known_interfaces import guess_distro
 from archgen.project import LoadedProject
@@ -15,6 +19,7 @@ from archgen.syntax.yaml_tree import MappingNode
 def declare_project_types(
     loaded_project: LoadedProject,
     merged_table: MappingNode,
+    expansion: ExpandedProject,
     outline: ElementOutline,
     damaged_elements: frozenset[str] = frozenset(),
 ) -> DeclaredTypes:
@@ -29,4 +34,10 @@ def declare_project_types(
         damaged_elements,
         loaded_project.partial,
     )
-    return declare_types(merged_table, outline, sources)
+    library_types = add_library_types(merged_table, expansion, outline)
+    declared = declare_types(library_types.root, outline, sources)
+    types = {
+        name: replace(each, library=library_types.library_ids.get(name)) if name in library_types.library_ids else each
+        for name, each in declared.types.items()
+    }
+    return replace(declared, types=types, diagnostics=(*declared.diagnostics, *library_types.diagnostics))

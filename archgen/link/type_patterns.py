@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.compose import expand_project
-from archgen.compose.project_expansion import ExpandedProject
+from archgen.compose import ExpandedProject, expand_project, list_type_entries
+from archgen.compose.type_expressions import TypeExpression
+from archgen.compose.type_table import TypeTable
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import build_outline
@@ -19,7 +20,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _GROUP = "component types"
 """The group of the patterns; ids of groups have no blanks."""
-_OUTER_SECTIONS = ("component_types", "types", "ros", "project")
+_OUTER_SECTIONS = ("component_types", "libraries", "types", "ros", "project")
 """What a type may refer to. Nodes, chains and the like are about instances."""
 
 
@@ -31,8 +32,11 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     if not architecture.component_types:
         return TypePatterns()
     outer_entries = {name: entry for name, entry in merged_table.entries.items() if name in _OUTER_SECTIONS}
-    # Without the groups: their instances may be thousands.
-    type_bodies = expand_project(MappingNode(outer_entries, NO_SPAN)).type_bodies
+    table = TypeTable(list_type_entries(merged_table), [])
+    type_bodies = {
+        name: table.get_body(TypeExpression(name, component_type.generic)) or MappingNode({}, component_type.at)
+        for name, component_type in architecture.component_types.items()
+    }
     expansion = expand_project(_write_patterns(outer_entries, type_bodies))
     patterns = _link_expansion(expansion, architecture)
     components = {**patterns.components, **patterns.shells}
@@ -44,9 +48,7 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
 
 def _write_patterns(outer_entries: Mapping[str, MappingEntry], type_bodies: Mapping[str, MappingNode]) -> MappingNode:
     """Return a project of one group, which has a component for each type."""
-    components = {
-        name: MappingEntry(name, outer_entries["component_types"].key_span, body) for name, body in type_bodies.items()
-    }
+    components = {name: MappingEntry(name, body.span, body) for name, body in type_bodies.items()}
     groups = _nest_mapping(_nest_mapping(MappingNode(components, NO_SPAN), "components"), _GROUP)
     return MappingNode({**outer_entries, **_nest_mapping(groups, "groups").entries}, NO_SPAN)
 

@@ -187,7 +187,9 @@ class ComponentType:
     description: str | None = None
     owner: str | None = None
     base: str | None = None
-    """The type that it is made from, as written."""
+    """The type that it is made from, as written; one of a library with the library's id before it."""
+    library: str | None = None
+    """The library that it comes from, None for a type of the project."""
     generic: tuple[str, ...] = ()
     """The names that stand for conceptual types."""
     is_abstract: bool = False

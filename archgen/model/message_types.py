@@ -86,6 +86,8 @@ class ConceptualType:
     """The coordinate frame in which such data is given, as written."""
     origin: Literal["project", "shipped", "message"] = "project"
     """What maps it: the project, the type mapper that ships with archgen, or its own name, which is a message."""
+    library: str | None = None
+    """The library that it comes from, None where the project declares it, or nobody."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)

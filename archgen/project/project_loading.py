@@ -11,6 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
+from archgen.project.library_reading import LoadedLibrary, list_inner_folders, read_libraries, refuse_libraries
 from archgen.project.project_search import PROJECT_FILE, find_project
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
@@ -34,7 +35,8 @@ class LoadedProject:
 
     Nothing is used of the files in `broken_files`. `lost_keys` are the keys in them, and in whatever else was not
     understood: what they may declare is never reported as missing. `partial` is whether that was a whole file or
-    section.
+    section. `library_files` are the files of libraries, read or not, by their paths from the project's folder;
+    `library_ignores` are the comments in them: nobody says that this project needs them.
     """
 
     files: ProjectFiles
@@ -52,11 +54,19 @@ class LoadedProject:
     interface_files: tuple[str, ...] = ()
     lost_keys: frozenset[str] = frozenset()
     partial: bool = False
+    libraries: tuple[LoadedLibrary, ...] = ()
+    library_files: tuple[str, ...] = ()
+    library_ignores: tuple[IgnoreComment, ...] = ()
 
     @property
     def root(self) -> Path:
         """The project's folder."""
         return self.files.root
+
+    @property
+    def incomplete_libraries(self) -> frozenset[str]:
+        """The libraries of which something could not be read."""
+        return frozenset(library.id for library in self.libraries if not library.is_complete)
 
 
 def load_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> LoadedProject:
@@ -70,14 +80,27 @@ def load_from_files(files: ProjectFiles, first_file: str, parsed_slices: ParsedS
 
     Slices in `parsed_slices` are not parsed again, and new ones are added to it.
     """
-    state = ReadingState(files, parsed_slices=parsed_slices)
+    parsed_slices = {} if parsed_slices is None else parsed_slices
+    state = _read_slices(files, first_file, parsed_slices)
+    # Which folders are libraries is known when all slices are read: those in them are taken out by reading once more.
+    inner_folders = list_inner_folders(state)
+    if inner_folders:
+        state = _read_slices(files, first_file, parsed_slices, inner_folders)
+    libraries = read_libraries(state) if first_file == PROJECT_FILE else refuse_libraries(state)
+    return _finish_loading(state, first_file, tuple(libraries))
+
+
+def _read_slices(
+    files: ProjectFiles, first_file: str, parsed_slices: ParsedSlices, skipped_folders: frozenset[str] = frozenset()
+) -> ReadingState:
+    state = ReadingState(files, parsed_slices=parsed_slices, skipped_folders=skipped_folders)
     read_slice(state, first_file)
     if first_file == PROJECT_FILE:  # a file of any other name is the whole project: its `sources` are not followed
         read_sources(state)
-    return _finish_loading(state, first_file)
+    return state
 
 
-def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
+def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[LoadedLibrary, ...]) -> LoadedProject:
     # The default id and title come from the folder's name, or from the file's. A bare clone is called `robot.git`.
     stem = state.files.root.name.removesuffix(".git") if first_file == PROJECT_FILE else Path(first_file).stem
     name_words = re.findall(r"[a-z0-9]+", stem.lower())
@@ -104,6 +127,9 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
         sources=state.sources,
         diagnostics=tuple(state.diagnostics),
         ignores={document.file: document.ignores for document in state.documents if document.ignores},
+        library_ignores=tuple(
+            ignore for library in libraries for document in library.documents for ignore in document.ignores
+        ),
         rule_settings={
             entry.key: Severity(severity.text) for entry in rule_entries if (severity := _severity_of(entry.value))
         },
@@ -113,6 +139,8 @@ def _finish_loading(state: ReadingState, first_file: str) -> LoadedProject:
         interface_files=tuple(dict.fromkeys(interface_files)),
         lost_keys=frozenset(state.lost_keys),
         partial=state.partial,
+        libraries=libraries,
+        library_files=tuple(state.library_files),
     )
 
 

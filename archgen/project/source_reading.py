@@ -35,7 +35,7 @@ _OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
 
-_UNMARKING_SECTIONS = frozenset({"frames"})
+_UNMARKING_SECTIONS = frozenset({"frames", "libraries"})
 """Sections that other programs' files may have, too: one of these alone makes no slice of a file that nobody names."""
 
 
@@ -54,6 +54,13 @@ class ReadingState:
     """The keys of what was not understood, and the ids that malformed ones may have been meant to be."""
     partial: bool = False
     """Whether a whole file or section was not understood."""
+    skipped_folders: frozenset[str] = frozenset()
+    """Folders in the project's own that are libraries: nothing in them is a source."""
+    library_files: list[str] = field(default_factory=list)
+
+    def is_library_file(self, file: str) -> bool:
+        """Whether a file lies in a library inside of the project's folder."""
+        return any(file.startswith(f"{folder}/") for folder in self.skipped_folders)
 
 
 def _parse_file(state: ReadingState, file: str) -> Slice:
@@ -106,7 +113,7 @@ def read_sources(state: ReadingState) -> None:
         unmatched_patterns = list[ScalarNode]()
         for pattern in sources_entry.value.items:
             for file in expand_source_pattern(state, pattern, unmatched_patterns):
-                if file not in state.seen_files:
+                if file not in state.seen_files and not state.is_library_file(file):
                     _read_listed_slice(state, file, is_named=isinstance(pattern, ScalarNode) and pattern.text == file)
         _read_agreements(state)
         # Last, when it is known which files no pattern names.
@@ -134,7 +141,7 @@ def _read_all_slices(state: ReadingState) -> None:
     """Read every *.yaml below that holds a section, and list those that do not in one note."""
     known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
     for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
-        if file in state.seen_files:
+        if file in state.seen_files or state.is_library_file(file):
             continue
         state.seen_files.add(file)
         parsed_slice = _parse_file(state, file)
@@ -166,6 +173,21 @@ def _read_all_slices(state: ReadingState) -> None:
     # With a broken archgen.yaml it is unknown whether it has `sources`: the note could be wrong.
     if ignored_files and PROJECT_FILE not in state.broken_files:
         state.diagnostics.append(_diagnose_ignored_files(ignored_files))
+
+
+def read_library_slices(state: ReadingState, folder: str) -> None:
+    """Read every *.yaml of a library that holds a section; what does not is nobody's mistake here."""
+    known_sections = list_sections() - _UNMARKING_SECTIONS
+    for file in file_patterns.expand_pattern(state.files, f"{folder}/**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
+        state.seen_files.add(file)
+        parsed_slice = _parse_file(state, file)
+        if baseline_reading.is_baseline(parsed_slice.text):
+            continue
+        if parsed_slice.document is None:
+            if _looks_like_slice(parsed_slice, known_sections):
+                _keep_slice(state, parsed_slice)
+        elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
+            _keep_slice(state, parsed_slice)
 
 
 def _list_parameter_paths(state: ReadingState) -> Iterator[str]:

@@ -7,7 +7,7 @@ becomes `{}`. Normalising twice changes nothing.
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
@@ -99,6 +99,7 @@ _ROOT_FORM = ElementForm(
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
         "nodes": _NODE_FORM,
         "types": _TYPE_FORM,
+        "libraries": ElementForm(("path",), keyed_forms={"component_types": _COMPONENT_TYPE_FORM, "types": _TYPE_FORM}),
         "hosts": _TITLED_FORM,
         "containers": _CONTAINER_FORM,
         "resources": ElementForm(("host",)),
@@ -117,6 +118,7 @@ _ROOT_FORM = ElementForm(
 
 def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Bring a validated document into the normal form. Its tree is changed in place."""
+    library_diagnostics = tuple(_normalise_libraries(document))
     # Types and indicators first: both look at short forms that _normalise_mapping expands.
     types = document.root.get("types")
     type_diagnostics = tuple(_fold_type_names(types)) if isinstance(types, MappingNode) else ()
@@ -132,7 +134,15 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
-    return type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
+    return library_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
+
+
+def _normalise_libraries(document: YamlDocument) -> Iterator[Diagnostic]:
+    """Normalise what a packed file holds of its libraries, each as if it were a file of its own."""
+    libraries = document.root.get("libraries")
+    for library in libraries if isinstance(libraries, MappingNode) else ():
+        if isinstance(library.value, MappingNode):
+            yield from normalise_document(replace(document, root=library.value))
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:

@@ -11,7 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.git.object_reader import LINK_MODE, SUBMODULE_MODE, GitObjects, TreeEntry
-from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal
+from archgen.syntax.project_files import (
+    MAX_BYTES,
+    NO_SUCH_FOLDER,
+    TOO_LARGE,
+    FileRefusal,
+    find_path_refusal,
+    find_place_refusal,
+)
 
 _MAX_LINKS = 40  # Linux gives up after as many (MAXSYMLINKS), with the same message
 _LINK_LEADS_OUT = FileRefusal("this link leads out of the project's folder", "copy the file into the project")
@@ -94,6 +101,18 @@ class CommittedFiles:
             return TOO_LARGE
         data = self.objects.read_blob(blob.object_id) if size is not None else None
         return _CONTENT_NOT_FETCHED if data is None else data
+
+    def open_folder(self, path: str) -> CommittedFiles | FileRefusal:
+        """Return the files of another folder of the same commit, or why they cannot be used.
+
+        git lists nothing below a link or a submodule: there is no such folder.
+        """
+        own_folder = self.root.relative_to(self.objects.repository.top).as_posix().removeprefix(".")
+        refusal = find_path_refusal(path) or find_place_refusal(own_folder, path)
+        if refusal:
+            return refusal
+        target = posixpath.normpath(posixpath.join(own_folder, path))
+        return list_committed_files(self.objects, self.commit, target) or NO_SUCH_FOLDER
 
     def _find_submodule(self, path: str) -> str | None:
         """Return the submodule that a path lies in, or None."""

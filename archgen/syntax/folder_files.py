@@ -12,7 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal
+from archgen.syntax.project_files import (
+    MAX_BYTES,
+    NO_SUCH_FOLDER,
+    TOO_LARGE,
+    FileRefusal,
+    find_path_refusal,
+    find_place_refusal,
+)
 
 _FILE_KINDS = (
     (stat.S_ISDIR, "a folder"),
@@ -64,6 +71,28 @@ class FolderFiles:
             return _read_regular_file(full_path)
         except OSError as error:
             return FileRefusal(_describe_read_error(full_path, error))
+
+    def open_folder(self, path: str) -> FolderFiles | FileRefusal:
+        """Return the files of another folder of the repository, or why they cannot be used."""
+        # Imported here: only projects with libraries ask git.
+        from archgen.git import NoRepositoryError, find_repository
+
+        refusal = find_path_refusal(path)
+        if refusal:
+            return refusal
+        try:
+            own_folder, has_repository = find_repository(self.root).prefix, True
+        except NoRepositoryError:
+            own_folder, has_repository = "", False
+        refusal = find_place_refusal(own_folder, path, has_repository=has_repository)
+        if refusal:
+            return refusal
+        target = os.path.normpath(os.path.join(os.path.realpath(self.root), path))  # noqa: PTH118 - `..` goes by names
+        if not os.path.isdir(target):  # noqa: PTH112 - Path.is_dir raises where a folder may not be entered
+            return NO_SUCH_FOLDER
+        if os.path.realpath(target) != target:
+            return FileRefusal("this folder is reached through a symbolic link", "name the folder itself")
+        return FolderFiles(Path(target))
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:

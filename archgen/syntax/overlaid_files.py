@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
-from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal, ProjectFiles
+from archgen.syntax.project_files import MAX_BYTES, NO_SUCH_FOLDER, TOO_LARGE, FileRefusal, ProjectFiles
 
 _FolderNames = dict[str, tuple[set[str], set[str]]]
 """The names of subfolders and of files, by folder."""
@@ -60,6 +61,15 @@ class OverlaidFiles:
         return (
             self.base_files.fetch_bytes(path) if self.base_files is not None else FileRefusal("the file does not exist")
         )
+
+    def open_folder(self, path: str) -> OverlaidFiles | FileRefusal:
+        """Return the files of another folder, with the contents of the overlay that lie in it."""
+        base_files = self.base_files.open_folder(path) if self.base_files is not None else NO_SUCH_FOLDER
+        if isinstance(base_files, FileRefusal):
+            return base_files
+        prefix = f"{posixpath.normpath(path)}/"
+        contents = {name.removeprefix(prefix): data for name, data in self.contents.items() if name.startswith(prefix)}
+        return OverlaidFiles(base_files.root, contents, base_files, self.commit)
 
     def _list_overlay_folders(self, top: str) -> _FolderNames:
         """Return the folders of the overlay below a folder, the empty ones between them included."""

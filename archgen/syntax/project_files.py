@@ -6,6 +6,7 @@ replaced (`OverlaidFiles`).
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,6 +64,14 @@ class ProjectFiles(Protocol):
         """Return the bytes of a regular file inside the project of at most `MAX_BYTES`, or why it cannot be used."""
         ...
 
+    def open_folder(self, path: str) -> ProjectFiles | FileRefusal:
+        """Return the files of another folder of the repository, or why they cannot be used.
+
+        `path` starts at the project's folder and may climb out of it, never out of the repository; without one it stays
+        in the project's folder. No link is followed on the way, and a folder around the project is refused.
+        """
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class FileText:
@@ -117,3 +126,27 @@ def span_after(file: str, text_before: str) -> Span:
     """Return the span of the one character that follows `text_before`, the file's text up to there."""
     lines = text_before.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     return Span(file, len(lines), len(lines[-1]) + 1, len(lines), len(lines[-1]) + 2)
+
+
+NO_SUCH_FOLDER = FileRefusal("there is no such folder", "write the path from the project's folder, with `/`")
+
+
+def find_path_refusal(path: str) -> FileRefusal | None:
+    """Return why a path cannot be the path of a folder on any machine; None where it can."""
+    if not path.isprintable() or "\\" in path or path.startswith("/") or not path.strip():
+        return FileRefusal("this is no path", "write the path from the project's folder, with `/`")
+    return None
+
+
+def find_place_refusal(own_folder: str, path: str, *, has_repository: bool = True) -> FileRefusal | None:
+    """Return why a folder at a path from a project's folder may not be read; None where it may.
+
+    `own_folder` is the project's folder from the top of its repository, "" where it is the top itself.
+    """
+    target = posixpath.normpath(posixpath.join(own_folder, path))
+    if target == ".." or target.startswith("../"):
+        top = "the repository" if has_repository else "the project's folder, which is in no repository"
+        return FileRefusal(f"this leads out of {top}", "name a folder in the same repository")
+    if target == "." or f"{own_folder}/".startswith(f"{target}/"):
+        return FileRefusal("this folder holds the project itself", "name a folder of its own")
+    return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.compose import ExpandedProject
+from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
 from archgen.model.component import ComponentType
@@ -12,8 +13,8 @@ from archgen.syntax.yaml_tree import MappingNode
 def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentType]:
     """Return the component types of a project, by id."""
     types: dict[str, ComponentType] = {}
-    for name, entry, body in mapping_values.iterate_elements(expansion.root, "component_types"):
-        whole_body = expansion.type_bodies.get(name, body)
+    for name, entry in expansion.type_entries.items():
+        body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
         types[name] = ComponentType(
             id=name,
             title=mapping_values.get_title(body, name),
@@ -21,6 +22,7 @@ def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentTy
             description=mapping_values.get_text(whole_body, "description"),
             owner=mapping_values.get_text(body, "owner"),
             base=mapping_values.get_text(body, "is"),
+            library=library_of_type(name),
             generic=list_generic_names(entry),
             is_abstract=is_abstract(entry),
             inputs=_read_port_types(whole_body, "inputs"),

@@ -1,0 +1,54 @@
+"""The component types of a project's libraries, by the names under which the project knows them: `common.laser2d`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+
+_TYPE_KEYS = ("is", "same_as")
+
+
+def list_type_entries(root: MappingNode) -> dict[str, MappingEntry]:
+    """Return the component types that a project may name, by name: its own, then those of its libraries."""
+    own_types = root.get("component_types")
+    entries = dict(own_types.entries) if isinstance(own_types, MappingNode) else {}
+    for library in list_libraries(root):
+        library_types = library.value.get("component_types") if isinstance(library.value, MappingNode) else None
+        for entry in library_types if isinstance(library_types, MappingNode) else ():
+            name = f"{library.key}.{entry.key}"
+            entries[name] = MappingEntry(name, entry.key_span, _qualify_types(entry.value, library.key))
+    return entries
+
+
+def list_libraries(root: MappingNode) -> Iterator[MappingEntry]:
+    """Yield the libraries of a merged project."""
+    libraries = root.get("libraries")
+    if isinstance(libraries, MappingNode):
+        yield from libraries
+
+
+def library_of_type(name: str) -> str | None:
+    """Return the library of a component type by its name, None for one of the project."""
+    library, dot, _ = name.partition(".")
+    return library if dot else None
+
+
+def _qualify_types(body: YamlNode, library: str) -> YamlNode:
+    """Return a type's body in which the types that it names are of the library: nothing else is known there."""
+    if not isinstance(body, MappingNode):
+        return body
+    entries = dict(body.entries)
+    for key in _TYPE_KEYS:
+        reference = body.get(key)
+        if isinstance(reference, ScalarNode) and reference.value is not None:
+            text = f"{library}.{reference.text.strip()}"
+            entries[key] = MappingEntry(key, entries[key].key_span, ScalarNode(text, text, reference.span))
+    components = body.get("components")
+    if isinstance(components, MappingNode):
+        parts = {
+            part.key: MappingEntry(part.key, part.key_span, _qualify_types(part.value, library)) for part in components
+        }
+        parts_node = MappingNode(parts, components.span, components.declares)
+        entries["components"] = MappingEntry("components", entries["components"].key_span, parts_node)
+    return MappingNode(entries, body.span, body.declares)

@@ -1,0 +1,119 @@
+"""Take the types that a project uses of its libraries among its own: they are known by their own names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from archgen.compose import ExpandedProject
+from archgen.compose.library_types import list_libraries
+from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
+from archgen.link import mapping_values
+from archgen.link.element_outline import ElementOutline
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
+
+_NAME_BETWEEN_BRACKETS = re.compile(r"[^<>,\[\]]+")
+_NAMING_KEYS = frozenset({"type", "request", "response", "feedback"})
+"""Keys whose scalars name types; `fields` and its like hold them by name."""
+_FIELD_KEYS = frozenset({"fields", "request", "response", "feedback"})
+
+
+class LibraryDataTypes(NamedTuple):
+    """A project with the types that it uses of libraries, and of which library each is, by its name."""
+
+    root: MappingNode
+    library_ids: Mapping[str, str] = {}
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+class _LibraryType(NamedTuple):
+    library_id: str
+    entry: MappingEntry
+
+
+def add_library_types(root: MappingNode, expansion: ExpandedProject, outline: ElementOutline) -> LibraryDataTypes:
+    """Return a merged project whose types include those that it uses of libraries. A type of its own hides theirs.
+
+    Two libraries that say different things of a type that is used are reported; the first counts.
+    """
+    library_types = _list_library_types(root)
+    if not library_types:
+        return LibraryDataTypes(root)
+    own_types = root.get("types")
+    own_entries = dict(own_types.entries) if isinstance(own_types, MappingNode) else {}
+    own_names = {mapping_values.normalise_type_name(name) for name in own_entries}
+    diagnostics: list[Diagnostic] = []
+    used_types: dict[str, _LibraryType] = {}
+    pending_names = [*_list_project_names(root, expansion, outline)]
+    while pending_names:
+        name = pending_names.pop()
+        if name in own_names or name in used_types or name not in library_types:
+            continue
+        first_type, *others = library_types[name]
+        used_types[name] = first_type
+        diagnostics += _find_differences(name, first_type, others)
+        pending_names += _list_names_in(first_type.entry.value, is_field=False)
+    if not used_types:
+        return LibraryDataTypes(root)
+    # In an order that a packed file has as well.
+    entries = own_entries | {name: used_types[name].entry for name in sorted(used_types)}
+    span = root.entries["types"].key_span if "types" in root.entries else root.entries["libraries"].key_span
+    section = MappingEntry("types", span, MappingNode(entries, own_types.span if own_types else span))
+    library_ids = {name: each.library_id for name, each in used_types.items()}
+    return LibraryDataTypes(MappingNode({**root.entries, "types": section}, root.span), library_ids, tuple(diagnostics))
+
+
+def _list_library_types(root: MappingNode) -> dict[str, list[_LibraryType]]:
+    library_types: dict[str, list[_LibraryType]] = {}
+    for library in list_libraries(root):
+        for key, entry, _ in mapping_values.iterate_elements(mapping_values.get_body(library), "types"):
+            name = mapping_values.normalise_type_name(key)
+            library_types.setdefault(name, []).append(_LibraryType(library.key, entry))
+    return library_types
+
+
+def _list_project_names(root: MappingNode, expansion: ExpandedProject, outline: ElementOutline) -> Iterator[str]:
+    """Yield what may be the name of a type in a project: of ports, operations, its own types, its component types."""
+    yield from _split_names(outline.list_used_types())
+    yield from _list_names_in(root.get("types"), is_field=False)
+    for body in expansion.type_bodies.values():
+        yield from _list_names_in(body, is_field=False)
+    for _, _, group in mapping_values.iterate_elements(expansion.root, "groups"):
+        for _, _, component in mapping_values.iterate_elements(group, "components"):
+            yield from _list_names_in(component.get("operations"), is_field=False)
+
+
+def _list_names_in(node: YamlNode | None, *, is_field: bool) -> Iterator[str]:
+    """Yield the types that a part of the language names. Some may be something else: they are no types of a library."""
+    if isinstance(node, MappingNode):
+        for entry in node:
+            if isinstance(entry.value, ScalarNode):
+                if is_field or entry.key in _NAMING_KEYS:
+                    yield from _split_names([entry.value.text])
+            elif entry.key != "parameters":
+                yield from _list_names_in(entry.value, is_field=entry.key in _FIELD_KEYS)
+    elif isinstance(node, SequenceNode):
+        for item in node.items:
+            yield from _list_names_in(item, is_field=False)
+
+
+def _split_names(texts: Iterable[str]) -> Iterator[str]:
+    """Yield the names in texts such as `Envelope<Pose>` and `Pose[3]`."""
+    for text in texts:
+        yield mapping_values.normalise_type_name(text)
+        if not {"<", "["}.isdisjoint(text):
+            yield from map(mapping_values.normalise_type_name, _NAME_BETWEEN_BRACKETS.findall(text))
+
+
+def _find_differences(name: str, first: _LibraryType, others: Iterable[_LibraryType]) -> Iterator[Diagnostic]:
+    for other in others:
+        if node_to_data(other.entry.value) != node_to_data(first.entry.value):
+            yield diagnose_repetition(
+                "conflicting-values",
+                f"the libraries `{first.library_id}` and `{other.library_id}` say different things of the type `{name}`",
+                other.entry.key_span,
+                first.entry.key_span,
+                help_line="declare it in the project, below `types`, or in one library only",
+                element=name,
+            )

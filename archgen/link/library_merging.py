@@ -1,0 +1,76 @@
+"""Put what the files of libraries hold into a merged project, where a packed file has it."""
+
+from __future__ import annotations
+
+from archgen.compose.library_types import list_libraries
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.link import mapping_values
+from archgen.link.slice_merging import merge_documents
+from archgen.model.architecture import Architecture
+from archgen.project.library_reading import LIBRARY_SECTIONS, LoadedLibrary
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlDocument
+
+
+def merge_libraries(
+    root: MappingNode, libraries: tuple[LoadedLibrary, ...]
+) -> tuple[MappingNode, tuple[Diagnostic, ...]]:
+    """Return a merged project with its libraries filled in; the tree is not changed."""
+    if not libraries:
+        return root, ()
+    diagnostics: list[Diagnostic] = []
+    bodies = {library.key: library for library in list_libraries(root)}
+    for library in libraries:
+        entry = bodies.get(library.id)
+        if entry is not None and isinstance(entry.value, MappingNode):
+            content, findings = _merge_content(entry.value, library)
+            diagnostics += findings
+            body = MappingNode({**entry.value.entries, **content.entries}, entry.value.span)
+            bodies[library.id] = MappingEntry(entry.key, entry.key_span, body)
+    section = root.entries["libraries"]
+    filled_section = MappingEntry(section.key, section.key_span, MappingNode(bodies, section.value.span))
+    return MappingNode({**root.entries, "libraries": filled_section}, root.span), tuple(diagnostics)
+
+
+def _merge_content(written: MappingNode, library: LoadedLibrary) -> tuple[MappingNode, tuple[Diagnostic, ...]]:
+    """Return what is written at the library's path together with what its files hold."""
+    sections = {name: entry for name, entry in written.entries.items() if name in LIBRARY_SECTIONS}
+    own_documents = (YamlDocument("", MappingNode(sections, written.span)),) if sections else ()
+    return merge_documents((*own_documents, *library.documents))
+
+
+def keep_used_libraries(root: MappingNode, architecture: Architecture) -> MappingNode:
+    """Return a merged project whose libraries hold only what it uses, and no paths."""
+    if "libraries" not in root.entries:
+        return root
+    libraries = {
+        library.key: MappingEntry(library.key, library.key_span, body)
+        for library in list_libraries(root)
+        if (body := _keep_used_types(library, architecture)).entries
+    }
+    section = root.entries["libraries"]
+    kept_section = MappingEntry("libraries", section.key_span, MappingNode(libraries, section.value.span))
+    entries = {**root.entries, "libraries": kept_section}
+    if not libraries:
+        del entries["libraries"]
+    return MappingNode(entries, root.span)
+
+
+def _keep_used_types(library: MappingEntry, architecture: Architecture) -> MappingNode:
+    body = mapping_values.get_body(library)
+    component_types = [
+        entry
+        for entry in mapping_values.get_mapping(body, "component_types")
+        if f"{library.key}.{entry.key}" in architecture.component_types
+    ]
+    types = [
+        entry
+        for entry in mapping_values.get_mapping(body, "types")
+        if (used_type := architecture.types.get(mapping_values.normalise_type_name(entry.key)))
+        and used_type.library == library.key
+    ]
+    used_entries = {
+        name: MappingEntry(name, body.entries[name].key_span, MappingNode({e.key: e for e in entries}, body.span))
+        for name, entries in (("component_types", component_types), ("types", types))
+        if entries
+    }
+    return MappingNode(used_entries, body.span)

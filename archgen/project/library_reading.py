@@ -1,0 +1,113 @@
+"""Read the libraries of a project: folders of component types and types that several projects share."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.project.source_reading import ReadingState, read_library_slices
+from archgen.syntax.library_files import LibraryFiles
+from archgen.syntax.project_files import FileRefusal
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
+
+LIBRARY_SECTIONS = ("component_types", "types")
+_SETTINGS = frozenset({"archgen", "project", "sources", "rules", "layout", "report", "review", "site", "partners"})
+"""Sections of a library that is checked as a project of its own. They say nothing about who uses it."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedLibrary:
+    """A library of which the files have been read: its documents in normal form, in the order in which they are merged.
+
+    They hold component types and types only. `is_complete` is whether all of its files could be read.
+    """
+
+    id: str
+    at: Span
+    documents: tuple[YamlDocument, ...] = ()
+    is_complete: bool = True
+
+
+def list_library_paths(state: ReadingState) -> dict[str, ScalarNode]:
+    """Return where the libraries lie, by their ids, as far as that is written."""
+    paths: dict[str, ScalarNode] = {}
+    for document in state.documents:
+        libraries = document.root.get("libraries")
+        for entry in libraries if isinstance(libraries, MappingNode) else ():
+            path = entry.value.get("path") if isinstance(entry.value, MappingNode) else None
+            if isinstance(path, ScalarNode) and path.value is not None:
+                paths.setdefault(entry.key, path)
+    return paths
+
+
+def list_inner_folders(state: ReadingState) -> frozenset[str]:
+    """Return the folders of libraries that lie in the project's own: their files are none of the project's."""
+    folders = (posixpath.normpath(path.text) for path in list_library_paths(state).values())
+    return frozenset(folder for folder in folders if folder != "." and not folder.startswith(("../", "/")))
+
+
+def read_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
+    """Read the files of all libraries. What is wrong with them goes to the state."""
+    for library_id, path in list_library_paths(state).items():
+        folder_files = state.files.open_folder(path.text)
+        if isinstance(folder_files, FileRefusal):
+            state.diagnostics.append(_diagnose_missing_library(library_id, path, folder_files))
+            state.partial = True
+            yield LoadedLibrary(library_id, path.span, is_complete=False)
+        else:
+            yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
+
+
+def refuse_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
+    """Report the libraries of a project of one file that lie elsewhere, as what its `sources` name is not read either."""
+    refusal = FileRefusal(
+        "a project of one file holds what it uses of its libraries", "`archgen pack` of the whole project puts it there"
+    )
+    for library_id, path in list_library_paths(state).items():
+        state.diagnostics.append(_diagnose_missing_library(library_id, path, refusal))
+        state.partial = True
+        yield LoadedLibrary(library_id, path.span, is_complete=False)
+
+
+def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files: LibraryFiles) -> LoadedLibrary:
+    library_state = ReadingState(files, sources=state.sources, parsed_slices=state.parsed_slices)
+    read_library_slices(library_state, files.folder)
+    state.diagnostics += library_state.diagnostics
+    state.lost_keys |= library_state.lost_keys
+    state.partial |= library_state.partial
+    state.library_files += sorted(library_state.seen_files)
+    documents = []
+    for document in library_state.documents:
+        state.diagnostics += _find_unused_sections(document, library_id)
+        sections = {name: entry for name, entry in document.root.entries.items() if name in LIBRARY_SECTIONS}
+        if sections:
+            documents.append(YamlDocument(document.file, MappingNode(sections, document.root.span), document.ignores))
+    is_complete = not library_state.broken_files and not library_state.partial
+    if not documents and is_complete:
+        message = f"no file in `{path.text}` holds `component_types` or `types`"
+        state.diagnostics.append(Diagnostic("missing-library", message, path.span, severity=Severity.WARNING))
+    return LoadedLibrary(library_id, path.span, tuple(documents), is_complete)
+
+
+def _find_unused_sections(document: YamlDocument, library_id: str) -> Iterator[Diagnostic]:
+    """Report libraries of a library, and note what else it has that no project gets from it."""
+    unused_entries: list[MappingEntry] = []
+    for entry in document.root:
+        if entry.key == "libraries":
+            message = f"`{library_id}` is a library, and a library has no libraries of its own"
+            help_line = "write what it takes from others into it, or name both libraries in the project"
+            yield Diagnostic("missing-library", message, entry.key_span, help=help_line)
+        elif entry.key not in LIBRARY_SECTIONS and entry.key not in _SETTINGS:
+            unused_entries.append(entry)
+    if unused_entries:
+        names = ", ".join(f"`{entry.key}`" for entry in unused_entries)
+        message = f"of the library `{library_id}` only `component_types` and `types` are used, not {names}"
+        yield Diagnostic("ignored-file", message, unused_entries[0].key_span)
+
+
+def _diagnose_missing_library(library_id: str, path: ScalarNode, refusal: FileRefusal) -> Diagnostic:
+    message = f"the library `{library_id}` cannot be read from `{path.text}`: {refusal.message}"
+    return Diagnostic("missing-library", message, path.span, help=refusal.help)
