@@ -148,14 +148,23 @@ def _suggest_measuring(analysis: Analysis, result: ChainResult) -> str:
     for name in missing:
         step = _suggest_figure(analysis, name)
         if step:
-            more = f"; {len(missing) - 1} more figures are missing or rest on it" if len(missing) > 1 else ""
-            return f"{step}{more}."
+            return f"{step}{_count_others(len(missing) - 1)}."
     values = [value for term in result.terms for value in (term.sampling, term.response)]
     unlinked_ids = [name for value in values if UNLINKED_NOTE in value.assumptions for name in value.missing]
     hosts = dict.fromkeys(
         activity.host for name in unlinked_ids if (activity := analysis.system.activities.get(name)) and activity.host
     )
     return f"Write the link that joins {join_words(list(hosts))} (`links:`)." if hosts else ""
+
+
+def _count_others(count: int) -> str:
+    if count == 0:
+        return ""
+    return (
+        "; one more figure is missing or rests on it"
+        if count == 1
+        else f"; {count} more figures are missing or rest on it"
+    )
 
 
 def _suggest_figure(analysis: Analysis, name: str) -> str:
