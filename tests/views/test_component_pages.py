@@ -10,12 +10,14 @@ from archgen import pipeline
 from archgen.emit.site.page_links import collect_links
 from archgen.emit.site.site_navigation import build_navigation
 from archgen.model.architecture import Architecture
+from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.single_page import make_page
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Facts, Inlines, Page, Table
+from archgen.views.timing.timing_lookup import bound_chains
 
 ROBOT = """
 archgen: 1
@@ -193,3 +195,15 @@ def test_the_tree_is_open_down_to_the_reader(robot: Architecture) -> None:
     outer_tree = navigation.write_tree(by_anchor["component:arms.planner"], "")
     assert ">Arm</a>" in outer_tree
     assert ">Elbow</a>" not in outer_tree
+
+
+def test_what_the_whole_says_of_its_time_stands_beside_the_worst_way_through_it(tmp_path: Path) -> None:
+    timed = ROBOT.replace("functionality: Moves.", "functionality: Moves.\n        timing: {deadline: 9 ms}")
+    (tmp_path / "archgen.yaml").write_text(timed)
+    checked = pipeline.check_project(tmp_path)
+    assert checked.analysis is not None
+    lookup = make_lookup(checked.architecture, timing_lookup=bound_chains(checked.analysis, checked.architecture))
+    facts = read_facts(next(page for page in make_pages(lookup, DocumentEdition()) if page.section.title == "Arm"))
+    assert (facts["Timing"], facts["Worst way through it"]) == ("deadline 9 ms", "2 ms: elbow")
+    assert dict(make_card(lookup, "composed", "arms.arm").facts)["worst way"] == "2 ms: elbow"
+    assert "worst way" not in dict(make_card(lookup, "composed", "arms.arm.hand").facts)

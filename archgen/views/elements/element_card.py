@@ -20,6 +20,7 @@ from archgen.views.elements.parameter_blocks import (
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state, name_chain
 from archgen.views.tables.type_fields import list_field_lines
+from archgen.views.timing.element_timing import make_whole_fact
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +176,8 @@ def _composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         ("owner", ", ".join(shell.owners) or "?"),
         ("functionality", " ".join((shell.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in shell.requirements)),
+        ("timing", inline_text.format_timing_sentence(shell.timing)),
+        ("worst way", "".join(run.text for run in make_whole_fact(lookup, shell.id))),
         ("tags", ", ".join(shell.tags)),
     ]
     inputs = tuple(
