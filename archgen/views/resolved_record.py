@@ -10,6 +10,7 @@ from dataclasses import asdict
 
 from archgen.model.architecture import Architecture, Chain, Requirement
 from archgen.model.component import Component, ComponentType, Group, Input, Output
+from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Host, Link
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.views.lookup import Lookup
@@ -92,6 +93,10 @@ def _record_component_type(component_type: ComponentType) -> dict[str, object]:
         "inputs": {name: kind or "" for name, kind in component_type.inputs.items()},
         "outputs": {name: kind or "" for name, kind in component_type.outputs.items()},
         "components": list(component_type.components),
+        "parameters": {name: record_parameter(each) for name, each in component_type.parameters.items()},
+        "open": list(component_type.open),
+        "operations": {name: record_operation(each) for name, each in component_type.operations.items()},
+        "frames": {frame.id: _record_frame(frame) for frame in component_type.frames},
     }
     return pick_fields(component_type, "title", "owner", "functionality", "description") | drop_unknown(dict(fields))
 
@@ -128,12 +133,12 @@ def _record_resources(architecture: Architecture) -> dict[str, object]:
 
 def _record_frames(architecture: Architecture) -> dict[str, object]:
     """Return the section of frames, empty in a project without any."""
-    frames = {
-        frame.id: pick_fields(frame, "title", "parent", "by")
-        | drop_unknown({"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None})
-        for frame in architecture.frames.values()
-    }
-    return drop_unknown({"frames": frames})
+    return drop_unknown({"frames": {frame.id: _record_frame(frame) for frame in architecture.frames.values()}})
+
+
+def _record_frame(frame: Frame) -> dict[str, object]:
+    values = {"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None}
+    return pick_fields(frame, "title", "parent", "by") | drop_unknown(dict(values))
 
 
 def _record_link(link: Link) -> dict[str, object]:

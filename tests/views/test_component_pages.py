@@ -207,3 +207,44 @@ def test_what_the_whole_says_of_its_time_stands_beside_the_worst_way_through_it(
     assert (facts["Timing"], facts["Worst way through it"]) == ("deadline 9 ms", "2 ms: elbow")
     assert dict(make_card(lookup, "composed", "arms.arm").facts)["worst way"] == "2 ms: elbow"
     assert "worst way" not in dict(make_card(lookup, "composed", "arms.arm.hand").facts)
+
+
+SET = """
+archgen: 1
+component_types:
+  driver:
+    title: Driver
+    outputs: {scan: Scan}
+    parameters: {prefix: "", rate: {value: 10, unit: Hz, range: [1, 50]}, mode: {choices: [a, b]}}
+    open: [plugins]
+    operations: {reset: {response: Ok, call: synchronous}}
+    frames: {"$(self.prefix)laser": {parent: base_link, static: true}, "$(self.prefix)spin": {rate: 5 Hz}}
+groups:
+  g:
+    components:
+      left: {is: driver, parameters: {prefix: left_}}
+      pair:
+        parameters: {side: right}
+        components: {inner: {is: driver, parameters: {prefix: {from: self.side}}}}
+"""
+
+
+def test_a_type_says_what_its_instances_can_be_set_to_and_asked_for_and_their_frames(tmp_path: Path) -> None:
+    pages = list_pages(read_project(tmp_path, SET))
+    page = pages["component_type:driver"]
+    assert read_table(page, "Driver: parameters") == [
+        ["prefix", "", "", "", ""],
+        ["rate", "10", "Hz", "1 to 50", ""],
+        ["mode", "still to be given", "", "a, b", ""],
+        ["plugins.*", "", "", "any", "open set"],
+    ]
+    assert read_table(page, "Driver: operations") == [["reset", "Ok", "synchronous"]]
+    assert read_table(page, "Frames of each Driver") == [
+        ["$(self.prefix)laser", "base_link", "static"],
+        ["$(self.prefix)spin", "a root", "5 Hz"],
+    ]
+    assert [row[3] for row in read_table(page, "Instances of Driver")] == [
+        "parameter prefix: left_ archgen.yaml:14",
+        "",
+    ]
+    assert read_table(pages["component:g.pair"], "Pair: parameters") == [["side", "right"]]

@@ -8,6 +8,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
 from archgen.views.elements import functional_level, port_tables
+from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
     Block,
@@ -40,6 +41,7 @@ def make_composed_blocks(lookup: Lookup, shell: Component, *, with_texts: bool =
     blocks += functional_level.make_requirement_blocks(lookup, shell) if shell.requirements else []
     blocks += functional_level.make_performance_blocks(shell) if shell.performance else []
     blocks += _make_port_blocks(lookup, shell)
+    blocks += make_parameter_blocks(shell)
     children = lookup.shown_children(shell)
     if children:
         caption = f"Components of {shell.title}"

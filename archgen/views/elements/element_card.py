@@ -219,6 +219,11 @@ def _component_type_card(lookup: Lookup, component_type: ComponentType) -> Eleme
         ("inputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.inputs.items())),
         ("outputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.outputs.items())),
         ("components", component_type.components),
+        *_drop_empty_lists(
+            ("parameters", tuple(list_parameter_lines(component_type))),
+            ("operations", tuple(list_operation_lines(component_type))),
+            ("frames", tuple(f"{frame.id} in {frame.parent or 'nothing'}" for frame in component_type.frames)),
+        ),
         ("instances", tuple(dict.fromkeys(instances))),
         ("findings", tuple(_format_findings(lookup, component_type.id))),
     )
