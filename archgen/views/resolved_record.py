@@ -11,7 +11,7 @@ from dataclasses import asdict
 from archgen.model.architecture import Architecture, Chain, Requirement
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
-from archgen.model.deployment import Host, Link
+from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
@@ -55,9 +55,7 @@ def make_record(lookup: Lookup) -> Record:
         "topics": _record_topics(lookup),
         "types": {t.name: record_type(t, architecture.interfaces) for t in architecture.types.values()},
         "hosts": {host.id: _record_host(host) for host in architecture.hosts.values()},
-        "containers": {
-            c.id: pick_fields(c, "title", "host", "threads", "scheduling") for c in architecture.containers.values()
-        },
+        "containers": {container.id: _record_container(container) for container in architecture.containers.values()},
         **_record_resources(architecture),
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
         **_record_frames(architecture),
@@ -121,6 +119,12 @@ def _record_host(host: Host) -> dict[str, object]:
     fields = pick_fields(host, "title", "description", "cores", "tags", "scheduling")
     by_core = {str(core): order for core, order in host.core_scheduling.items()}
     return fields | ({"scheduling": by_core} if by_core else {})
+
+
+def _record_container(container: Container) -> dict[str, object]:
+    fields = pick_fields(container, "title", "host", "threads", "scheduling", "name", "package", "executable")
+    own_namespace = {"namespace": container.namespace} if container.namespace != "/" else {}
+    return fields | own_namespace | drop_unknown({"parameters": to_plain(container.parameters) or None})
 
 
 def _record_resources(architecture: Architecture) -> dict[str, object]:

@@ -292,7 +292,7 @@ nodes:
   m: b
   r: [whole, copy]
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, arm: {scheduling: {0: fifo}}}
-containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
+containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo}}
 links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
 frames: {map: }

@@ -248,3 +248,24 @@ def test_a_type_says_what_its_instances_can_be_set_to_and_asked_for_and_their_fr
         "",
     ]
     assert read_table(pages["component:g.pair"], "Pair: parameters") == [["side", "right"]]
+
+
+def test_the_page_of_a_container_says_its_program(tmp_path: Path) -> None:
+    text = (
+        "groups: {g: {components: {a: {outputs: {x: X}}}}}\n"
+        "containers: {plain: {threads: 1}, own: {namespace: s, package: p, executable: e, parameters: {a: {b: 1}, c: true}}}\n"
+    )
+    architecture = read_project(tmp_path, text)
+    pages = list_pages(architecture)
+    assert read_facts(pages["container:plain"]) == {"Host": "not known yet", "Threads": "1"}
+    assert read_facts(pages["container:own"]) == {
+        "Host": "not known yet",
+        "Threads": "not known yet",
+        "ROS name": "/s/own",
+        "Package": "p",
+        "Executable": "e",
+        "Parameters": "a: {b: 1} | c: true",
+    }
+    facts = dict(make_card(make_lookup(architecture), "container", "own").facts)
+    assert (facts["ROS name"], facts["parameters"]) == ("/s/own", "{a: {b: 1}, c: true}")
+    assert "ROS name" not in dict(make_card(make_lookup(architecture), "container", "plain").facts)

@@ -9,7 +9,9 @@ from typing import Any
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, ComponentType, Group, Input, Output
+from archgen.model.deployment import Container
 from archgen.model.node import Node, Topic
+from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.parameter_blocks import (
@@ -396,6 +398,8 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     elif kind in {"host", "container"}:
         if kind == "host":
             facts.append(("scheduling", inline_text.format_core_orders(element)))
+        else:
+            facts += _list_process_facts(element)
         # `kind` names the node's field here: `Node.host` or `Node.container`.
         lists.append(
             ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
@@ -412,6 +416,17 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     return ElementCard(
         kind, element_id, getattr(element, "title", element_id), element.at, _known_facts(facts), tuple(lists)
     )
+
+
+def _list_process_facts(container: Container) -> list[tuple[str, str]]:
+    """Return what is written of a container's own node and its program."""
+    is_named = container.name is not None or container.namespace != "/"
+    return [
+        ("ROS name", container.full_name if is_named else ""),
+        ("package", container.package or ""),
+        ("executable", container.executable or ""),
+        ("parameters", format_parameter(container.parameters) if container.parameters else ""),
+    ]
 
 
 def _owned_elements(elements: Iterable[Group | Component | Node], partner_id: str) -> tuple[str, ...]:
