@@ -21,13 +21,19 @@ _LIMITING_PARTS = frozenset({"type", "range", "choices"})
 
 def find_changed_parameters(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find parameters that a partner's node sets and that its component no longer has, or means otherwise."""
+    nodes_by_component: dict[str, list[Node]] = {}
+    for node in context.after.nodes.values():
+        for component_id in node.implements:
+            nodes_by_component.setdefault(component_id, []).append(node)
     for index, change in enumerate(context.changes):
         if change.element_kind == "component_type":
             yield from _find_lost_settings(context, index, change)
         if change.element_kind != "component" or not (change.key or "").startswith(_SECTION) or change.before is None:
             continue
         name, _, part = (change.key or "").removeprefix(_SECTION).partition(":")
-        setting_nodes = list(_list_setting_nodes(context.after, change.element_id, name))
+        setting_nodes = [
+            node for node in nodes_by_component.get(change.element_id, ()) if list_set_values(context.after, node, name)
+        ]
         phrase = _describe_loss(context.after, change, name, part, setting_nodes) if setting_nodes else ""
         if phrase:
             partners = dict.fromkeys(owner for node in setting_nodes for owner in node.owners)
@@ -58,12 +64,6 @@ def _find_lost_settings(context: ChangeContext, index: int, change: Change) -> I
         partners -= {component_type.owner}
         category: BreakCategory = "meaning" if part == "unit" else "wire"
         yield from context.losses_of_users([index], partners, f"{phrase}; {{}} it", "sets", category)
-
-
-def _list_setting_nodes(architecture: Architecture, component_id: str, name: str) -> Iterator[Node]:
-    for node in architecture.nodes_implementing(component_id):
-        if list_set_values(architecture, node, name):
-            yield node
 
 
 def _describe_loss(architecture: Architecture, change: Change, name: str, part: str, setting_nodes: list[Node]) -> str:
