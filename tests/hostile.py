@@ -94,7 +94,7 @@ def project(text: str) -> dict[str, Any]:
             },
         },
         "hosts": {"h": {}, "i": {}},
-        "containers": {"c": {"host": "i"}},
+        "containers": {"c": {"host": "i", "name": text[:60], "package": text, "parameters": {text[:60]: text}}},
         "links": {"l": {"connects": ["h", "i"]}},
         "frames": {"map": {}, "".join(text.replace("\ufeff", "").split())[:150]: {"parent": "map", "by": "a.x"}},
         "chains": {"k": {"through": ["a.x", "b.y"]}},

@@ -156,5 +156,5 @@ def _option_arguments(entry: RuleEntry, rule_options: Mapping[str, OptionValues]
 def _has_timing(architecture: Architecture) -> bool:
     """Whether any node or component has a `timing`."""
     return any(node.timing for node in architecture.nodes.values()) or any(
-        component.timing for component in architecture.components.values()
+        component.timing for component in architecture.list_described_components()
     )

@@ -8,7 +8,9 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.chains.whole_bounds import bound_wholes, list_limits
+from archgen.timing.figures.figure_wording import format_duration, join_first_names
+from archgen.timing.figures.value_arithmetic import is_known_bound
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -19,15 +21,18 @@ if TYPE_CHECKING:
     from archgen.model.component import Component, PerformanceIndicator
     from archgen.model.deployment import Host
     from archgen.timing.analysis import Analysis, ServiceLoad
+    from archgen.timing.chains.whole_bounds import WholeBound, WholeLimit
     from archgen.timing.system.timing_system import Activity
 
 
 def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
-    """A component's node takes longer than the execution time that its performance asks for.
+    """A component takes longer than it promises: its node than its performance asks for, or what is inside than the whole.
 
     Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
     with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found. Several
-    components of one host that are only held up by what else works there are one finding, about the host.
+    components of one host that are only held up by what else works there are one finding, about the host. A composed component's
+    `performance`, and the `deadline` and `response` of its `timing`, are about the whole: from the activation of the first
+    component inside until the last one of the worst way through is done.
 
     Bad:
         groups:
@@ -60,6 +65,7 @@ def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fr
             yield _report_slow_host(architecture.hosts[host_id], slow_answers, margin)
         else:
             yield from (_report_slow_component(slow_answer, margin) for slow_answer in slow_answers)
+    yield from _find_slow_wholes(architecture, analysis, margin)
 
 
 class _SlowAnswer(NamedTuple):
@@ -126,6 +132,30 @@ def _report_slow_component(slow_answer: _SlowAnswer, margin: Fraction) -> Diagno
         else (),
         help="make the node quicker, give it a priority or a core, or correct what the performance promises",
         element=component.id,
+    )
+
+
+def _find_slow_wholes(architecture: Architecture, analysis: Analysis, margin: Fraction) -> Iterator[Diagnostic]:
+    """Yield what composed components say of how long they take, where the worst way through them takes longer."""
+    for shell_id, bound in bound_wholes(analysis, architecture).items():
+        for limit in list_limits(architecture.shells[shell_id]):
+            duration = bound.duration.value
+            # Without a value it is unknown, or unbounded by an overload, which `overloaded-host` reports.
+            if duration is not None and duration > (1 - margin) * limit.duration.value:
+                yield _report_slow_whole(shell_id, limit, bound, duration, margin)
+
+
+def _report_slow_whole(
+    shell_id: str, limit: WholeLimit, bound: WholeBound, duration: Fraction, margin: Fraction
+) -> Diagnostic:
+    known_phrase = "" if is_known_bound(bound.duration) else " and more, for not all of its figures are known"
+    way = join_first_names(tuple(f"`{name}`" for name in bound.through))
+    return Diagnostic(
+        "slow-component",
+        f"`{shell_id}` is to need at most {limit.duration} ({limit.name}), but the way through it takes up to {format_duration(duration)}{known_phrase}: {way}{_describe_margin(margin)}",
+        limit.at,
+        help="make what is inside quicker, or correct what the whole promises",
+        element=shell_id,
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.timing.chains.whole_bounds import LIMIT_KEYS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 _INPUT_TRIGGER_KEYS = ("trigger", "every", "throttle")
 """Keys that say how inputs trigger an activity: attributes of `Timing`, and keys of its `places`."""
+_WHOLE_KEYS = frozenset({"behaviour", "period", "rate", *LIMIT_KEYS})
+"""What is compared of a composed component's timing; a behaviour is what selectors find."""
 # Behaviours that inputs do not trigger, each with the reason and the help of its finding.
 _SELF_ACTIVATED = {
     "periodic": ("its period fires it", "leave it out, or write `behaviour: event` where inputs are to fire it"),
@@ -38,7 +41,8 @@ def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diag
     the element; `calls` does not for an input that is a topic, and `max_gap` does not for an output that is not
     `conditional`. Nothing is `dropped` without `every` or `throttle`. The times below `inputs` are those of callbacks that
     only store a message: what fires the element is in its own `wcet`. `freshness` does not count where nothing is sent.
-    One of the two is a slip.
+    Of a composed component only `period`, `rate`, `deadline` and `response` are compared with what is inside. One of the
+    two is a slip.
 
     Bad:
         groups:
@@ -77,6 +81,7 @@ def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diag
                     yield finding
     yield from _find_idle_inputs(architecture, analysis)
     yield from _find_idle_freshness(architecture)
+    yield from _find_idle_wholes(architecture)
 
 
 def _port_uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
@@ -178,6 +183,25 @@ def _find_idle_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
                 port.freshness_at,
                 help="write it at an input that reads a message",
                 element=port.component,
+            )
+
+
+def _find_idle_wholes(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield the keys of timing of composed components that nothing compares: what is inside has its own."""
+    keys_of_shells = (
+        (shell, key, span)
+        for shell in architecture.shells.values()
+        for key, span in (shell.timing.places.items() if shell.timing else ())
+    )
+    for shell, key, span in keys_of_shells:
+        # Each entry of `calls` and `uses` has a place of its own, under a key with a blank.
+        if key not in _WHOLE_KEYS and " " not in key:
+            yield Diagnostic(
+                "idle-timing",
+                f"`{key}` of `{shell.id}` has no effect: the components inside have timing of their own",
+                span,
+                help="write it at one of them; of the whole, `period` or `rate`, `deadline` and `response` are compared",
+                element=shell.id,
             )
 
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.model.architecture import Architecture
+    from archgen.model.deployment import Container
     from archgen.model.node import Node
 
 _FORBIDDEN_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
@@ -111,14 +112,25 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
                 fault = "it is only a `/`" if topic == "/" else find_name_fault(topic, ros_1=ros_1)
                 if fault:
                     yield _report_invalid_name(node, kind, topic, span, fault)
+    for container in architecture.containers.values():
+        yield from _judge_container(container, ros_1=ros_1)
 
 
-def _report_invalid_name(node: Node, kind: str, name: str, span: Span, fault: str) -> Diagnostic:
+def _judge_container(container: Container, *, ros_1: bool) -> Iterator[Diagnostic]:
+    fault = find_node_name_fault(container.name) if container.name is not None else None
+    if fault:
+        yield _report_invalid_name(container, "a node", container.name or "", container.name_at, fault)
+    fault = find_name_fault(container.namespace, ros_1=ros_1)
+    if fault:
+        yield _report_invalid_name(container, "a namespace", container.namespace, container.at, fault)
+
+
+def _report_invalid_name(node: Node | Container, kind: str, name: str, span: Span, fault: str) -> Diagnostic:
     message = f"`{name}` cannot be the name of {kind}: {fault}"
     return Diagnostic("invalid-ros-name", message, node.at if span == NO_SPAN else span, element=node.id)
 
 
-def _name_span(node: Node) -> Span:
+def _name_span(node: Node | Container) -> Span:
     """Return the span of a node's `name`, else of the node."""
     return node.at if node.name_at == NO_SPAN else node.name_at
 
@@ -127,7 +139,7 @@ def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
     """Two nodes have one name.
 
     Why: In ROS 1 the node that starts later shuts the earlier one down; in ROS 2 both run, and nobody can tell them apart
-    (parameters, life cycle and remappings reach one of them by chance).
+    (parameters, life cycle and remappings reach one of them by chance). A container whose `name` is written is a node, too.
 
     Bad:
         groups:
@@ -149,10 +161,11 @@ def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
           camera_driver: {implements: camera, name: usb_cam}
           image_view: {implements: screen, name: usb_cam, namespace: /operator}
     """
-    first_by_name: dict[str, Node] = {}
-    for node in architecture.nodes.values():
-        if not node.written:
-            continue
+    first_by_name: dict[str, Node | Container] = {}
+    # A container without a name is called by whoever starts it.
+    named_containers = [each for each in architecture.containers.values() if each.name is not None]
+    nodes: list[Node | Container] = [each for each in architecture.nodes.values() if each.written]
+    for node in (*nodes, *named_containers):
         earlier_node = first_by_name.setdefault(node.full_name, node)
         if earlier_node is not node:
             yield Diagnostic(

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
+    from archgen.model.component import Component
     from archgen.model.node import Node
     from archgen.model.parameter import Parameter, ParameterValue
 
@@ -33,11 +34,11 @@ _MAX_SHOWN = 6
 
 
 def unknown_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node is given a parameter that none of its components declares.
+    """A node is given a parameter that none of its components declares, or an instance one that its type does not.
 
     Why: A node of ROS ignores what it does not know, without a word: the value that somebody tuned has no effect. It is judged
-    where all components of the node declare `parameters`. What ROS itself declares (`use_sim_time`, `qos_overrides`, ...) is
-    known, and below the names in `open` everything is.
+    where all components of the node, or the type of the instance, declare `parameters`. What ROS itself declares
+    (`use_sim_time`, `qos_overrides`, ...) is known, and below the names in `open` everything is.
 
     Bad:
         groups:
@@ -76,6 +77,28 @@ def unknown_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
     for judge, value in findings:
         guess_count += judge.declaration_count
         yield judge.report_unknown(value, may_guess=guess_count <= _GUESS_BUDGET)
+    for component in architecture.list_described_components():
+        yield from _find_unknown_settings(architecture, component)
+
+
+def _find_unknown_settings(architecture: Architecture, component: Component) -> Iterator[Diagnostic]:
+    """Yield the parameters that an instance sets and its type does not declare: it changes values only."""
+    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
+    if component_type is None or not component_type.parameters or component.parameters == component_type.parameters:
+        return
+    ros_1 = is_ros_1(architecture.distro)
+    for name, parameter in component.parameters.items():
+        is_known = name in component_type.parameters or is_ros_parameter(name, ros_1=ros_1)
+        if not is_known and not is_open(name, (component,)):
+            yield Diagnostic(
+                "unknown-parameter",
+                f"`{component.id}` sets the parameter `{name}`, which its type `{component_type.id}` does not declare",
+                parameter.at,
+                labels=(Label(component_type.at, "the type"),),
+                help=did_you_mean(name, component_type.parameters)
+                or "declare it at the type, or write the name of its set into `open`",
+                element=component.id,
+            )
 
 
 class _NodeJudge:

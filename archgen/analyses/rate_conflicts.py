@@ -14,7 +14,7 @@ from archgen.timing.figures.tick_unit import NS_PER_SECOND, written_period
 from archgen.timing.rates.edge_fit import fires_each_time
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
     from fractions import Fraction
 
     from archgen.diagnostics.source_span import Span
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def period_conflict(architecture: Architecture, analysis: Analysis, *, tolerance: Fraction) -> Iterator[Diagnostic]:
-    """What an element states of its rate is not what its inputs, or the nodes that implement it, give.
+    """What an element states of its rate is not what its inputs, or the nodes and components that it is made of, give.
 
     Why: An event-driven element runs when its inputs arrive. Where it states another rate, one of the two is wrong, and so is
     every figure that follows from it. The stated one is used, so that the rest can be judged meanwhile.
@@ -70,7 +70,13 @@ def period_conflict(architecture: Architecture, analysis: Analysis, *, tolerance
     node_counts = Counter(component for node in architecture.nodes.values() for component in node.implements)
     for component in architecture.components.values():
         if component.timing and node_counts[component.id] > 1:
-            yield from _compare_component_rate(analysis, component, tolerance)
+            yield from _compare_component_rate(analysis, component, _output_ids(component), tolerance)
+    for shell in architecture.shells.values():
+        if shell.timing:
+            leaf_outputs = {
+                leaf for output in _output_ids(shell) for leaf in architecture.leaf_ports_of("output", output)
+            }
+            yield from _compare_component_rate(analysis, shell, leaf_outputs, tolerance)
 
 
 def _is_impossible_rate(stated_rate: Fraction, derived_rate: TimingValue, tolerance: Fraction) -> bool:
@@ -99,26 +105,29 @@ def _stated_rate_span(activity: Activity) -> Span:
     return activity.places.get("rate", activity.places.get("period", activity.at))
 
 
-def _compare_component_rate(analysis: Analysis, component: Component, tolerance: Fraction) -> Iterator[Diagnostic]:
-    """Report a component with several nodes whose stated rate none of its outputs has."""
+def _compare_component_rate(
+    analysis: Analysis, component: Component, output_ids: Collection[str], tolerance: Fraction
+) -> Iterator[Diagnostic]:
+    """Report a component with several nodes, or with components inside, whose stated rate none of its outputs has."""
     component_period = written_period(component.timing) if component.timing else None
     if component_period is None or component.timing is None:
         return
     stated_rate = NS_PER_SECOND / component_period
     # Nodes of one component may work at different rates: the claim stands if any output has the stated rate.
     published_rates = {
-        key: rate_and_gap.rate for (_, key), rate_and_gap in analysis.outputs.items() if key in _output_ids(component)
+        key: rate_and_gap.rate for (_, key), rate_and_gap in analysis.outputs.items() if key in output_ids
     }
     if not published_rates or not all(
         _is_impossible_rate(stated_rate, published_rate, tolerance) for published_rate in published_rates.values()
     ):
         return
     port, port_rate = next(iter(published_rates.items()))
+    senders = "the components inside" if component.children else "its nodes"
     yield Diagnostic(
         "period-conflict",
-        f"`{component.id}` states {format_rate(stated_rate)}, but its nodes publish `{port}` at {_format_bounded_rate(port_rate)}",
+        f"`{component.id}` states {format_rate(stated_rate)}, but {senders} publish `{port}` at {_format_bounded_rate(port_rate)}",
         component.timing.places.get("rate", component.timing.places.get("period", component.timing.at)),
-        help="correct the component's rate, or the timing of its nodes",
+        help=f"correct the component's rate, or the timing of {senders}",
         element=component.id,
     )
 

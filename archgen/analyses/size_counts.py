@@ -57,6 +57,7 @@ class ArchitectureSize:
     component_types: int = 0
     made_connections: int = 0
     """Those among `connections` that `autoconnect` made."""
+    frames: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +119,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         composed=len(arch.shells),
         component_types=len(arch.component_types),
         made_connections=sum(connection.is_made for connection in arch.connections),
+        frames=len(arch.frames),
     )
 
 

@@ -34,12 +34,13 @@ def _select_changes(
     comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion, selector: str | None
 ) -> Comparison:
     """Keep what touches the selected part of either version. What only one version has is selected there alone."""
+    if selector is None:
+        return comparison
+    # Late: all views come along.
     from archgen.compare.select_changes import select_changes
     from archgen.model.selector_evaluation import Selection
     from archgen.products import project_views
 
-    if selector is None:
-        return comparison
     (old_selection, old_problems), (new_selection, new_problems) = (
         project_views.select_elements(side.checked_project, selector) for side in (old_version, new_version)
     )

@@ -10,21 +10,24 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 def make_instance_containers(
     root: MappingNode, bodies: Mapping[str, MappingEntry], parents: Mapping[str, str]
-) -> dict[str, MappingEntry]:
-    """Return the containers to add to a project, by id, and name them in the bodies of components.
+) -> tuple[dict[str, MappingEntry], dict[str, str]]:
+    """Return the containers to add to a project, and who brings them along, by id; name them in the bodies of components.
 
     `bodies` are the entries of all components by complete id; those whose node names a container inside of what is
     around it get a body of their own.
     """
     entries_by_path = dict(_list_containers(bodies))
     if not entries_by_path:
-        return {}
+        return {}, {}
     written = root.get("containers")
     used_ids = written.entries if isinstance(written, MappingNode) else {}
     ids = derive_node_ids(entries_by_path, entries_by_path, used_ids)
     for component_id, entry in bodies.items():
         _name_container(component_id, entry, ids, parents)
-    return {ids[path]: MappingEntry(ids[path], entry.key_span, entry.value) for path, entry in entries_by_path.items()}
+    containers = {
+        ids[path]: MappingEntry(ids[path], each.key_span, each.value) for path, each in entries_by_path.items()
+    }
+    return containers, {ids[path]: path.rpartition(".")[0] for path in entries_by_path}
 
 
 def _list_containers(bodies: Mapping[str, MappingEntry]) -> Iterator[tuple[str, MappingEntry]]:

@@ -67,6 +67,8 @@ class ExpandedProject:
     """What leaves and shells are made from, by complete id."""
     parents: dict[str, str] = field(default_factory=dict)
     """The shell around each leaf and shell that has one, by complete ids."""
+    container_holders: dict[str, str] = field(default_factory=dict)
+    """The component that brings along each container that is not the project's own, by id."""
     damaged_elements: frozenset[str] = frozenset()
     """Components of which the type is not known: what they have is not known either."""
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -158,7 +160,8 @@ class _ProjectExpander:
             for leaf in _list_components(group.value)
         }
         shells = {shell.id: shell.entry for shell in self._result.shells.values()}
-        containers = make_instance_containers(self._root, {**leaves, **shells}, self._result.parents)
+        containers, holders = make_instance_containers(self._root, {**leaves, **shells}, self._result.parents)
+        self._result.container_holders = holders
         if containers:
             written = self._root.entries.get("containers")
             entries = written.value.entries if written and isinstance(written.value, MappingNode) else {}

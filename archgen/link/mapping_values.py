@@ -17,7 +17,7 @@ from archgen.model.message_types import full_message_name
 from archgen.model.path_resolver import title_from_id
 from archgen.model.quantity import Quantity
 from archgen.schema.short_forms import fold_type_name
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, node_to_data
 
 _ORDERS = frozenset(get_args(SchedulingOrder))
 EMPTY_MAPPING = MappingNode({}, NO_SPAN)
@@ -51,6 +51,17 @@ def get_text(mapping: MappingNode, key: str) -> str | None:
         return None
     node = entry.value
     return node.text if type(node) is ScalarNode and node.value is not None else None
+
+
+def get_absolute_name(mapping: MappingNode, key: str) -> str:
+    """Return a namespace with its leading slash; where none is written, that is the root namespace, `/`."""
+    return "/" + (get_text(mapping, key) or "").removeprefix("/")
+
+
+def get_data(mapping: MappingNode, key: str) -> Mapping[str, object]:
+    """Return the mapping at a key as data: values keep the type that YAML gives them."""
+    data = node_to_data(get_mapping(mapping, key))
+    return data if isinstance(data, dict) else {}
 
 
 def get_scalars(mapping: MappingNode, key: str) -> tuple[ScalarNode, ...]:

@@ -53,10 +53,10 @@ def link_project(  # noqa: PLR0913 - all by name
     parameters = HandedParameters(element_outline, diagnostics)
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
-    containers = deployment_declaration.declare_containers(root, resolver)
     written_targets = resolve_implements(root, resolver)
     implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, parameters)
     implements = implemented.implements
+    containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
         implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented

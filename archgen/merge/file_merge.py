@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from archgen.git.text_merge import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
 from archgen.merge.slice_reading import read_tree
+from archgen.merge.tree_merge import FIELD_ORDER
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,9 @@ def _is_readable(content: bytes) -> bool:
 
 
 def _describe_conflict(merged_slice: UnmergedSlice) -> str:
+    *holder_keys, last_key = merged_slice.conflict_path or ("",)
+    if last_key == FIELD_ORDER:
+        return f"both sides added to `{'.'.join(holder_keys)}` at one place, where order is that of the message"
     if merged_slice.conflict_path:
         return f"both sides changed `{'.'.join(merged_slice.conflict_path)}`"
     return "both sides changed the same lines"

@@ -17,11 +17,13 @@ _GATHERING_KEYS = frozenset(
     {"backends", "interfaces", "open", "requirements", "reviewers", "shared_topics", "sources", "tags", "use_cases"}
 )
 """Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""
-UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "owner"}
+UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "owner", "to"}
 """Keys whose lists say the same in any order: what both sides add to one is no conflict."""
 _MAX_COMPARED = 2_000
 """Items of a list that is compared item by item: that takes time that grows with the square at worst."""
 _FREE_SECTION = "parameters"
+_CHOICES_KEY = "choices"
+"""What a declared parameter may be: in any order."""
 _CHAIN_SECTION = "chains"
 """Its keys are ids of chains, and a list is the short form of `through`, in which order counts."""
 _PORT_SECTION = "inputs"
@@ -29,7 +31,7 @@ _PORT_SECTION = "inputs"
 
 _FIELD_KEYS = frozenset({"fields", "request", "response", "feedback"})
 """Keys of a type below which order counts: fields stand in a message as they are written."""
-_FIELD_ORDER = "(order)"
+FIELD_ORDER = "(order)"
 """The key under which the order of fields is merged; no field has such a name."""
 
 
@@ -80,13 +82,15 @@ def read_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
     if isinstance(node, MappingNode):
         items = [(entry.key, read_value(entry.value, (*path, entry.key))) for entry in node]
         if len(path) == 3 and path[0] == "types" and path[2] in _FIELD_KEYS:  # noqa: PLR2004 - section, type, key
-            items.append((_FIELD_ORDER, ItemList(tuple(ScalarValue("str", entry.key) for entry in node))))
+            items.append((FIELD_ORDER, ItemList(tuple(ScalarValue("str", entry.key) for entry in node))))
         return MappingValue(tuple(sorted(items, key=lambda item: item[0])))
     list_items = tuple(read_value(item, path) for item in node.items)
     return ItemSet(tuple(sorted(list_items, key=repr))) if _is_unordered(path) else ItemList(list_items)
 
 
 def _is_unordered(path: tuple[str, ...]) -> bool:
+    if path[:1] in {("groups",), ("component_types",)} and "node" not in path and path[-1] == _CHOICES_KEY:
+        return _FREE_SECTION in path
     # What stands below `parameters` is the nodes' own data, whatever its keys are called.
     is_named = bool(path) and (path[-1] in UNORDERED_KEYS or path[-2:-1] == (_PORT_SECTION,))
     return is_named and _FREE_SECTION not in path and path[:-1] != (_CHAIN_SECTION,)
@@ -108,6 +112,9 @@ def merge_values(
     old_value = EMPTY_MAPPING if is_begun and isinstance(ours, MappingValue) else base
     if is_begun and path and path[-1] in _GATHERING_KEYS:
         old_value = ItemSet(())
+    # A scalar in the place of such a list is a list of one.
+    if isinstance(base, ScalarValue) and isinstance(ours, ItemSet) and base != _EMPTY_ENTRY:
+        old_value = ItemSet((base,))
     if isinstance(old_value, MappingValue) and isinstance(ours, MappingValue) and isinstance(theirs, MappingValue):
         return _merge_mappings(dict(old_value.items), dict(ours.items), dict(theirs.items), path)
     if isinstance(old_value, ItemSet) and isinstance(ours, ItemSet) and isinstance(theirs, ItemSet):

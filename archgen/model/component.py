@@ -8,6 +8,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.parameter import Operation, Parameter
 from archgen.model.quantity import Quantity
@@ -198,4 +199,10 @@ class ComponentType:
     outputs: Mapping[str, str | None] = field(default_factory=dict)
     components: tuple[str, ...] = ()
     """The ids of the components inside."""
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
+    """What its instances can be set to, by dotted name."""
+    open: tuple[str, ...] = ()
+    operations: Mapping[str, Operation] = field(default_factory=dict)
+    frames: tuple[Frame, ...] = ()
+    """The frames of its instances, with the names as written: `$(self.prefix)laser`."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)

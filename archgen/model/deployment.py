@@ -41,7 +41,20 @@ class Container:
     threads: int | None = None
     scheduling: SchedulingOrder | None = None
     """The order in which its threads take callbacks, None where nothing is written."""
+    namespace: str = "/"
+    name: str | None = None
+    """The name of its own node in ROS, None where nothing is written."""
+    package: str | None = None
+    """The package of its program, None for ROS's own container."""
+    executable: str | None = None
+    parameters: Mapping[str, object] = field(default_factory=dict)
+    name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+    @property
+    def full_name(self) -> str:
+        """The namespace and name of its own node as ROS shows them."""
+        return f"{self.namespace.rstrip('/')}/{self.name or self.id}"
 
 
 @dataclass(frozen=True, slots=True)

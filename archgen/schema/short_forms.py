@@ -44,7 +44,7 @@ _TITLED_FORM = ElementForm(("title",))
 _TOPIC_FORM = ElementForm(("topic",), frozenset({"topic"}), part_forms={"qos": ElementForm(("profile",))})
 _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
-_CONTAINER_FORM = ElementForm(("host",))
+_CONTAINER_FORM = ElementForm(("host",), raw_keys=frozenset({"parameters"}))
 _FRAME_FORM = ElementForm(("parent",))
 _COMPONENT_NODE_FORM = ElementForm(
     list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})

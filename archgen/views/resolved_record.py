@@ -10,7 +10,8 @@ from dataclasses import asdict
 
 from archgen.model.architecture import Architecture, Chain, Requirement
 from archgen.model.component import Component, ComponentType, Group, Input, Output
-from archgen.model.deployment import Host, Link
+from archgen.model.coordinate_frames import Frame
+from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
@@ -54,9 +55,7 @@ def make_record(lookup: Lookup) -> Record:
         "topics": _record_topics(lookup),
         "types": {t.name: record_type(t, architecture.interfaces) for t in architecture.types.values()},
         "hosts": {host.id: _record_host(host) for host in architecture.hosts.values()},
-        "containers": {
-            c.id: pick_fields(c, "title", "host", "threads", "scheduling") for c in architecture.containers.values()
-        },
+        "containers": {container.id: _record_container(container) for container in architecture.containers.values()},
         **_record_resources(architecture),
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
         **_record_frames(architecture),
@@ -92,6 +91,10 @@ def _record_component_type(component_type: ComponentType) -> dict[str, object]:
         "inputs": {name: kind or "" for name, kind in component_type.inputs.items()},
         "outputs": {name: kind or "" for name, kind in component_type.outputs.items()},
         "components": list(component_type.components),
+        "parameters": {name: record_parameter(each) for name, each in component_type.parameters.items()},
+        "open": list(component_type.open),
+        "operations": {name: record_operation(each) for name, each in component_type.operations.items()},
+        "frames": {frame.id: _record_frame(frame) for frame in component_type.frames},
     }
     return pick_fields(component_type, "title", "owner", "functionality", "description") | drop_unknown(dict(fields))
 
@@ -118,6 +121,12 @@ def _record_host(host: Host) -> dict[str, object]:
     return fields | ({"scheduling": by_core} if by_core else {})
 
 
+def _record_container(container: Container) -> dict[str, object]:
+    fields = pick_fields(container, "title", "host", "threads", "scheduling", "name", "package", "executable")
+    own_namespace = {"namespace": container.namespace} if container.namespace != "/" else {}
+    return fields | own_namespace | drop_unknown({"parameters": to_plain(container.parameters) or None})
+
+
 def _record_resources(architecture: Architecture) -> dict[str, object]:
     """Return the section of resources, empty in a project without any."""
     resources = architecture.resources.values()
@@ -128,12 +137,12 @@ def _record_resources(architecture: Architecture) -> dict[str, object]:
 
 def _record_frames(architecture: Architecture) -> dict[str, object]:
     """Return the section of frames, empty in a project without any."""
-    frames = {
-        frame.id: pick_fields(frame, "title", "parent", "by")
-        | drop_unknown({"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None})
-        for frame in architecture.frames.values()
-    }
-    return drop_unknown({"frames": frames})
+    return drop_unknown({"frames": {frame.id: _record_frame(frame) for frame in architecture.frames.values()}})
+
+
+def _record_frame(frame: Frame) -> dict[str, object]:
+    values = {"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None}
+    return pick_fields(frame, "title", "parent", "by") | drop_unknown(dict(values))
 
 
 def _record_link(link: Link) -> dict[str, object]:

@@ -17,6 +17,7 @@ from archgen.analyses.size_counts import (
 )
 from archgen.model.architecture import Architecture
 from archgen.pipeline import check_project
+from archgen.views.tables.statistics_tables import format_figures
 
 Sketch = Callable[[str], Architecture]
 
@@ -140,3 +141,12 @@ def _architecture(text: str) -> Architecture:
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "project.yaml").write_text(text, encoding="utf-8")
         return check_project(Path(folder) / "project.yaml").architecture
+
+
+def test_frames_are_counted_and_told_where_there_are_any() -> None:
+    text = "groups: {g: {components: {a: {frames: {laser: {parent: base, static: true}}}}}}\n"
+    plain, framed = (
+        _architecture(each) for each in (text.replace("frames", "hints"), f"{text}frames: {{base: {{}}}}\n")
+    )
+    assert ("frames", "Coordinate frames", "2") in format_figures(measure_size(framed))
+    assert "frames" not in {key for key, _, _ in format_figures(measure_size(plain))}

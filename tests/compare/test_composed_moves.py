@@ -110,3 +110,18 @@ def test_the_same_connection_written_by_hand_is_no_change(told: Told) -> None:
     assert told(JOINED, written) == []
     # A written one that was changed is not called made.
     assert told(written, written.replace("from: a.pose", "from: a.map").replace("type: Pose, from", "from")) != []
+
+
+def test_what_a_composed_component_says_of_the_whole_is_compared(told: Told) -> None:
+    whole = PLAIN.replace(
+        "      arm:\n",
+        "      arm:\n        timing: {deadline: 20 ms}\n        performance: {reach: {accuracy: 1 mm}}\n"
+        "        parameters: {side: left}\n        operations: {stop: Empty}\n",
+    )
+    changed = whole.replace("20 ms", "30 ms").replace("1 mm", "2 mm").replace("side: left", "side: right")
+    assert told(whole, changed.replace("stop: Empty", "stop: Found")) == [
+        "changed composed body.arm: `body.arm`: response of the operation `stop` `Empty` → `Found`",
+        "changed composed body.arm: `body.arm`: parameter `side` `left` → `right`",
+        "changed composed body.arm: `body.arm`: performance reach accuracy `1 mm` → `2 mm`",
+        "changed composed body.arm: `body.arm`: deadline `20 ms` → `30 ms`",
+    ]

@@ -91,7 +91,9 @@ _INSIDE = {
 READ_OFF_PATTERNS = frozenset(
     {"node", "open", "operations", "parameters", "performance", "requirements", "role", "tags", "timing", "urls"}
 )
-"""Keys of component types that only comparisons need: they are linked for these."""
+"""Keys of component types that comparisons read off patterns: they are linked for these."""
+_SHOWN_SETTINGS = frozenset({"open", "operations", "parameters"})
+"""Those of them that a type has in the model as well, for its page."""
 SCHEMA_ONLY = {
     **{f"component {key}": reason for key, reason in _INSIDE.items()},
     "component same_as": "the key `is`",
@@ -129,6 +131,7 @@ MODEL_ONLY = {
     "component is_reference": "the key `is`",
     "component_type base": "the key `is`",
     "component_type is_abstract": "the key `abstract`",
+    "component_type frames": "those of its instances",
     "node wholes": "its components are in the key `implements`",
     **{f"{kind} id": "the key of the element" for kind in SECTIONS if kind != "type"},
     "type name": "the key of the element",
@@ -156,7 +159,7 @@ MODEL_ONLY = {
 }
 TABLE_ONLY_FOR_MODEL = {
     "component is": "the fields `component_type` and `is_reference`",
-    **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS},
+    **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "component_type is": "the field `base`",
     "component_type abstract": "the field `is_abstract`",
     **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
@@ -170,6 +173,7 @@ TABLE_ONLY_FOR_MODEL = {
     },
 }
 RECORD_ONLY = {
+    "component_type frames": "those of its instances",
     "component parent": "the beginning of the id",
     "component is_reference": "the key `is`",
     "requirement served_by": "the key `requirements` of components",
@@ -189,7 +193,7 @@ RECORD_ONLY = {
 NOT_IN_RECORD = {
     **dict.fromkeys(("group layout", "component layout", "project layout"), "only for pictures"),
     "component mapped": "follows from the nodes",
-    **{f"component_type {key}": "what its instances have" for key in READ_OFF_PATTERNS},
+    **{f"component_type {key}": "what its instances have" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "link latency": "the keys `best` and `worst`",
     **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules", "site")},
 }
@@ -252,6 +256,7 @@ groups:
 component_types:
   drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
+  spare: {parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
 types:
   T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map}
   S: {request: T, response: T, feedback: T}
@@ -287,7 +292,7 @@ nodes:
   m: b
   r: [whole, copy]
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, arm: {scheduling: {0: fifo}}}
-containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo}}
+containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo}}
 links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
 frames: {map: }

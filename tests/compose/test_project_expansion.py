@@ -196,6 +196,30 @@ def test_each_instance_has_containers_of_its_own(tmp_path: Path) -> None:
     }
 
 
+def test_containers_of_instances_take_place_and_namespace_of_what_is_around(tmp_path: Path) -> None:
+    architecture = read_architecture(
+        tmp_path,
+        "hosts: {pc: , pd: }\n"
+        "component_types:\n"
+        "  eye:\n"
+        "    parameters: {side: left}\n"
+        '    containers: {box: {name: "$(self.side)_box", namespace: eyes, package: p, executable: e, parameters: {rate: 1}}}\n'
+        "    components: {driver: {outputs: {image: T}, node: {plugin: D, container: box}}}\n"
+        "groups:\n"
+        "  g:\n"
+        "    components:\n"
+        "      one: {is: eye, node: {namespace: robot_1, host: pc}}\n"
+        "      two: {is: eye, parameters: {side: right}, node: {namespace: robot_2}, containers: {box: {host: pd, namespace: /own}}}\n",
+    )
+    assert {name: (each.full_name, each.host) for name, each in architecture.containers.items()} == {
+        "one_box": ("/robot_1/eyes/left_box", "pc"),
+        "two_box": ("/own/right_box", "pd"),
+    }
+    assert {(each.package, each.executable, str(each.parameters)) for each in architecture.containers.values()} == {
+        ("p", "e", "{'rate': 1}")
+    }
+
+
 def test_names_of_today_stay_where_a_component_stands_deeper(tmp_path: Path) -> None:
     architecture = read_architecture(
         tmp_path,

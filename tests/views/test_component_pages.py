@@ -10,12 +10,14 @@ from archgen import pipeline
 from archgen.emit.site.page_links import collect_links
 from archgen.emit.site.site_navigation import build_navigation
 from archgen.model.architecture import Architecture
+from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.single_page import make_page
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Facts, Inlines, Page, Table
+from archgen.views.timing.timing_lookup import bound_chains
 
 ROBOT = """
 archgen: 1
@@ -193,3 +195,77 @@ def test_the_tree_is_open_down_to_the_reader(robot: Architecture) -> None:
     outer_tree = navigation.write_tree(by_anchor["component:arms.planner"], "")
     assert ">Arm</a>" in outer_tree
     assert ">Elbow</a>" not in outer_tree
+
+
+def test_what_the_whole_says_of_its_time_stands_beside_the_worst_way_through_it(tmp_path: Path) -> None:
+    timed = ROBOT.replace("functionality: Moves.", "functionality: Moves.\n        timing: {deadline: 9 ms}")
+    (tmp_path / "archgen.yaml").write_text(timed)
+    checked = pipeline.check_project(tmp_path)
+    assert checked.analysis is not None
+    lookup = make_lookup(checked.architecture, timing_lookup=bound_chains(checked.analysis, checked.architecture))
+    facts = read_facts(next(page for page in make_pages(lookup, DocumentEdition()) if page.section.title == "Arm"))
+    assert (facts["Timing"], facts["Worst way through it"]) == ("deadline 9 ms", "2 ms: elbow")
+    assert dict(make_card(lookup, "composed", "arms.arm").facts)["worst way"] == "2 ms: elbow"
+    assert "worst way" not in dict(make_card(lookup, "composed", "arms.arm.hand").facts)
+
+
+SET = """
+archgen: 1
+component_types:
+  driver:
+    title: Driver
+    outputs: {scan: Scan}
+    parameters: {prefix: "", rate: {value: 10, unit: Hz, range: [1, 50]}, mode: {choices: [a, b]}}
+    open: [plugins]
+    operations: {reset: {response: Ok, call: synchronous}}
+    frames: {"$(self.prefix)laser": {parent: base_link, static: true}, "$(self.prefix)spin": {rate: 5 Hz}}
+groups:
+  g:
+    components:
+      left: {is: driver, parameters: {prefix: left_}}
+      pair:
+        parameters: {side: right}
+        components: {inner: {is: driver, parameters: {prefix: {from: self.side}}}}
+"""
+
+
+def test_a_type_says_what_its_instances_can_be_set_to_and_asked_for_and_their_frames(tmp_path: Path) -> None:
+    pages = list_pages(read_project(tmp_path, SET))
+    page = pages["component_type:driver"]
+    assert read_table(page, "Driver: parameters") == [
+        ["prefix", "", "", "", ""],
+        ["rate", "10", "Hz", "1 to 50", ""],
+        ["mode", "still to be given", "", "a, b", ""],
+        ["plugins.*", "", "", "any", "open set"],
+    ]
+    assert read_table(page, "Driver: operations") == [["reset", "Ok", "synchronous"]]
+    assert read_table(page, "Frames of each Driver") == [
+        ["$(self.prefix)laser", "base_link", "static"],
+        ["$(self.prefix)spin", "a root", "5 Hz"],
+    ]
+    assert [row[3] for row in read_table(page, "Instances of Driver")] == [
+        "parameter prefix: left_ archgen.yaml:14",
+        "",
+    ]
+    assert read_table(pages["component:g.pair"], "Pair: parameters") == [["side", "right"]]
+
+
+def test_the_page_of_a_container_says_its_program(tmp_path: Path) -> None:
+    text = (
+        "groups: {g: {components: {a: {outputs: {x: X}}}}}\n"
+        "containers: {plain: {threads: 1}, own: {namespace: s, package: p, executable: e, parameters: {a: {b: 1}, c: true}}}\n"
+    )
+    architecture = read_project(tmp_path, text)
+    pages = list_pages(architecture)
+    assert read_facts(pages["container:plain"]) == {"Host": "not known yet", "Threads": "1"}
+    assert read_facts(pages["container:own"]) == {
+        "Host": "not known yet",
+        "Threads": "not known yet",
+        "ROS name": "/s/own",
+        "Package": "p",
+        "Executable": "e",
+        "Parameters": "a: {b: 1} | c: true",
+    }
+    facts = dict(make_card(make_lookup(architecture), "container", "own").facts)
+    assert (facts["ROS name"], facts["parameters"]) == ("/s/own", "{a: {b: 1}, c: true}")
+    assert "ROS name" not in dict(make_card(make_lookup(architecture), "container", "plain").facts)

@@ -177,6 +177,17 @@ def _read_component_type(component: Component, _context: ReadContext) -> str | N
     return f"same as {component.component_type}" if component.is_reference else component.component_type
 
 
+def _read_claimed_timing(shell: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return what a composed component says of the timing of the whole."""
+    return key_values(TIMING_KEYS, shell.timing, context) if shell.timing else {}
+
+
+_SETTING_KEYS = (
+    KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+    KeySpec("open", lambda component, _: unordered_values(component.open), Effect.SYSTEM, noun="open sets"),
+    KeySpec("operations.", _read_operations, Effect.SYSTEM),
+)
+_PERFORMANCE = KeySpec("performance.", _read_performance, Effect.SYSTEM)
 _IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from", noun="component type")
 COMPOSED = KindSpec(
     "composed",
@@ -191,7 +202,10 @@ COMPOSED = KindSpec(
         requirements_key(lambda shell: tuple(use.text for use in shell.requirements)),
         TAGS,
         LAYOUT,
+        *_SETTING_KEYS,
         URLS,
+        _PERFORMANCE,
+        timing_key(_read_claimed_timing),
     ),
     Effect.SYSTEM,
     elements=lambda version: version.architecture.shells,
@@ -230,11 +244,9 @@ COMPONENT = KindSpec(
         LAYOUT,
         KeySpec("inputs", lambda each, _: _describe_ports(is_known=each.inputs_known, ports=each.inputs)),
         KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
-        KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
-        KeySpec("open", lambda component, _: unordered_values(component.open), Effect.SYSTEM, noun="open sets"),
-        KeySpec("operations.", _read_operations, Effect.SYSTEM),
+        *_SETTING_KEYS,
         URLS,
-        KeySpec("performance.", _read_performance, Effect.SYSTEM),
+        _PERFORMANCE,
         timing_key(_read_timing),
         KeySpec(MAPPED_KEY, _is_mapped, Effect.SYSTEM),
     ),

@@ -176,11 +176,11 @@ def key_values(keys: tuple[KeySpec, ...], element: object, context: ReadContext)
     values: dict[str, object] = {}
     for key in keys:
         value = key.value_of(element, context)
-        if key.name.endswith("."):
-            # Such a key reads a mapping, whatever its element.
-            values.update({f"{key.name}{name}": inner for name, inner in dict[str, object](value).items()})  # type: ignore[call-overload]
-        else:
+        if not key.name.endswith("."):
             values[key.name] = value
+        elif value:
+            # Such a key reads a mapping, whatever its element; of most elements it is empty.
+            values.update({f"{key.name}{name}": inner for name, inner in value.items()})  # type: ignore[attr-defined]
     return values
 
 

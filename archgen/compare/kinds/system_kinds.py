@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from archgen.compare.element_likeness import word_set
@@ -19,8 +19,9 @@ from archgen.compare.kinds.shared_keys import (
     requirements_key,
     text_feature,
 )
+from archgen.compare.normal_values import parameter_leaves
 from archgen.model.architecture import Chain
-from archgen.model.deployment import Host, Resource
+from archgen.model.deployment import Container, Host, Resource
 
 _HOST_OF = KeySpec(
     "host",
@@ -65,10 +66,26 @@ HOST = KindSpec(
         text_feature(1, "description"),
     ),
 )
+
+
+def _read_parameters(container: Container, _context: ReadContext) -> Mapping[str, object]:
+    return dict(leaf for name, value in container.parameters.items() for leaf in parameter_leaves(name, value))
+
+
 CONTAINER = KindSpec(
     "container",
     "Containers",
-    (TITLE, _HOST_OF, KeySpec("threads", worsening=Worsening.LESS), _SCHEDULING),
+    (
+        TITLE,
+        _HOST_OF,
+        KeySpec("threads", worsening=Worsening.LESS),
+        _SCHEDULING,
+        KeySpec("name", effect=Effect.SYSTEM),
+        KeySpec("namespace", lambda each, _: None if each.namespace == "/" else each.namespace, Effect.SYSTEM),
+        KeySpec("package", effect=Effect.SYSTEM),
+        KeySpec("executable", effect=Effect.SYSTEM),
+        KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+    ),
     elements=lambda version: version.architecture.containers,
     features=(
         *NAME_FEATURES,

@@ -17,6 +17,8 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 
 _INHERITED_KEYS = frozenset({"host", "container", "namespace", "parameters"})
 """What a composed component says for all nodes inside."""
+_CONTAINER_KEYS = ("host", "namespace")
+"""What it says for the containers inside as well."""
 _MAPPING_KEYS = frozenset({"package", "executable", "plugin"})
 """Keys of a node that say what runs: with one of them its component is mapped."""
 
@@ -50,9 +52,10 @@ def declare_component_nodes(
     written_nodes = mapping_values.get_mapping(root, "nodes")
     made = ComponentNodes(outline, expansion, written_nodes, written_targets, parameters)
     targets = {**written_targets, **made.implements}
-    section = MappingEntry("nodes", written_nodes.span, MappingNode(made.entries, written_nodes.span))
+    sections = {**root.entries, **made.list_container_section(root)}
+    sections["nodes"] = MappingEntry("nodes", written_nodes.span, MappingNode(made.entries, written_nodes.span))
     return ImplementingNodes(
-        MappingNode({**root.entries, "nodes": section}, root.span),
+        MappingNode(sections, root.span),
         {
             node_id: tuple(dict.fromkeys(leaf for each in ids for leaf in declared_groups.list_leaves(each)))
             for node_id, ids in targets.items()
@@ -86,6 +89,25 @@ class ComponentNodes:
         self._bodies: dict[str, MappingNode] = {}
         self._lay_under_written(written_nodes, implements)
         self._make_nodes(written_nodes, implements)
+
+    def list_container_section(self, root: MappingNode) -> dict[str, MappingEntry]:
+        """Return the section of containers, those of components with what these say of all that runs inside."""
+        if not self._expansion.container_holders:
+            return {}
+        section = root.entries["containers"]
+        entries = {entry.key: self._finish_container(entry) for entry in mapping_values.get_mapping(root, "containers")}
+        return {"containers": MappingEntry("containers", section.key_span, MappingNode(entries, section.value.span))}
+
+    def _finish_container(self, entry: MappingEntry) -> MappingEntry:
+        holder_id = self._expansion.container_holders.get(entry.key)
+        if holder_id is None:
+            return entry
+        own = self._parameters.fill_in_body(mapping_values.get_body(entry), holder_id)
+        around = self._find_body(holder_id).entries
+        inherited = {key: around[key] for key in _CONTAINER_KEYS if key in around}
+        body = MappingNode({**inherited, **own.entries}, own.span)
+        _join_namespaces(body, inherited, own)
+        return MappingEntry(entry.key, entry.key_span, body)
 
     def _lay_under_written(self, written_nodes: MappingNode, implements: Mapping[str, tuple[str, ...]]) -> None:
         for entry in written_nodes:

@@ -1,12 +1,16 @@
-"""Declare component types: what they are called, what they are made from, and their ports."""
+"""Declare component types: what they are called, what they are made from, their ports and their settings."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
+from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
 from archgen.model.component import ComponentType
+from archgen.model.coordinate_frames import Frame
 from archgen.syntax.yaml_tree import MappingNode
 
 
@@ -28,6 +32,10 @@ def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentTy
             inputs=_read_port_types(whole_body, "inputs"),
             outputs=_read_port_types(whole_body, "outputs"),
             components=tuple(mapping_values.get_mapping(whole_body, "components").entries),
+            parameters=declare_parameters(whole_body),
+            open=mapping_values.get_texts(whole_body, "open"),
+            operations=declare_operations(whole_body),
+            frames=tuple(_read_frames(whole_body)),
             at=entry.key_span,
         )
     return types
@@ -39,3 +47,16 @@ def _read_port_types(body: MappingNode, side: str) -> dict[str, str | None]:
         name: mapping_values.normalise_type_name(text) if (text := mapping_values.get_text(port, "type")) else None
         for name, _, port in mapping_values.iterate_elements(body, side)
     }
+
+
+def _read_frames(body: MappingNode) -> Iterator[Frame]:
+    """Yield the frames as they are written: what their names stand for, and who writes them, each instance says."""
+    for name, entry, frame in mapping_values.iterate_elements(body, "frames"):
+        yield Frame(
+            id=name,
+            title=mapping_values.get_text(frame, "title") or name,
+            parent=mapping_values.get_text(frame, "parent"),
+            rate=mapping_values.get_quantity(frame, "rate", "frequency"),
+            static=mapping_values.get_flag(frame, "static"),
+            at=entry.key_span,
+        )

@@ -48,6 +48,12 @@ def declare_containers(root: MappingNode, resolver: ReferenceResolver) -> dict[s
             host=resolver.resolve_plain_id(mapping_values.get_scalar(body, "host"), "host", name),
             threads=mapping_values.get_integer(body, "threads"),
             scheduling=mapping_values.get_order(body, "scheduling"),
+            namespace=mapping_values.get_absolute_name(body, "namespace"),
+            name=mapping_values.get_text(body, "name"),
+            package=mapping_values.get_text(body, "package"),
+            executable=mapping_values.get_text(body, "executable"),
+            parameters=mapping_values.get_data(body, "parameters"),
+            name_at=mapping_values.get_span(body, "name"),
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "containers")

@@ -22,7 +22,7 @@ from archgen.model.deployment import Container
 from archgen.model.node import Node, NodeKind, NodeStatus, PortUse, Qos, UseKind
 from archgen.model.parameter import ParameterValue
 from archgen.model.qos_profiles import qos_profile
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 USE_KINDS: tuple[UseKind, ...] = ("publishes", "subscribes", "serves", "calls")
 # What a node publishes or serves is an output of its component, what it subscribes to or calls is an input.
@@ -93,7 +93,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         owner=next(iter(owners), None),
         co_owners=owners[1:],
         name=mapping_values.get_text(body, "name") or node_id,
-        namespace=_make_absolute(mapping_values.get_text(body, "namespace")),
+        namespace=mapping_values.get_absolute_name(body, "namespace"),
         kinds=kinds or ("node",),  # type: ignore[arg-type]
         package=mapping_values.get_text(body, "package"),
         executable=mapping_values.get_text(body, "executable"),
@@ -109,7 +109,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         timing=context.timing_merger.merge_timing(
             node_id, declare_timing(entry, ports, resolver.diagnostics), implements
         ),
-        parameters=_read_parameters(body),
+        parameters=mapping_values.get_data(body, "parameters"),
         parameter_files=mapping_values.get_texts(body, "parameter_files"),
         parameter_commands=_read_commands(body),
         own_values=tuple(_list_own_values(body)),
@@ -136,20 +136,9 @@ def _diagnose_other_host(body: MappingNode, node_id: str, container: Container) 
     )
 
 
-def _make_absolute(namespace: str | None) -> str:
-    """Return a namespace with its leading slash; a node without one is in the root namespace, `/`."""
-    return "/" + (namespace or "").removeprefix("/")
-
-
 def _read_status(body: MappingNode) -> NodeStatus | None:
     status = mapping_values.get_text(body, "status")
     return status if status in _NODE_STATUSES else None  # type: ignore[return-value]
-
-
-def _read_parameters(body: MappingNode) -> Mapping[str, object]:
-    # The only part of the language where values keep the type that YAML gives them.
-    parameters = node_to_data(mapping_values.get_mapping(body, "parameters"))
-    return parameters if isinstance(parameters, dict) else {}
 
 
 def _read_commands(body: MappingNode) -> Mapping[str, tuple[str, ...]]:

@@ -51,7 +51,7 @@ class LateChain:
     terms: tuple[ChainTerm, ...]
 
 
-class _ExtremePath(NamedTuple):
+class ExtremePath(NamedTuple):
     """The extreme path of a route: in which view of the network, and what it bounds all paths by."""
 
     view: CostNetwork
@@ -74,7 +74,7 @@ def find_chain_slack(network: CostNetwork, architecture: Architecture, asked_cha
     if asked_chain.deadline is None or asked_chain.unresolved:
         return None
     chain_points = chain_regions.resolve_points(network.steps.analysis.system, architecture, asked_chain.through)
-    extreme_path = _find_extreme_path(network, chain_regions.lay_out_chain(network, chain_points), "bound")
+    extreme_path = find_extreme_path(network, chain_regions.lay_out_chain(network, chain_points), "bound")
     if extreme_path is None or extreme_path.value.value is None or not is_known_bound(extreme_path.value):
         return None
     return asked_chain.deadline.value - extreme_path.value.value
@@ -102,7 +102,7 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
             network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
         )
         # Only the bound: each other aim would cost a graph of its own, and rules need none of chains that are in time.
-        extreme_path = _find_extreme_path(network, regions, "bound")
+        extreme_path = find_extreme_path(network, regions, "bound")
         if extreme_path is not None:
             view, path, bound = extreme_path
             deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
@@ -169,7 +169,7 @@ def _build_result(
 ) -> ChainResult:
     """Return all figures of a chain, with the terms of its worst path; without terms where there is no path."""
     deadline = TimingValue(asked_chain.deadline.value) if asked_chain.deadline else None
-    extreme_path = _find_extreme_path(network, regions, "bound")
+    extreme_path = find_extreme_path(network, regions, "bound")
     if asked_chain.unresolved or extreme_path is None:
         waypoint_ids = tuple(point.id for point in asked_chain.through)
         no_bound = (
@@ -272,7 +272,7 @@ def _ages_from_events(
         # A path begins with the samples of its first element where those fire the rest of it.
         is_inner = regions[0].inside and chain_regions.is_fired_by_samples(system, name, start_ids)
         is_event = system.activities[name].behaviour != "periodic" and not is_inner
-        extreme_path = _find_extreme_path(network, (start, *regions[1:]), "bound") if is_event else None
+        extreme_path = find_extreme_path(network, (start, *regions[1:]), "bound") if is_event else None
         if extreme_path is not None:
             yield sum_bounds((extreme_path.value, network.steps.arrivals.activation_gap(name)))
 
@@ -285,27 +285,27 @@ def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRe
 
 def _extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
     """Return the extreme figure of a route for an aim."""
-    extreme_path = _find_extreme_path(network, regions, aim)
+    extreme_path = find_extreme_path(network, regions, aim)
     return extreme_path.value if extreme_path else UNKNOWN_VALUE
 
 
-def _find_extreme_path(
+def find_extreme_path(
     network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim
-) -> _ExtremePath | None:
+) -> ExtremePath | None:
     """Return the extreme path of a route for an aim, in the view of the network in which it bounds best."""
     if not regions:
         return None
-    extreme_paths: list[_ExtremePath] = []
+    extreme_paths: list[ExtremePath] = []
     for view in network.list_views() if aim != "best" else (network,):
         path_set = _paths_for_aim(view, regions, aim)
         path = next(path_set.best_paths(), None)
         if path is None:
             return None
-        extreme_paths.append(_ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
+        extreme_paths.append(ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
     return min(extreme_paths, key=_bound_order)
 
 
-def _bound_order(extreme_path: _ExtremePath) -> tuple[bool, bool, Fraction, bool]:
+def _bound_order(extreme_path: ExtremePath) -> tuple[bool, bool, Fraction, bool]:
     """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first.
 
     Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.

@@ -17,6 +17,7 @@ from archgen.views.agreement.budget_section import write_budget_section
 from archgen.views.agreement.frame_section import list_changed_frames, write_frame_section
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import partner_titles
+from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
 from archgen.views.agreement.signature_record import write_signature_table
 from archgen.views.shapes import (
     Block,
@@ -65,6 +66,7 @@ def outline_agreement(content: AgreementContent) -> Outline:
             ),
             *_removed_section(content),
             *write_frame_section(content),
+            *write_setting_section(content),
             *write_budget_section(content),
             write_open_points_section(content),
             _signatures_section(content),
@@ -102,33 +104,25 @@ def _partner_runs(partner: Partner) -> Inlines:
 def _changes_notice(content: AgreementContent) -> tuple[Paragraph, ...]:
     if content.changes is None:
         return ()
-    changed_frames = list_changed_frames(content)
-    if changed_frames and not content.changes.has_changes:
-        return (_frames_notice(content, changed_frames),)
-    if not content.changes.has_changes:
-        return (
-            Paragraph(
-                inline_text.to_inlines(
-                    f"Nothing between the two has changed since {content.changes.earlier_revision}."
-                ),
-                "note",
-            ),
-        )
-    return (
-        Paragraph(
-            inline_text.to_inlines(
-                f"Interfaces since {content.changes.earlier_revision}: {content.changes.kind_counts}."
-            ),
-            "note",
-        ),
-        *((_frames_notice(content, changed_frames),) if changed_frames else ()),
+    since = content.changes.earlier_revision
+    names_by_word = {
+        "Frames": list_changed_frames(content),
+        "Parameters and operations": list_changed_settings(content),
+    }
+    others = [_name_changed(word, since, names) for word, names in names_by_word.items() if names]
+    if others and not content.changes.has_changes:
+        return tuple(others)
+    text = (
+        f"Interfaces since {since}: {content.changes.kind_counts}."
+        if content.changes.has_changes
+        else f"Nothing between the two has changed since {since}."
     )
+    return (Paragraph(inline_text.to_inlines(text), "note"), *others)
 
 
-def _frames_notice(content: AgreementContent, changed_frames: Sequence[str]) -> Paragraph:
-    names = inline_text.join_inlines((Text(name, code=True),) for name in changed_frames)
-    since = content.changes.earlier_revision if content.changes else ""
-    return Paragraph(inline_text.to_inlines(f"Frames that are not what they were at {since}: ", *names, "."), "note")
+def _name_changed(word: str, since: str, changed_names: Sequence[str]) -> Paragraph:
+    names = inline_text.join_inlines((Text(name, code=True),) for name in changed_names)
+    return Paragraph(inline_text.to_inlines(f"{word} that are not what they were at {since}: ", *names, "."), "note")
 
 
 def _partners_section(content: AgreementContent) -> Section:

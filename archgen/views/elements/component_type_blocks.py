@@ -1,4 +1,4 @@
-"""Component types in documents: their ports, what they are made from, and their instances with what each says otherwise."""
+"""Component types in documents: their ports and settings, what they are made from, and their instances with what each says."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from archgen.views import inline_text
 from archgen.views.element_references import place_run
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.elements.instance_values import OwnValue, TypeTexts
+from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns
@@ -43,7 +44,7 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
 
 
 def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Block, ...]:
-    """Describe a component type: facts, what it does, its ports and its instances."""
+    """Describe a component type: facts, what it does, its ports, what it can be set to and asked for, and its instances."""
     blocks: list[Block] = [Facts(tuple(_list_facts(lookup, component_type)))]
     base = lookup.architecture.component_types.get(_base_id(component_type))
     # What a type has from another is said there.
@@ -51,6 +52,8 @@ def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Blo
     texts = (component_type.functionality, component_type.description)
     blocks += [Markdown(text) for text in texts if text and text not in known_texts]
     blocks += _make_port_table(component_type)
+    blocks += make_parameter_blocks(component_type)
+    blocks += _make_frame_table(component_type)
     blocks += _make_instance_table(lookup, component_type)
     return tuple(blocks)
 
@@ -105,6 +108,21 @@ def _make_type_cell(component_type: ComponentType, type_name: str | None, *, has
     if type_name is None and has_inside:
         return (Text("follows from what is inside", muted=True),)
     return inline_text.type_link(type_name)
+
+
+def _make_frame_table(component_type: ComponentType) -> list[Block]:
+    """Return the table of the frames, with their names as the type writes them: each instance has its own."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(frame.id, code=True)),
+            inline_text.to_inlines(Text(frame.parent, code=True) if frame.parent else Text("a root", muted=True)),
+            inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate),
+        )
+        for frame in component_type.frames
+    )
+    columns = (Column("Frame", 1.4), Column("Placed in", 1.4), Column("Rate", 0.6, "right"))
+    anchor = f"table:type_frames/{component_type.id}"
+    return [Table(anchor, f"Frames of each {component_type.title}", columns, rows)] if rows else []
 
 
 def _shown_instances(lookup: Lookup, component_type: ComponentType) -> list[Component]:

@@ -8,6 +8,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
 from archgen.views.elements import functional_level, port_tables
+from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
     Block,
@@ -40,6 +41,7 @@ def make_composed_blocks(lookup: Lookup, shell: Component, *, with_texts: bool =
     blocks += functional_level.make_requirement_blocks(lookup, shell) if shell.requirements else []
     blocks += functional_level.make_performance_blocks(shell) if shell.performance else []
     blocks += _make_port_blocks(lookup, shell)
+    blocks += make_parameter_blocks(shell)
     children = lookup.shown_children(shell)
     if children:
         caption = f"Components of {shell.title}"
@@ -48,37 +50,30 @@ def make_composed_blocks(lookup: Lookup, shell: Component, *, with_texts: bool =
 
 
 def _make_port_blocks(lookup: Lookup, shell: Component) -> Iterable[Block]:
-    if shell.inputs:
-        rows = tuple(_list_input_cells(lookup, port) for port in shell.inputs.values())
-        columns = (
-            Column("Input"),
-            Column("From", 1.6),
-            Column("Type", 1.2),
-            Column("Read inside by", 1.6),
-            *_LAST_COLUMNS,
-        )
-        yield drop_empty_columns(Table(f"table:inputs/{shell.id}", f"{shell.title}: inputs", columns, rows))
-    else:
-        yield _say_without("Inputs", "It has no inputs." if shell.inputs_known else "Its inputs are not known yet.")
-    if shell.outputs:
-        rows = tuple(_list_output_cells(lookup, port) for port in shell.outputs.values())
-        columns = (
-            Column("Output"),
-            Column("Type", 1.2),
-            Column("Given on from", 1.6),
-            Column("To", 1.6),
-            *_LAST_COLUMNS,
-        )
-        yield drop_empty_columns(Table(f"table:outputs/{shell.id}", f"{shell.title}: outputs", columns, rows))
-    else:
-        yield _say_without("Outputs", "It has no outputs." if shell.outputs_known else "Its outputs are not known yet.")
+    yield _make_port_block(
+        (shell, "input", shell.inputs_known),
+        (Column("Input"), Column("From", 1.6), Column("Type", 1.2), Column("Read inside by", 1.6)),
+        [_list_input_cells(lookup, port) for port in shell.inputs.values()],
+    )
+    yield _make_port_block(
+        (shell, "output", shell.outputs_known),
+        (Column("Output"), Column("Type", 1.2), Column("Given on from", 1.6), Column("To", 1.6)),
+        [_list_output_cells(lookup, port) for port in shell.outputs.values()],
+    )
 
 
-_LAST_COLUMNS = (Column("Medium", 0.8), Column("Remarks", 1.2))
-
-
-def _say_without(title: str, message: str) -> Paragraph:
-    return Paragraph(inline_text.to_inlines(Text(f"{title}. ", strong=True), Text(message, muted=True)))
+def _make_port_block(
+    side: tuple[Component, str, bool], columns: tuple[Column, ...], rows: list[tuple[Inlines, ...]]
+) -> Block:
+    """Return the table of the ports of one side, or a sentence; `side` has the word for one, and whether all are known."""
+    shell, word, is_known = side
+    if rows:
+        last_columns = (Column("Medium", 0.8), Column("Remarks", 1.2))
+        table = Table(f"table:{word}s/{shell.id}", f"{shell.title}: {word}s", (*columns, *last_columns), tuple(rows))
+        return drop_empty_columns(table)
+    message = f"It has no {word}s." if is_known else f"Its {word}s are not known yet."
+    title = f"{word.capitalize()}s. "
+    return Paragraph(inline_text.to_inlines(Text(title, strong=True), Text(message, muted=True)))
 
 
 def _list_input_cells(lookup: Lookup, port: Input) -> tuple[Inlines, ...]:

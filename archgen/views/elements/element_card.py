@@ -9,7 +9,9 @@ from typing import Any
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, ComponentType, Group, Input, Output
+from archgen.model.deployment import Container
 from archgen.model.node import Node, Topic
+from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.parameter_blocks import (
@@ -20,6 +22,7 @@ from archgen.views.elements.parameter_blocks import (
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state, name_chain
 from archgen.views.tables.type_fields import list_field_lines
+from archgen.views.timing.element_timing import make_whole_fact
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +178,8 @@ def _composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         ("owner", ", ".join(shell.owners) or "?"),
         ("functionality", " ".join((shell.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in shell.requirements)),
+        ("timing", inline_text.format_timing_sentence(shell.timing)),
+        ("worst way", "".join(run.text for run in make_whole_fact(lookup, shell.id))),
         ("tags", ", ".join(shell.tags)),
     ]
     inputs = tuple(
@@ -216,6 +221,11 @@ def _component_type_card(lookup: Lookup, component_type: ComponentType) -> Eleme
         ("inputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.inputs.items())),
         ("outputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.outputs.items())),
         ("components", component_type.components),
+        *_drop_empty_lists(
+            ("parameters", tuple(list_parameter_lines(component_type))),
+            ("operations", tuple(list_operation_lines(component_type))),
+            ("frames", tuple(f"{frame.id} in {frame.parent or 'nothing'}" for frame in component_type.frames)),
+        ),
         ("instances", tuple(dict.fromkeys(instances))),
         ("findings", tuple(_format_findings(lookup, component_type.id))),
     )
@@ -388,6 +398,8 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     elif kind in {"host", "container"}:
         if kind == "host":
             facts.append(("scheduling", inline_text.format_core_orders(element)))
+        else:
+            facts += _list_process_facts(element)
         # `kind` names the node's field here: `Node.host` or `Node.container`.
         lists.append(
             ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
@@ -404,6 +416,17 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     return ElementCard(
         kind, element_id, getattr(element, "title", element_id), element.at, _known_facts(facts), tuple(lists)
     )
+
+
+def _list_process_facts(container: Container) -> list[tuple[str, str]]:
+    """Return what is written of a container's own node and its program."""
+    is_named = container.name is not None or container.namespace != "/"
+    return [
+        ("ROS name", container.full_name if is_named else ""),
+        ("package", container.package or ""),
+        ("executable", container.executable or ""),
+        ("parameters", format_parameter(container.parameters) if container.parameters else ""),
+    ]
 
 
 def _owned_elements(elements: Iterable[Group | Component | Node], partner_id: str) -> tuple[str, ...]:

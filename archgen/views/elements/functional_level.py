@@ -169,6 +169,8 @@ def list_component_facts(lookup: Lookup, component: Component) -> list[tuple[str
     timing = inline_text.format_timing_sentence(component.timing)
     if timing:
         rows.append(("Timing", inline_text.to_inlines(timing)))
+    if worst_way := element_timing.make_whole_fact(lookup, component.id):
+        rows.append(("Worst way through it", worst_way))
     nodes = lookup.nodes_inside(component.id)
     if rate := element_timing.make_rate_fact(lookup, nodes, component.id):
         rows.append(("Rate", rate))

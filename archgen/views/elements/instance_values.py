@@ -10,6 +10,7 @@ from functools import cached_property
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
+from archgen.model.parameter import format_parameter
 from archgen.model.quantity import Quantity
 from archgen.views.shapes import Block, Facts, Inlines
 from archgen.views.type_names import find_type
@@ -70,6 +71,10 @@ def _list_values(architecture: Architecture, component: Component) -> Iterator[O
         text = getattr(component, name)
         if text and component_type and text != getattr(component_type, name):
             yield OwnValue(name, text)
+    for parameter in component.parameters.values():
+        # What the component around hands in is said there.
+        if parameter.handed_from is None:
+            yield OwnValue(f"parameter {parameter.name}", format_parameter(parameter.value), parameter.value_at)
     yield OwnValue("role", component.role or "", component.role_at)
     for place, name in () if component.timing is None else _list_timing_places(component):
         value = getattr(component.timing, name, None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.model.component import Component
+from archgen.model.component import Component, ComponentType
 from archgen.model.node import Node
 from archgen.model.parameter import Operation, Parameter, format_parameter
 from archgen.model.parameter_values import EffectiveParameter, describe_origin, find_effective_parameters
@@ -13,12 +13,22 @@ from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns
 
 
-def make_parameter_blocks(component: Component) -> list[Block]:
-    """Return the tables of a component's parameters and of its operations, without those that would be empty."""
+def make_parameter_blocks(component: Component | ComponentType) -> list[Block]:
+    """Return the tables of the parameters of a component or a type, and of its operations, without those that would be empty."""
     return [table for table in (_make_parameter_table(component), _make_operation_table(component)) if table]
 
 
-def _make_parameter_table(component: Component) -> Table | None:
+def list_equal_settings(component: Component, component_type: ComponentType) -> list[Block]:
+    """Return those tables of an instance that say nothing else than the tables of its type."""
+    is_set_equally = component.parameters == component_type.parameters and component.open == component_type.open
+    tables = (
+        _make_parameter_table(component) if is_set_equally else None,
+        _make_operation_table(component) if component.operations == component_type.operations else None,
+    )
+    return [table for table in tables if table]
+
+
+def _make_parameter_table(component: Component | ComponentType) -> Table | None:
     rows = tuple(
         (
             _to_code(each.name),
@@ -40,10 +50,10 @@ def _make_parameter_table(component: Component) -> Table | None:
         Column("Remarks", 1.6),
     )
     caption = f"{component.title}: parameters"
-    return drop_empty_columns(Table(f"table:set/{component.id}", caption, columns, rows)) if rows else None
+    return drop_empty_columns(Table(f"table:set/{_place_of(component)}", caption, columns, rows)) if rows else None
 
 
-def _make_operation_table(component: Component) -> Table | None:
+def _make_operation_table(component: Component | ComponentType) -> Table | None:
     rows = tuple(
         (
             _to_code(name),
@@ -54,8 +64,15 @@ def _make_operation_table(component: Component) -> Table | None:
         for name, each in component.operations.items()
     )
     columns = (Column("Operation"), Column("Request", 1.2), Column("Response", 1.2), Column("Remarks", 1.6))
-    table = Table(f"table:operations/{component.id}", f"{component.title}: operations", columns, rows) if rows else None
-    return drop_empty_columns(table) if table else None
+    caption = f"{component.title}: operations"
+    return (
+        drop_empty_columns(Table(f"table:operations/{_place_of(component)}", caption, columns, rows)) if rows else None
+    )
+
+
+def _place_of(component: Component | ComponentType) -> str:
+    """Return what tells the tables of a component from those of a type that is called the same."""
+    return f"type/{component.id}" if isinstance(component, ComponentType) else component.id
 
 
 def _type_cell(types: str | Mapping[str, str] | None) -> Inlines:
@@ -138,7 +155,7 @@ def name_origin(parameter: EffectiveParameter) -> str:
     return parameter.at.file if parameter.origin == "file" else words[parameter.origin]
 
 
-def list_parameter_lines(component: Component) -> Iterator[str]:
+def list_parameter_lines(component: Component | ComponentType) -> Iterator[str]:
     """Yield what a component declares, one line a parameter, for its card."""
     for each in component.parameters.values():
         value = format_parameter(each.value) if each.value is not None else f"? ({describe_missing(each)})"
@@ -147,7 +164,7 @@ def list_parameter_lines(component: Component) -> Iterator[str]:
     yield from (f"{name}.*: anything" for name in component.open)
 
 
-def list_operation_lines(component: Component) -> Iterator[str]:
+def list_operation_lines(component: Component | ComponentType) -> Iterator[str]:
     """Yield the operations of a component, one a line, for its card."""
     return (_describe_operation(each) for each in component.operations.values())
 

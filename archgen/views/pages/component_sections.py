@@ -14,6 +14,7 @@ from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.elements.instance_values import TypeTexts, add_own_value
+from archgen.views.elements.parameter_blocks import list_equal_settings
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Markdown, Paragraph, Section
 from archgen.views.type_names import find_type
@@ -82,12 +83,17 @@ class ComponentSections:
         return (*blocks[:-1], replace(table, row_anchors=tuple(f"component:{each.id}" for each in leaves)))
 
     def _say_type_once(self, component: Component, blocks: Iterable[Block]) -> tuple[Block, ...]:
-        """Leave out the texts that the section of the component's type has, and add what the instance says otherwise."""
+        """Leave out what the section of the component's type has, and add what the instance says otherwise."""
         component_type = find_type(self.lookup.architecture, component)
         if component_type is None:
             return tuple(blocks)
         type_texts = {component_type.functionality, component_type.description}
-        own_blocks = [block for block in blocks if not (isinstance(block, Markdown) and block.text in type_texts)]
+        known_tables = list_equal_settings(component, component_type)
+        own_blocks = [
+            block
+            for block in blocks
+            if not (isinstance(block, Markdown) and block.text in type_texts) and block not in known_tables
+        ]
         return add_own_value(own_blocks, make_own_value_fact(self.lookup, component, self._type_texts))
 
     def _make_implementation(self, component: Component) -> Iterable[Section]:

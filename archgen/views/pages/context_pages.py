@@ -8,9 +8,10 @@ from dataclasses import replace
 
 from archgen.model.architecture import Requirement
 from archgen.model.component import Component
-from archgen.model.deployment import Host
+from archgen.model.deployment import Container, Host
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
+from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
 from archgen.views.elements.functional_level import make_component_table
@@ -315,6 +316,21 @@ def _name_resources(lookup: Lookup, host: Host) -> Iterator[str]:
             yield f"{resource.title} (used by {users})" if users else resource.title
 
 
+def _list_program_facts(container: Container) -> Iterator[tuple[str, Inlines]]:
+    """Yield what is written of a container's own node and its program."""
+    if container.name is not None or container.namespace != "/":
+        yield "ROS name", inline_text.to_inlines(Text(container.full_name, code=True))
+    for name, text in (("Package", container.package), ("Executable", container.executable)):
+        if text:
+            yield name, inline_text.to_inlines(Text(text, code=True))
+    if container.parameters:
+        lines = (
+            inline_text.to_inlines(Text(f"{name}: {format_parameter(value)}", code=True))
+            for name, value in container.parameters.items()
+        )
+        yield "Parameters", inline_text.join_lines(lines)
+
+
 def _container_page(lookup: Lookup, container_id: str) -> Page:
     container = lookup.architecture.containers[container_id]
     facts = [
@@ -327,6 +343,7 @@ def _container_page(lookup: Lookup, container_id: str) -> Page:
             inline_text.to_inlines(str(container.threads)) if container.threads else inline_text.UNKNOWN_INLINES,
         ),
         *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
+        *_list_program_facts(container),
     ]
     nodes = make_node_table(lookup, [node for node in lookup.shown_nodes() if node.container == container_id])
     crumb = ("Hosts and containers", "page:hosts")

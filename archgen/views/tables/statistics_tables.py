@@ -42,10 +42,11 @@ _FIGURE_LABELS = {
     "composed": "Composed components",
     "component_types": "Component types",
     "made_connections": "Connections made by themselves",
+    "frames": "Coordinate frames",
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
-_COMPOSITION_FIGURES = frozenset({"composed", "component_types", "made_connections"})
-"""Figures that are left out where there is nothing to count: most projects compose nothing."""
+_RARE_FIGURES = frozenset({"composed", "component_types", "made_connections", "frames"})
+"""Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""
 PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")
 """The steps that progress counts, in order; each is a field of `Progress` and of the history's `Row`."""
 
@@ -55,7 +56,7 @@ def format_figures(project_size: ArchitectureSize) -> list[tuple[str, str, str]]
     return [
         (key, label, format_count(getattr(project_size, key)))
         for key, label in _FIGURE_LABELS.items()
-        if key not in _COMPOSITION_FIGURES or getattr(project_size, key)
+        if key not in _RARE_FIGURES or getattr(project_size, key)
     ]
 
 

@@ -19,6 +19,16 @@ from archgen.views.timing.timing_lookup import TimingLookup
 _ACTIVITY_NAME = re.compile(r"([a-z0-9.]+(?:_[a-z0-9.]+)+)")
 
 
+def make_whole_fact(lookup: Lookup, component_id: str) -> Inlines:
+    """Return the worst way through a composed component that says how long it takes; empty for any other."""
+    bound = lookup.timing.whole_bounds.get(component_id) if lookup.timing else None
+    if bound is None or lookup.timing is None:
+        return ()
+    duration = value_format.display_bound(bound.duration, lookup.timing.analysis)
+    way = inline_text.join_inlines((timing_tables.activity_link(lookup.timing, name) for name in bound.through), " → ")
+    return (Text(f"{duration}: "), *way)
+
+
 def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> tuple[Block, ...]:
     """Describe the timing of one chain: facts, the chart of its terms, and each term with its reason."""
     chain = lookup.architecture.chains[result.id]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from archgen.model.architecture import Architecture
@@ -13,6 +13,7 @@ from archgen.views.timing import chain_status, value_format
 
 if TYPE_CHECKING:
     from archgen.timing.chains.fused_inputs import FusedInputs
+    from archgen.timing.chains.whole_bounds import WholeBound
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,8 @@ class TimingLookup:
     """Activities of a node, by node id."""
     fused_inputs: tuple[FusedInputs, ...] = ()
     """What uses messages of several inputs together."""
+    whole_bounds: Mapping[str, WholeBound] = field(default_factory=dict)
+    """The worst ways through composed components that say how long they take, by id."""
 
 
 def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> TimingLookup:
@@ -56,7 +59,9 @@ def analyse_with_chains(architecture: Architecture) -> TimingLookup:
 
 
 def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
-    """Build the look-ups of a timing analysis, with the bounds of all chains."""
+    """Build the look-ups of a timing analysis, with the bounds of all chains, and of the composed components that have limits."""
     from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.timing.chains.whole_bounds import bound_wholes
 
-    return make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
+    lookup = make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
+    return replace(lookup, whole_bounds=bound_wholes(analysis, architecture))

@@ -62,3 +62,40 @@ def test_who_sets_a_parameter_is_told(compared: Compared, old: str, new: str, br
 def test_the_owner_of_the_component_is_not_told(compared: Compared) -> None:
     own = ROBOT.replace("owner: kite, ", "")
     assert [b for change in compared(own, own.replace("unit: m", "unit: mm")).changes for b in change.breaks] == []
+
+
+TYPED = """\
+project: {id: robot}
+partners: {vega: Vega, kite: Kite}
+component_types:
+  eye: {owner: vega, parameters: {gain: {value: 0.5, unit: m, range: [0, 2]}, other: 1}}
+groups:
+  sense: {owner: vega, components: {left: {is: eye, parameters: {other: 2}}}}
+  mind: {owner: kite, components: {right: {is: eye, parameters: {gain: 1.5}}, plain: {is: eye}}}
+"""
+TYPE_PLACE = "the parameter `gain` of the type `eye`"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "breaks"),
+    [
+        ("unit: m, ", "unit: mm, ", [f"meaning kite: gives {TYPE_PLACE} in `mm` instead of `m`; Kite sets it"]),
+        ("gain: {value", "gian: {value", [f"wire kite: takes away {TYPE_PLACE}; Kite sets it"]),
+        (
+            "[0, 2]",
+            "[0, 1]",
+            [
+                f"wire kite: no longer takes a value of {TYPE_PLACE} (`1.5` is outside of its range, `0` to `1`); Kite sets it"
+            ],
+        ),
+        ("[0, 2]", "[0, 1.7]", []),
+        ("value: 0.5", "value: 0.6", []),
+        ("other: 1", "another: 1", []),
+    ],
+)
+def test_whose_instance_sets_a_parameter_of_a_type_is_told(
+    compared: Compared, old: str, new: str, breaks: list[str]
+) -> None:
+    assert old in TYPED
+    changes = compared(TYPED, TYPED.replace(old, new)).changes
+    assert [f"{b.category} {b.partner}: {b.reason}" for change in changes for b in change.breaks] == breaks

@@ -143,3 +143,21 @@ def test_the_annex_of_nodes_says_where_a_component_is(outlines: tuple[Outline, O
         "Arm · Hand · Finger · Nail · Edge",
         "Planner",
     ]
+
+
+def test_an_instance_repeats_the_settings_of_its_type_only_where_it_sets_others(tmp_path: Path) -> None:
+    settings = "parameters: {gain: 1}, operations: {stop: Ok}, "
+    text = ROBOT.replace("{title: Motor, ", f"{{title: Motor, {settings}")
+    (tmp_path / "archgen.yaml").write_text(
+        text.replace("elbow: {is: fast_motor, ", "elbow: {is: fast_motor, parameters: {gain: 2}, ")
+    )
+    outline = make_report(make_lookup(pipeline.check_project(tmp_path).architecture), DocumentEdition())
+    tables = {
+        anchor: [block.caption for block in find_section(outline, anchor).blocks if isinstance(block, Table)]
+        for anchor in ("component_type:motor", "component:arms.arm.shoulder", "component:arms.arm.elbow")
+    }
+    assert {"Motor: parameters", "Motor: operations"} <= set(tables["component_type:motor"])
+    assert not [caption for caption in tables["component:arms.arm.shoulder"] if caption.endswith(("ters", "tions"))]
+    assert [caption for caption in tables["component:arms.arm.elbow"] if caption.endswith(("ters", "tions"))] == [
+        "Elbow: parameters"
+    ]
