@@ -14,7 +14,7 @@ from archgen.views.explorer import element_keys, map_flows
 from archgen.views.explorer.composed_rows import make_composed_rows
 from archgen.views.explorer.map_places import NO_HOME, MapPlaces, find_places
 from archgen.views.explorer.map_shapes import ExplorerMap, Row
-from archgen.views.explorer.row_values import list_path, list_places, shorten_text
+from archgen.views.explorer.row_values import describe_paces, find_shortest_step, list_path, list_places, shorten_text
 from archgen.views.graphs.element_boxes import join_owner_titles, worst_severity
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -178,10 +178,10 @@ class _MapMaker:
             component.id,
             component.title,
             self.group_numbers[component.group],
-            _describe_paces(paces),
+            describe_paces(paces),
             shorten_text(component.functionality, component.description),
             tuple(self.key_numbers[key] for key in self.component_keys[component.id]),
-            _shortest_step(paces),
+            find_shortest_step(paces),
             self.progress_bits[component.id],
             # Of a composed one that is not designed to its end, its own row has the findings.
             ("" if component.id in self.lookup.architecture.shells else worst_severity(self.lookup, component.id))
@@ -205,10 +205,10 @@ class _MapMaker:
             tuple(self.component_numbers[name] for name in node.implements if name in self.component_numbers),
             self.group_numbers.get(self.node_groups.get(node.id, ""), -1),
             self.host_numbers.get(node.host or "", -1),
-            _describe_paces(paces),
+            describe_paces(paces),
             shorten_text(node.description),
             tuple(self.key_numbers[key] for key in self.node_keys[node.id]),
-            _shortest_step(paces),
+            find_shortest_step(paces),
             worst_severity(self.lookup, node.id) or "",
             self.map_places.nodes_by_group[self.node_groups.get(node.id, NO_HOME), node.id],
             self.map_places.nodes_by_host.get((self.node_hosts.get(node.id, NO_HOME), node.id), ()),
@@ -283,24 +283,3 @@ def measure_steps(lookup: Lookup, components: Iterable[Component]) -> dict[str, 
         )
         steps[component.id] = int("".join("01"[is_done] for is_done in reversed(done)), base=2)
     return steps
-
-
-def _describe_paces(paces: Iterable[EventPace | None]) -> str:
-    """Return a short line on how often something happens: `15 Hz, event`, `2 activities`."""
-    words = dict.fromkeys(_describe_pace(pace) for pace in paces if pace)
-    texts = [word.replace("<=", "≤").replace(">=", "≥") for word in words if word != "?"]
-    return texts[0] if len(texts) == 1 else count_noun(len(texts), "rate") if texts else ""
-
-
-def _describe_pace(pace: EventPace) -> str:
-    """Return a rate without its period, and the behaviour: a box is narrow."""
-    first_line, *more_lines = rate_phrases.format_box_lines(pace)
-    # A long figure takes two lines, the period being the second; what is not periodic says so on the last one.
-    behaviour = more_lines[-1:] if pace.behaviour != "periodic" else ()
-    return ", ".join((first_line.partition(" · ")[0], *behaviour))
-
-
-def _shortest_step(paces: Iterable[EventPace | None]) -> str:
-    """Return the step of the period scale that is shortest, `unknown` where nothing is known."""
-    order = list(rate_phrases.PERIOD_STEP_WORDS)
-    return min((rate_phrases.find_period_step(pace) for pace in paces), key=order.index, default="unknown")
