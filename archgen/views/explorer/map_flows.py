@@ -66,7 +66,13 @@ def _list_rim_rows(
             numbers = tuple(leaf_numbers[kind][each] for each in behind if each in leaf_numbers[kind])
             marks = _mark_input(port) if isinstance(port, Input) else 0
             _, *values = _port_row(port, {shell.id: number}, types)
-            yield (number, int(kind == "output"), *values, marks, numbers)
+            yield (number, int(kind == "output"), *values, marks, numbers, _list_sources(port, leaf_numbers["output"]))
+
+
+def _list_sources(port: Input | Output, outputs: Numbers) -> tuple[int, ...]:
+    """Return the outputs that feed an input from outside."""
+    connections = port.connections if isinstance(port, Input) else ()
+    return tuple(outputs[each] for connection in connections for each in connection.outputs if each in outputs)
 
 
 def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Numbers) -> Iterator[Row]:

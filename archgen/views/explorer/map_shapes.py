@@ -36,7 +36,7 @@ class ExplorerMap:
     | `topics` | anchor, name, flow |
     | `outputs` | component, name, type, note |
     | `inputs` | component, name, type, note, marks (1 optional, 2 joined by autoconnect) |
-    | `rims` | shell, is it an output, name, type, note, marks, inputs or outputs behind it: ports of composed components |
+    | `rims` | shell, is it an output, name, type, note, marks, ports behind it, outputs that feed it: of composed components |
     | `flows` | style, input, outputs: between components |
     | `extra` | tail, head: what feeds a component of which no output is known yet |
     | `links` | tail, head, topic: between nodes |
