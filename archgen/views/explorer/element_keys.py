@@ -118,12 +118,14 @@ def _list_rules(lookup: Lookup) -> Mapping[str, list[str]]:
     """Return the rules that found something about each component, or about the whole that it is part of."""
     rules: dict[str, list[str]] = defaultdict(list)
     for element_id, findings in lookup.findings_of.items():
-        group = lookup.architecture.groups.get(element_id)
-        component_ids = (
-            tuple(component.id for component in group.components.values())
-            if group
-            else lookup.architecture.leaves_of(element_id)
-        )
-        for component_id in component_ids:
+        for component_id in _list_concerned(lookup.architecture, element_id):
             rules[component_id] += [finding.rule for finding in findings]
     return rules
+
+
+def _list_concerned(architecture: Architecture, element_id: str) -> Iterable[str]:
+    """Return the components that a finding about an element concerns."""
+    if element_id in architecture.groups:
+        return [component.id for component in architecture.groups[element_id].components.values()]
+    # Of a composed one that is not designed to its end, what is missing is a component of the same id.
+    return [element_id] if element_id in architecture.components else architecture.leaves_of(element_id)
