@@ -54,6 +54,7 @@ def list_composed_keys(shell: Component) -> tuple[Key, ...]:
                 *(("tag", tag) for tag in shell.tags),
                 *(("owner", owner) for owner in shell.owners),
                 *((("role", shell.role),) if shell.role else ()),
+                *(("requirement", use.text) for use in shell.requirements if use.is_id),
             )
         )
     )

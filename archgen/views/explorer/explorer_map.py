@@ -14,7 +14,14 @@ from archgen.views.explorer import element_keys, map_flows
 from archgen.views.explorer.composed_rows import make_composed_rows
 from archgen.views.explorer.map_places import NO_HOME, MapPlaces, find_places
 from archgen.views.explorer.map_shapes import ExplorerMap, Row
-from archgen.views.explorer.row_values import describe_paces, find_shortest_step, list_path, list_places, shorten_text
+from archgen.views.explorer.row_values import (
+    describe_paces,
+    find_shortest_step,
+    list_passed_leaves,
+    list_path,
+    list_places,
+    shorten_text,
+)
 from archgen.views.graphs.element_boxes import join_owner_titles, worst_severity
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -234,7 +241,7 @@ class _MapMaker:
         ranks = {result.id: (rank, result) for rank, result in enumerate(results)}
         for chain in sorted(architecture.chains.values(), key=lambda chain: ranks.get(chain.id, (len(ranks),))[0]):
             chip = chain_status.chain_chip(ranks[chain.id][1])[0] if chain.id in ranks else None
-            names = [w.id.rpartition(".")[0] if w.kind == "output" else w.id for w in chain.through]
+            names = [leaf for w in chain.through for leaf in list_passed_leaves(architecture, w.kind, w.id)]
             yield (
                 f"chain:{chain.id}",
                 chain.id,
@@ -246,11 +253,12 @@ class _MapMaker:
             )
 
     def requirement_rows(self) -> Iterator[Row]:
-        """Yield the requirements that shown components serve."""
+        """Yield the requirements that shown components serve, and composed ones as a whole."""
+        served_ids = {use.text for shell in self.shells for use in shell.requirements if use.is_id}
         for requirement in self.lookup.architecture.requirements.values():
             servers = self.lookup.components_for_requirement.get(requirement.id, ())
             numbers = tuple(self.component_numbers[c.id] for c in servers if c.id in self.component_numbers)
-            if numbers:
+            if numbers or requirement.id in served_ids:
                 yield (f"requirement:{requirement.id}", requirement.id, requirement.title, numbers)
 
     def finding_rows(self) -> Iterator[Row]:

@@ -30,6 +30,13 @@ def list_path(architecture: Architecture, component: Component) -> Path:
     return (component.group, *list_surrounding(architecture, component.id), *own_frame, component.id)
 
 
+def list_passed_leaves(architecture: Architecture, kind: str, element_id: str) -> Iterable[str]:
+    """Return what a chain passes that leads through an element: what gives an output, all that is inside of a component."""
+    if kind == "output":
+        return [port.rpartition(".")[0] for port in architecture.leaf_ports_of(kind, element_id)]
+    return architecture.leaves_of(element_id)
+
+
 def list_places(lookup: Lookup, span: Span) -> Row:
     """Return file and line of an element, with its address where a repository is configured; empty for no place."""
     place = place_run(lookup, span)

@@ -76,6 +76,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
   function showShell(shell, level) {
     const numbers = new Set(shell.leaves.map(({ number }) => number));
     const isInside = ({ components }) => components.some((at) => numbers.has(at));
+    const serves = new Set(shell.keys.map((at) => model.keys[at]).filter(([key]) => key === "requirement").map(([, value]) => value));
     const findings = [shell, ...model.shells.filter((each) => shellsAround(each).includes(shell)), ...shell.leaves]
       .flatMap((each) => (each.findings ?? []).map((finding) => ({ each, ...finding })));
     open("composed component", shell.title, crumbsOf(shell),
@@ -84,7 +85,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
       showPorts(shell),
       section("Inside", count(shell.leaves.length, "component"), element("ul", { className: "columns" },
         (level.children.get(shell) ?? model.components.filter(({ around }) => around === shell)).map((each) => element("li", {}, pickButton(each, each.title))))),
-      showChains(model.chains.filter(isInside)), showRequirements(model.requirements.filter(isInside)),
+      showChains(model.chains.filter(isInside)), showRequirements(model.requirements.filter((each) => isInside(each) || serves.has(each.id))),
       findings.length ? section("Open points", findings.length > MAX_FLOWS ? `the first ${MAX_FLOWS} of ${findings.length}` : String(findings.length),
         element("ul", {}, findings.slice(0, MAX_FLOWS).map(({ each, severity, message }) => element("li", {}, chip(severity, severity), " ", message,
           each === shell ? "" : [" ", element("span", { className: "muted" }, "at "), pickButton(each, each.title)])))) : "",
