@@ -127,6 +127,7 @@ MODEL_ONLY = {
     "component children": "elements of their own",
     "component component_type": "the key `is`",
     "component is_reference": "the key `is`",
+    "output is_made": "what it gives on, as `autoconnect` follows from all that is written",
     "component_type base": "the key `is`",
     "component_type is_abstract": "the key `abstract`",
     "node wholes": "its components are in the key `implements`",

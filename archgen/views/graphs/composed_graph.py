@@ -181,9 +181,11 @@ class _ComposedDrawing:
             if isinstance(port, Output):
                 return None
             # What comes in goes out again.
-            other, is_made, optional = _port_box_id(inner.outputs[name]), False, False
+            other, is_made, optional = _port_box_id(inner.outputs[name]), inner.outputs[name].is_made, False
+        elif isinstance(port, Output):
+            other, is_made, optional = holder, port.is_made, False
         else:
-            reader = inner.inputs.get(name) if isinstance(port, Input) else None
+            reader = inner.inputs.get(name)
             made = [each.is_made for each in reader.connections if each.shell_port == port.id] if reader else []
             other, is_made, optional = holder, bool(made) and all(made), bool(reader and reader.optional)
         runs_in = isinstance(port, Input) != (style in _CALLS)

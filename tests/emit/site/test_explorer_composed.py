@@ -137,7 +137,7 @@ def test_what_autoconnect_joined_is_dotted(visit: OpenPage) -> None:
 def test_the_panel_says_what_a_composed_component_is_made_of(visit: OpenPage) -> None:
     page = visit("#pick=cleaning.left_arm")
     panel = page.locator(".panel")
-    assert panel.locator(".crumb").inner_text() == "Cleaning › composed component"
+    assert panel.locator(".crumb").inner_text() == "Cleaning \u203a composed component"
     assert panel.locator(".ports").inner_text().split("\n")[:4] == [
         "in",
         "target Grasp",
@@ -147,7 +147,7 @@ def test_the_panel_says_what_a_composed_component_is_made_of(visit: OpenPage) ->
     assert sorted(panel.locator(".columns .name").all_inner_texts()) == LEFT_ARM
     assert "See And Grasp" in panel.inner_text()
     panel.get_by_role("button", name="Watch").click()
-    assert panel.locator(".crumb").inner_text() == "Cleaning › Left Arm › component"
+    assert panel.locator(".crumb").inner_text() == "Cleaning \u203a Left Arm \u203a component"
     expect(box(page, "Watch")).to_be_visible()
 
 
