@@ -21,7 +21,7 @@ def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...
     """Return the box of a component, in the hue of its group. A composed one is closed: it says how many are inside, and its
     badge is that of the worst finding inside.
     """
-    inner_findings = list_findings_inside(lookup, component) if component.id in lookup.architecture.shells else []
+    inner_findings = list_findings_inside(lookup, component) if component.children else []
     return Box(
         component.id,
         component.title,
