@@ -12,7 +12,7 @@ from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
 from archgen.model.selector_evaluation import Selection
-from archgen.views.graph_shapes import Arrow, Box, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes, ros_graph
 from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
 from archgen.views.graphs.drawn_level import DrawnLevel, list_open_shells
@@ -94,9 +94,17 @@ def _draw_small_part(
 
 def _frame_opened(lookup: Lookup, graph: Graph, opened: frozenset[str], *, has_labels: bool) -> Graph:
     """Set what stands in open components into frames. Labels have room in small pictures only."""
-    boxes, frames = place_in_frames(lookup, graph.boxes, opened, None)
+    placed_boxes, placed_frames = place_in_frames(lookup, graph.boxes, opened, None)
+    # The group is said at the outermost frame, instead of at each box inside.
+    boxes = tuple(replace(box, lines=box.lines[1:]) if box.cluster else box for box in placed_boxes)
+    frames = tuple(frame if frame.parent else _name_group(lookup, frame) for frame in placed_frames)
     arrows = graph.arrows if has_labels else tuple(replace(arrow, label="") for arrow in graph.arrows)
     return replace(graph, layout="framed", boxes=boxes, clusters=frames, arrows=arrows)
+
+
+def _name_group(lookup: Lookup, frame: Cluster) -> Cluster:
+    group = lookup.architecture.groups[(frame.ref or "").removeprefix("component:").partition(".")[0]]
+    return replace(frame, lines=(" · ".join((group.title, *frame.lines)),))
 
 
 def _draw_large_part(
