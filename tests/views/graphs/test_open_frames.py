@@ -12,6 +12,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import draw_components, draw_composed, draw_group, make_all_graphs
+from archgen.views.graphs.open_frames import list_opened
 from archgen.views.graphs.selection_graphs import draw_view
 from archgen.views.lookup import make_lookup
 
@@ -91,6 +92,12 @@ def test_deeper_than_there_is_anything_is_as_deep_as_there_is(robot: Architectur
     lookup = make_lookup(robot)
     assert draw_group(lookup, "arms", 1_000_000) == draw_group(lookup, "arms", 2)
     assert draw_group(lookup, "outside", 3) == draw_group(lookup, "outside")
+
+
+def test_what_is_opened_goes_level_by_level_from_the_boxes_of_a_picture(robot: Architecture) -> None:
+    assert list_opened(robot, ("arms.arm", "arms.planner"), 0) == set()
+    assert list_opened(robot, ("arms.arm", "arms.planner"), 1) == {"arms.arm"}
+    assert list_opened(robot, ("arms.arm.elbow", "arms.arm.hand"), 1) == {"arms.arm.hand"}
 
 
 def test_arrows_run_to_what_stands_in_the_frames(robot: Architecture) -> None:
