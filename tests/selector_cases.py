@@ -138,3 +138,72 @@ FOUND_NOTHING: tuple[tuple[str, str], ...] = (
     ("lidar *_x", "6-9 nothing fits `*_x`"),
 )
 """Selectors with a warning, all of which select the lidar."""
+
+COMPOSED_ROBOT = """
+component_types:
+  motor: {inputs: {target: Target}, outputs: {state: State}}
+  arm:
+    inputs: {goal: Goal}
+    outputs: {state: {from: joint.state}}
+    components:
+      planner: {inputs: {goal: self.goal}, outputs: {target: Target}}
+      joint: {is: motor, inputs: {target: planner.target}}
+      hand:
+        inputs: {close: self.goal}
+        outputs: {touch: Touch}
+        components: {finger: {inputs: {close: self.close}, outputs: {felt: Touch}}}
+groups:
+  body:
+    components:
+      brain: {tags: [safety], inputs: {states: [left.state, right.state]}, outputs: {goal: Goal}}
+      left: {is: arm, inputs: {goal: brain.goal}}
+      right: {same_as: arm, inputs: {goal: brain.goal}}
+"""
+"""Components in components; what `touch` of a hand gives on is not designed yet."""
+
+COMPOSED_FINDINGS = {"unfed-output": frozenset({"body.left.hand"}), "unread-output": frozenset({"body.right.state"})}
+
+COMPOSED_SELECTED = (
+    "left",
+    "body.left",
+    "left.**",
+    "body.**",
+    "left.hand.**",
+    "left.hand",
+    "hand",
+    "*.hand",
+    "left.*",
+    "*",
+    "left.state",
+    "left.state+1",
+    "left.goal",
+    "left.hand.touch",
+    "left.hand.touch+",
+    "hand.touch",
+    "left.**+1",
+    "1+left.**",
+    "left.**..right.**",
+    "-left.** body",
+    "lefd.**",
+    "planner.**",
+    "*.planner.**",
+    ".**",
+    "**",
+    "is:arm",
+    "is:motor",
+    "is:*",
+    "-is:arm",
+    "1+is:motor+1",
+    "finding:*",
+    "finding:unfed-output",
+    "tag:safety+1",
+    "brain.goal+2",
+    "left..right",
+    "left.state..right.hand.finger",
+    "left right.planner -left.hand",
+    "left.joint.state",
+    "*.state",
+    "type:Touch",
+    "lefft.planner",
+)
+"""Selectors on it whose meaning the terminal says."""

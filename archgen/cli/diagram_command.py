@@ -34,6 +34,14 @@ DIAGRAM_FORMATS = ("svg", "png", "pdf", "dot")
 )
 @shared_options.select_option
 @shared_options.level_option
+@click.option(
+    "--depth",
+    type=click.IntRange(min=0),
+    default=0,
+    metavar="LEVELS",
+    help="Open composed components in pictures, so many levels deep, where a view does not say itself how deep. "
+    "[default: closed, each with a picture of its own]",
+)
 @shared_options.keep_going_option
 def command(  # noqa: PLR0913 - one for each option
     *,
@@ -43,6 +51,7 @@ def command(  # noqa: PLR0913 - one for each option
     only: tuple[str, ...],
     select: str | None,
     level: DetailLevel | None,
+    depth: int,
     keep_going: bool,
 ) -> None:
     """Draw the architecture of PROJECT: overview, groups, components, ROS graph, hosts, views.
@@ -65,6 +74,7 @@ def command(  # noqa: PLR0913 - one for each option
         None,
         command_support.make_progress_printer(),
         command_support.print_warning,
+        depth=depth,
     )
     target = output or checked_project.output_folder / "diagrams"
     with command_support.explain_write_errors():

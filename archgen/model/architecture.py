@@ -101,6 +101,8 @@ class View:
     show: str
     colour: str | None = None
     level: Literal["functional", "implementation"] = "functional"
+    depth: int | None = None
+    """How many levels of composed components it opens; None where it does not say."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     show_at: Span = field(default=NO_SPAN, compare=False, repr=False)

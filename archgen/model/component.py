@@ -82,6 +82,8 @@ class Output:
     frame: str | None = None
     """The coordinate frame in which its data is given, as written; None: that of its type."""
     description: str | None = None
+    is_made: bool = False
+    """Whether nobody wrote what this output of a composed component gives on: `autoconnect` joined the two."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -30,12 +30,14 @@ def find_closed(architecture: Architecture, component_id: str, open_shells: Coll
     return next((shell for shell in around if shell not in open_shells), component_id)
 
 
-def list_members(architecture: Architecture, group_id: str) -> tuple[str, ...]:
-    """Return the components directly in a group, composed ones closed, in the order of the group."""
+def list_members(architecture: Architecture, group_id: str, open_shells: Collection[str] = ()) -> tuple[str, ...]:
+    """Return the components directly in a group, composed ones closed but for the open ones, in the order of the group."""
     leaves = (component.id for component in architecture.groups[group_id].components.values())
-    members = dict.fromkeys(find_closed(architecture, leaf) for leaf in leaves)
+    members = dict.fromkeys(find_closed(architecture, leaf, open_shells) for leaf in leaves)
     members |= dict.fromkeys(
-        shell.id for shell in architecture.shells.values() if shell.group == group_id and shell.parent is None
+        shell.id
+        for shell in architecture.shells.values()
+        if shell.group == group_id and shell.parent is None and shell.id not in open_shells
     )
     return tuple(members)
 

@@ -156,11 +156,8 @@ def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
 def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
     """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
-    for element_id in element_ids:
-        port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
-        if port:
-            components.add(port.component)
-        elif element_id in architecture.components:
+    for element_id in (_find_holder(architecture, each) for each in element_ids):
+        if element_id in architecture.components:
             components.add(element_id)
         elif element_id in architecture.shells:
             components.update(architecture.leaves_of(element_id))
@@ -169,3 +166,14 @@ def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> 
         elif element_id in architecture.nodes:
             nodes.add(element_id)
     return SelectorHit(frozenset(components), frozenset(nodes))
+
+
+def _find_holder(architecture: Architecture, element_id: str) -> str:
+    """Return the component of a port, composed or not; any other id is returned unchanged."""
+    port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
+    if port:
+        return port.component
+    holder, _, name = element_id.rpartition(".")
+    shell = architecture.shells.get(holder)
+    is_child = shell is not None and element_id in shell.children
+    return holder if shell and not is_child and (name in shell.inputs or name in shell.outputs) else element_id

@@ -34,5 +34,7 @@ class OutputOptions:
     """Decides which backends of the project itself may run; None allows all of them."""
     component_pictures: bool | None = None
     """Whether the site has a picture of each component and group; None: as `drawing_set.list_undrawn_kinds` says."""
+    depth: int = 0
+    """How many levels of composed components pictures open."""
     changes: SiteChanges | None = None
     """What changed since an earlier version, where the site is to show it."""

@@ -89,7 +89,7 @@ def make_views(
     )
     project_history = read_history(checked_project, options)
     all_drawings = drawing_set.make_drawings(
-        lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds
+        lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds, depth=options.depth
     )
     all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
     if options.changes:

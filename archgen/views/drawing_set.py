@@ -30,13 +30,14 @@ def make_drawings(
     level: Literal["functional", "implementation"],
     *,
     undrawn_kinds: Collection[str] = (),
+    depth: int = 0,
 ) -> dict[str, Drawing]:
     """Make the drawings of one level, or of a selection; of charts only those that show something selected.
 
-    There are none of the `undrawn_kinds`.
+    There are none of the `undrawn_kinds`. Composed components are open to a depth.
     """
     element_graphs = graphs.make_all_graphs(
-        lookup.architecture, selection, lookup.findings, lookup.timing, undrawn_kinds=undrawn_kinds
+        lookup.architecture, selection, lookup.findings, lookup.timing, undrawn_kinds=undrawn_kinds, depth=depth
     )
     timing_charts = chain_charts.make_timing_charts(lookup)
     drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs} | {

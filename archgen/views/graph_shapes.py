@@ -67,6 +67,8 @@ class Box:
     ref: str | None = None
     tooltip: str = ""
     badge: Literal["error", "warning", "note"] | None = None
+    badge_count: int = 0
+    """How many findings the badge stands for, where the box stands for more than itself; 0 where it does not."""
     fill: PeriodStep | None = None
     """Fills the box by the period scale; frame and text distinguish what has no period."""
     change: ElementChange | None = None

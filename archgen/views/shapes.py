@@ -311,8 +311,6 @@ class Page:
     """Where time goes, above the page's section: that of a chain, of a host, of all chains."""
     mark: Literal["open", "missed"] | None = None
     """What the navigation marks: something here is open, or a deadline is missed."""
-    is_on_map: bool = True
-    """Whether the explorer shows the thing, if it is of a kind that it shows."""
     is_changed: bool = False
     """Whether this differs from the version that the site is compared with; the navigation marks that, too."""
 

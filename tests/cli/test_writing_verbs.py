@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import jsonschema_rs
@@ -12,6 +13,7 @@ import yaml
 from archgen import resources
 from archgen.emit.written_formats import PACKED_HEADER
 from tests.cli.conftest import Run
+from tests.running import ROOT
 
 
 def test_pack(run: Run, first: Path, tmp_path: Path) -> None:
@@ -51,6 +53,7 @@ def test_keep_going(run: Run, broken: Path) -> None:
         (("pack", "--select", "lidar"), "--select goes with --resolved: a packed project is whole"),
         (("pack", "--resolved", "--select", "lidr"), "nothing is called `lidr`; did you mean `lidar`?"),
         (("diagram", "--format", "gif"), "--format takes svg, png, pdf, dot, separated by commas, not 'gif'"),
+        (("diagram", "--depth", "-1"), "-1 is not in the range x>=0"),
         (("report", "--level", "high"), "'high' is not one of 'functional', 'implementation'"),
     ],
 )
@@ -85,6 +88,14 @@ def test_a_picture_that_there_is_not(run: Run, first: Path, tmp_path: Path) -> N
     (tmp_path / "archgen.yaml").write_text("archgen: 1\n")
     ran = run("diagram", tmp_path, "--only", "overview")
     assert (ran.status, ran.err) == (2, "Error: no picture is called overview; there is nothing to draw yet\n")
+
+
+def test_pictures_open_composed_components_to_a_depth(run: Run, tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "examples" / "cleaning_robot", tmp_path / "robot")
+    for words, title in (((), "4 components"), (("--depth", "1"), "Shoulder")):
+        assert run("diagram", tmp_path / "robot", "--only", "groups/cleaning", *words).status == 0
+        picture = (tmp_path / "robot" / "archgen-out" / "diagrams" / "groups" / "cleaning.svg").read_text("utf-8")
+        assert f">{title}</text>" in picture
 
 
 def test_a_packed_file_does_not_replace_its_project(run: Run, first: Path) -> None:

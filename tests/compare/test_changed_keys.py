@@ -51,6 +51,7 @@ project: {id: robot, title: Robot}
         ("size: 1 kB", "size: 2 kB", "type T", "size", "1 kB", "2 kB", "type `T`: size `1 kB` → `2 kB`; `g.a.x` carries it"),
         ("deadline: 500 ms", "deadline: 0.4 s", "chain c", "deadline", "500 ms", "0.4 s", "chain `c` now must end within `0.4 s` instead of `500 ms`"),
         ('show: "g.a+"', "show: g", "view v", "show", "g.a+", "g", "view `v`: selector `g.a+` → `g`"),
+        ('show: "g.a+"', 'show: "g.a+", depth: 2', "view v", "depth", None, 2, "view `v`: depth set to 2"),
         ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
         ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
         ("topic: /x", "topic: /y", "port na.publishes.x", "topic", ["/x"], ["/y"], "`na.publishes.x`: topic `/x` → `/y`"),

@@ -129,6 +129,7 @@ MODEL_ONLY = {
     "component children": "elements of their own",
     "component component_type": "the key `is`",
     "component is_reference": "the key `is`",
+    "output is_made": "what it gives on, as `autoconnect` follows from all that is written",
     "component_type base": "the key `is`",
     "component_type is_abstract": "the key `abstract`",
     "component_type frames": "those of its instances",
@@ -297,7 +298,7 @@ resources: {gpu: {title: G, host: pc, scheduling: fifo}}
 links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
 frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
-views: {v: {title: V, show: g, colour: owner, level: implementation, layout: {direction: top-bottom}}}
+views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}}}
 policies: {p: {title: P, forbid: {from: g, to: g}}}
 """
 """A project in which every kind has every field."""

@@ -205,6 +205,7 @@ VIEW = KindSpec(
         KeySpec("show", _read_selector(lambda view: view.show), noun="selector"),
         KeySpec("colour"),
         KeySpec("level", lambda view, _: None if view.level == "functional" else view.level),
+        KeySpec("depth"),
         LAYOUT,
     ),
     Effect.TEXT,

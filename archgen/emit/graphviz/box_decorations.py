@@ -8,9 +8,11 @@ from dataclasses import replace
 from archgen.emit.graphviz import box_styles, palette
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.views.graph_shapes import Box
+from archgen.views.inline_text import count_noun
 
 _BAR_WIDTH = 3.5
 _BADGE_DIAMETER = 10.0
+_DIGIT_WIDTH = 4.4
 _BADGE_LETTERS = {"error": ("E", palette.ERROR), "warning": ("W", palette.WARNING), "note": ("N", palette.NOTE)}
 
 
@@ -31,9 +33,9 @@ def _decorate_box(part: ScenePart, box: Box) -> Iterator[ScenePart]:
             f"{part.name}bar", _bar_attributes(box, part.height), x, part.y, _BAR_WIDTH, part.height, "mark"
         )
     if box.badge:
-        yield ScenePart(
-            f"{part.name}badge", _badge_attributes(box), right - 3, top - 1, _BADGE_DIAMETER, _BADGE_DIAMETER, "mark"
-        )
+        width = _BADGE_DIAMETER + (_DIGIT_WIDTH * (len(str(box.badge_count)) + 0.5) if box.badge_count else 0)
+        x = right - 3 - (width - _BADGE_DIAMETER) / 2
+        yield ScenePart(f"{part.name}badge", _badge_attributes(box, width), x, top - 1, width, _BADGE_DIAMETER, "mark")
 
 
 def _bar_attributes(box: Box, height: float) -> dict[str, str]:
@@ -50,17 +52,19 @@ def _bar_attributes(box: Box, height: float) -> dict[str, str]:
     }
 
 
-def _badge_attributes(box: Box) -> dict[str, str]:
+def _badge_attributes(box: Box, width: float) -> dict[str, str]:
     letter, colour = _BADGE_LETTERS[box.badge or "note"]
+    text = f"{letter} {box.badge_count}" if box.badge_count else letter
+    subject = f"{count_noun(box.badge_count, 'finding')} inside" if box.badge_count else "has findings"
     return {
-        **_fixed_shape(_BADGE_DIAMETER, _BADGE_DIAMETER),
-        "shape": '"circle"',
+        **_fixed_shape(width, _BADGE_DIAMETER),
+        **({"shape": '"box"', "style": '"filled,rounded"'} if box.badge_count else {"shape": '"circle"'}),
         "color": f'"{palette.PAPER}"',
         "fillcolor": f'"{colour}"',
         "penwidth": "0.6",
-        "label": f'<<FONT POINT-SIZE="6.5" COLOR="{palette.PAPER}"><B>{letter}</B></FONT>>',
+        "label": f'<<FONT POINT-SIZE="6.5" COLOR="{palette.PAPER}"><B>{text}</B></FONT>>',
         "class": f'"badge {box.badge}"',
-        "tooltip": f'"has findings, the worst is: {box.badge}"',
+        "tooltip": f'"{subject}, the worst is: {box.badge}"',
     }
 
 

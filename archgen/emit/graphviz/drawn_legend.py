@@ -37,6 +37,7 @@ _BOX_SAMPLES: dict[str, tuple[Box, str]] = {
     "badge:error": (Box("", "", badge="error"), "has an error (E)"),
     "badge:warning": (Box("", "", badge="warning"), "has a warning (W)"),
     "badge:note": (Box("", "", badge="note"), "has a note (N)"),
+    "badge:inside": (Box("", "", badge="note", badge_count=2), "the worst finding inside, and how many"),
 }
 _PERIOD_WORDS: dict[PeriodStep, str] = {
     "to_10_ms": "period up to 10 ms",

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.label_places import declutter_labels, sample_line
 from archgen.emit.graphviz.layout_engine import format_attributes
-from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, ScenePart
+from archgen.emit.graphviz.nested_frames import find_rank_distance, read_frames, write_frames
+from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, ScenePart, read_scene
 from archgen.emit.graphviz.rank_wrapping import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
@@ -47,13 +49,16 @@ def lay_out_group(styled_graph: StyledGraph) -> Scene:
     """
     graph = styled_graph.graph
     cluster = graph.clusters[0]
-    inside_boxes = [item for item in graph.boxes if item.cluster == cluster.id]
+    frame_ids = {each.id for each in graph.clusters}
+    inside_boxes = [item for item in graph.boxes if item.cluster in frame_ids]
     inside_names = {styled_graph.dot_names[item.id] for item in inside_boxes}
 
     def finish(scene: Scene) -> Scene:
         framed_scene = _draw_frame(styled_graph, cluster, scene, inside_names)
         return declutter_labels(place_labels_on_lines(styled_graph, framed_scene))
 
+    if len(graph.clusters) > 1:
+        return finish(_lay_out_inner_frames(styled_graph))
     # dot takes longest for lines, and those of a layout that is going to be wrapped are thrown away.
     looks_wide = _count_ranks(styled_graph, inside_boxes) * _RANK_WIDTH > _WIDEST_FRAME
     scene = _lay_out_framed_boxes(styled_graph, splines="none" if looks_wide else "spline")
@@ -112,6 +117,23 @@ def _lay_out_framed_boxes(
     ]
     settings = f'{_layout_settings(styled_graph, 0.16)} splines="{splines}"'
     return read_layout(styled_graph, layout_engine.lay_out_dot(write_dot(settings, statements)))
+
+
+def _lay_out_inner_frames(styled_graph: StyledGraph) -> Scene:
+    """Lay out boxes and their neighbours with frames inside of the frame. Labels come later: dot cannot have both."""
+    graph = styled_graph.graph
+    outer = graph.clusters[0].id
+    inner_frames = [cluster for cluster in graph.clusters if cluster.id != outer]
+    inner_ids = {cluster.id for cluster in inner_frames}
+    statements = [*write_frames(styled_graph, outer)]
+    statements += [styled_graph.write_node(box) for box in graph.boxes if box.cluster not in inner_ids]
+    statements += [*_rank_statements(styled_graph), *_hold_ports(styled_graph)]
+    statements += [styled_graph.write_edge(at, arrow, with_text=False) for at, arrow in enumerate(graph.arrows)]
+    direction, ranksep = ("TB", 0.7) if graph.direction == "top-bottom" else ("LR", find_rank_distance(graph))
+    settings = f'rankdir="{direction}" nodesep="0.2" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'
+    layout = layout_engine.lay_out_dot(write_dot(settings, statements))
+    scene = read_scene(layout, styled_graph.box_attributes, styled_graph.arrow_attributes)
+    return scene.joined(read_frames(styled_graph, layout, inner_frames))
 
 
 def _hold_ports(styled_graph: StyledGraph) -> list[str]:
@@ -181,6 +203,7 @@ def _rank_statements(styled_graph: StyledGraph) -> list[str]:
 def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, inside_names: set[str]) -> Scene:
     """Add the frame round its boxes and all lines that pass between them, with the title above."""
     boxes = [title_part.rectangle for title_part in scene.parts if title_part.name in inside_names]
+    boxes += [inner_frame.rectangle for inner_frame in scene.frames]
     ports = _list_rim_ports(styled_graph, scene)
     heading = title_attributes(cluster)
     ((width, height),) = measure_nodes([heading])
@@ -197,6 +220,7 @@ def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, insid
         if left <= title_part.x <= right
         for side in (-1, 1)
     ]
+    y_values += [y for inner_frame in scene.frames for y in (inner_frame.rectangle[1], inner_frame.rectangle[3])]
     # Neighbours are above and below here, so lines to them would stretch the frame over them.
     if styled_graph.graph.direction == "top-bottom":
         y_values = [y for box in boxes for y in (box[1], box[3])]
@@ -207,7 +231,8 @@ def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, insid
         "c0", frame_attributes(cluster, styled_graph.resolve_link), (left_side, bottom, right_side, top)
     )
     title_part = ScenePart("t0", heading, left_side + 8 + width / 2, top - 5 - height / 2, width, height, kind="title")
-    return scene.joined(Scene(frames=(cluster_frame,), parts=(title_part,)))
+    # Behind the frames inside.
+    return replace(scene.joined(Scene(parts=(title_part,))), frames=(cluster_frame, *scene.frames))
 
 
 def _list_rim_ports(styled_graph: StyledGraph, scene: Scene) -> list[tuple[float, float, float, float]]:

@@ -42,7 +42,7 @@ _PAGE_SCRIPTS = (
 """The page's own scripts, in the order in which they build on one another."""
 _MAX_PART_LETTERS = 200_000
 """The letters of one script: larger ones would hold up the page while they are read."""
-_ELEMENT_KINDS = frozenset({"component", "group", "node", "host"})
+_ELEMENT_KINDS = frozenset({"component", "component_type", "group", "node", "host"})
 """Kinds of pages whose element is on the map."""
 
 
@@ -67,15 +67,19 @@ def list_explorer_scripts(map_parts: Sequence[str]) -> tuple[str, tuple[str, ...
 
 
 def find_explorer_address(page: Page, links: SiteLinks) -> str | None:
-    """Return the address that shows a page's element on the map, relative to the site's folder; None if it has none."""
+    """Return the address that shows a page's element on the map, relative to the site's folder; None if it has none.
+
+    Of a component type all instances are lit.
+    """
     kind, _, element_id = page.anchor.partition(":")
-    if EXPLORER_ANCHOR not in links.pages or kind not in _ELEMENT_KINDS or not page.is_on_map:
+    if EXPLORER_ANCHOR not in links.pages or kind not in _ELEMENT_KINDS:
         return None
     level = {"node": "nodes", "host": "hosts"}.get(kind, "components")
     # Ids have no letter that an address would have to write in another way, but for those of strangers' files.
     from urllib.parse import quote
 
-    return f"{links.pages[EXPLORER_ANCHOR]}#level={level}&pick={quote(element_id, safe='')}"
+    choice = ("sel", f"is:{element_id}") if kind == "component_type" else ("pick", element_id)
+    return f"{links.pages[EXPLORER_ANCHOR]}#level={level}&{choice[0]}={quote(choice[1], safe='')}"
 
 
 def _part_path(number: int) -> str:

@@ -134,14 +134,20 @@ class _GroupDeclarer:
             name: self.wiring.declare_input(shell.id, port, is_leaf=False)
             for name, port in self.outline.inputs[shell.id].items()
         }
-        outputs = {
-            name: replace(output, type=self.wiring.sources.type_of_output(output.id)) if self.wiring.sources else output
-            for name, output in self.outline.outputs[shell.id].items()
-        }
+        outputs = {name: self._follow_output(output) for name, output in self.outline.outputs[shell.id].items()}
         return replace(
             self._declare_component(shell.group, shell.entry, inputs, outputs),
             children=tuple(child for child in shell.children if child in self.resolver.spans["component"]),
         )
+
+    def _follow_output(self, output: Output) -> Output:
+        """Return an output of a composed component with what follows from what it gives on."""
+        sources = self.wiring.sources
+        if sources is None:
+            return output
+        given = sources.list_sources(("output", output.id))
+        is_made = bool(given) and all(source.is_made for source in given)
+        return replace(output, type=sources.type_of_output(output.id), is_made=is_made)
 
     def _declare_leaf(self, group_id: str, entry: MappingEntry) -> Component:
         component_id = f"{group_id}.{entry.key}"

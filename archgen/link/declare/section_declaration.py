@@ -129,6 +129,7 @@ def declare_views(root: MappingNode) -> dict[str, View]:
             show=mapping_values.get_text(body, "show") or "",
             colour=mapping_values.get_text(body, "colour"),
             level="implementation" if level == "implementation" else "functional",
+            depth=mapping_values.get_integer(body, "depth"),
             layout=mapping_values.get_layout(body),
             at=entry.key_span,
             show_at=mapping_values.get_span(body, "show"),

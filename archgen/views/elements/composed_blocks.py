@@ -117,5 +117,6 @@ def _list_behind(lookup: Lookup, kind: str, port: Input | Output) -> Inlines:
             lines.append(inline_text.to_inlines(Text(words, muted=True), Text(name, code=True)))
         else:
             component = find_component(lookup.architecture, holder)
-            lines.append((inline_text.component_link(component), Text(" · "), Text(name, code=True)))
+            made_words = (Text(" (autoconnect)", muted=True),) if isinstance(port, Output) and port.is_made else ()
+            lines.append((inline_text.component_link(component), Text(" · "), Text(name, code=True), *made_words))
     return inline_text.join_lines(lines) or inline_text.to_inlines(Text("nothing inside yet", muted=True))

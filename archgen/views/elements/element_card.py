@@ -189,6 +189,7 @@ def _composed_card(lookup: Lookup, shell: Component) -> ElementCard:
     )
     outputs = tuple(
         f"{port.name} ({port.type or '?'}) <= {', '.join(architecture.shell_ports[f'output {port.id}']) or '?'}"
+        f"{' (autoconnect)' if port.is_made else ''}"
         for port in shell.outputs.values()
     )
     lists = (

@@ -47,6 +47,20 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
     }
 
 
+def list_composed_keys(shell: Component) -> tuple[Key, ...]:
+    """Return what is said of a composed component itself. No selector finds it by that: what flows, flows between leaves."""
+    return tuple(
+        dict.fromkeys(
+            (
+                *(("tag", tag) for tag in shell.tags),
+                *(("owner", owner) for owner in shell.owners),
+                *((("role", shell.role),) if shell.role else ()),
+                *(("requirement", use.text) for use in shell.requirements if use.is_id),
+            )
+        )
+    )
+
+
 def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
     """Return the keys of a node, each once."""
     host = lookup.architecture.hosts.get(node.host or "")
@@ -103,11 +117,17 @@ def _list_types(architecture: Architecture) -> Mapping[str, Iterable[str]]:
 
 
 def _list_rules(lookup: Lookup) -> Mapping[str, list[str]]:
-    """Return the rules that found something about each component, or about the whole of its group."""
+    """Return the rules that found something about each component, or about the whole that it is part of."""
     rules: dict[str, list[str]] = defaultdict(list)
     for element_id, findings in lookup.findings_of.items():
-        group = lookup.architecture.groups.get(element_id)
-        component_ids = [component.id for component in group.components.values()] if group else [element_id]
-        for component_id in component_ids:
+        for component_id in _list_concerned(lookup.architecture, element_id):
             rules[component_id] += [finding.rule for finding in findings]
     return rules
+
+
+def _list_concerned(architecture: Architecture, element_id: str) -> Iterable[str]:
+    """Return the components that a finding about an element concerns."""
+    if element_id in architecture.groups:
+        return [component.id for component in architecture.groups[element_id].components.values()]
+    # Of a composed one that is not designed to its end, what is missing is a component of the same id.
+    return [element_id] if element_id in architecture.components else architecture.leaves_of(element_id)

@@ -6,24 +6,28 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from archgen.diagnostics.source_span import Span
 from archgen.model.component import Component, Group
 from archgen.model.deployment import Host
 from archgen.model.node import Node
 from archgen.timing.analysis import EventPace
-from archgen.views.element_references import place_run
 from archgen.views.explorer import element_keys, map_flows
-from archgen.views.explorer.map_places import MapPlaces, find_places
+from archgen.views.explorer.composed_rows import make_composed_rows
+from archgen.views.explorer.map_places import NO_HOME, MapPlaces, find_places
 from archgen.views.explorer.map_shapes import ExplorerMap, Row
+from archgen.views.explorer.row_values import (
+    describe_paces,
+    find_shortest_step,
+    list_passed_leaves,
+    list_path,
+    list_places,
+    shorten_text,
+)
 from archgen.views.graphs.element_boxes import join_owner_titles, worst_severity
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.search.search_entry import join_words, to_plain_text
+from archgen.views.search.search_entry import join_words
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 from archgen.views.timing import chain_status, rate_phrases
-
-_MAX_SUMMARY = 280
-"""Letters of a description that the panel shows; the element's page has all of it."""
 
 
 def make_explorer_map(lookup: Lookup) -> ExplorerMap:
@@ -38,7 +42,8 @@ def make_explorer_map(lookup: Lookup) -> ExplorerMap:
             "hosts": tuple(maker.host_row(host) for host in maker.hosts),
             "components": tuple(maker.component_row(component) for component in maker.components),
             "nodes": tuple(maker.node_row(node) for node in maker.nodes),
-            **map_flows.make_flow_tables(lookup, maker.component_numbers, maker.node_numbers),
+            **map_flows.make_flow_tables(lookup, maker.component_numbers, maker.node_numbers, maker.shells),
+            "shells": maker.shell_rows(),
             "chains": tuple(maker.chain_rows()),
             "requirements": tuple(maker.requirement_rows()),
             "findings": tuple(maker.finding_rows()),
@@ -59,6 +64,11 @@ class _MapMaker:
     @cached_property
     def components(self) -> list[Component]:
         return [component for group in self.groups for component in self.lookup.shown_components(group.id)]
+
+    @cached_property
+    def shells(self) -> list[Component]:
+        """The composed components, outer ones first."""
+        return [shell for shell in self.lookup.architecture.shells.values() if self.lookup.shows_part(shell.id)]
 
     @cached_property
     def nodes(self) -> list[Node]:
@@ -99,6 +109,7 @@ class _MapMaker:
         """The position of each key and value, in order of appearance."""
         used_keys = [key for component in self.components for key in self.component_keys[component.id]]
         used_keys += [key for node in self.nodes for key in self.node_keys[node.id]]
+        used_keys += [key for shell in self.shells for key in element_keys.list_composed_keys(shell)]
         return {key: number for number, key in enumerate(dict.fromkeys(used_keys))}
 
     @cached_property
@@ -109,12 +120,17 @@ class _MapMaker:
         return {node_id: group for node_id, group in homes if group}
 
     @cached_property
+    def node_hosts(self) -> Mapping[str, str]:
+        """The host of each node that runs on one that is shown."""
+        return {node.id: node.host for node in self.nodes if node.host and node.host in self.host_numbers}
+
+    @cached_property
     def map_places(self) -> MapPlaces:
         return find_places(
             self.lookup,
-            {component.id: component.group for component in self.components},
+            {component.id: list_path(self.lookup.architecture, component) for component in self.components},
             self.node_groups,
-            {node.id: node.host for node in self.nodes if node.host and node.host in self.host_numbers},
+            self.node_hosts,
             self.node_numbers,
         )
 
@@ -142,10 +158,10 @@ class _MapMaker:
             group.id,
             group.title,
             join_owner_titles(self.lookup, group.owners),
-            _shorten_text(group.description),
-            self.map_places.groups.get(group.id, ()),
-            self.map_places.node_groups.get(group.id, ()),
-            self._list_places(group.at),
+            shorten_text(group.description),
+            self.map_places.components.get((group.id,), ()),
+            self.map_places.nodes_by_group.get((group.id,), ()),
+            list_places(self.lookup, group.at),
         )
 
     def host_row(self, host: Host) -> Row:
@@ -156,9 +172,9 @@ class _MapMaker:
             host.id,
             host.title,
             line,
-            _shorten_text(host.description),
-            self.map_places.hosts.get(host.id, ()),
-            self._list_places(host.at),
+            shorten_text(host.description),
+            self.map_places.nodes_by_host.get((host.id,), ()),
+            list_places(self.lookup, host.at),
         )
 
     def component_row(self, component: Component) -> Row:
@@ -167,22 +183,24 @@ class _MapMaker:
         return (
             f"component:{component.id}",
             component.id,
-            self._name_component(component),
+            component.title,
             self.group_numbers[component.group],
-            _describe_paces(paces),
-            _shorten_text(component.functionality, component.description),
+            describe_paces(paces),
+            shorten_text(component.functionality, component.description),
             tuple(self.key_numbers[key] for key in self.component_keys[component.id]),
-            _shortest_step(paces),
+            find_shortest_step(paces),
             self.progress_bits[component.id],
-            worst_severity(self.lookup, component.id) or "",
-            self.map_places.components[component.id],
-            self._list_places(component.at),
+            # Of a composed one that is not designed to its end, its own row has the findings.
+            ("" if component.id in self.lookup.architecture.shells else worst_severity(self.lookup, component.id))
+            or "",
+            self.map_places.components[list_path(self.lookup.architecture, component)],
+            list_places(self.lookup, component.at),
         )
 
-    def _name_component(self, component: Component) -> str:
-        """Return a component's title, with that of the composed one around it: the map has the leaves of a group side by side."""
-        around = self.lookup.architecture.shells.get(component.parent or "")
-        return f"{around.title} · {component.title}" if around else component.title
+    def shell_rows(self) -> tuple[Row, ...]:
+        """Return the rows of the composed components."""
+        places = self.map_places.components
+        return make_composed_rows(self.lookup, self.shells, self.component_numbers, self.key_numbers, places)
 
     def node_row(self, node: Node) -> Row:
         """Return the row of a node."""
@@ -194,20 +212,15 @@ class _MapMaker:
             tuple(self.component_numbers[name] for name in node.implements if name in self.component_numbers),
             self.group_numbers.get(self.node_groups.get(node.id, ""), -1),
             self.host_numbers.get(node.host or "", -1),
-            _describe_paces(paces),
-            _shorten_text(node.description),
+            describe_paces(paces),
+            shorten_text(node.description),
             tuple(self.key_numbers[key] for key in self.node_keys[node.id]),
-            _shortest_step(paces),
+            find_shortest_step(paces),
             worst_severity(self.lookup, node.id) or "",
-            self.map_places.nodes_by_group[node.id],
-            self.map_places.nodes_by_host.get(node.id, ()),
-            self._list_places(node.at),
+            self.map_places.nodes_by_group[self.node_groups.get(node.id, NO_HOME), node.id],
+            self.map_places.nodes_by_host.get((self.node_hosts.get(node.id, NO_HOME), node.id), ()),
+            list_places(self.lookup, node.at),
         )
-
-    def _list_places(self, span: Span) -> Row:
-        """Return file and line of an element, with its address where a repository is configured; empty for no place."""
-        place = place_run(self.lookup, span)
-        return tuple(filter(None, (place.text, place.url))) if place else ()
 
     def _list_paces(self, component_id: str | None, nodes: Iterable[Node]) -> list[EventPace | None]:
         """Return how often the activities of nodes happen; with a component, only those that are of it."""
@@ -228,7 +241,7 @@ class _MapMaker:
         ranks = {result.id: (rank, result) for rank, result in enumerate(results)}
         for chain in sorted(architecture.chains.values(), key=lambda chain: ranks.get(chain.id, (len(ranks),))[0]):
             chip = chain_status.chain_chip(ranks[chain.id][1])[0] if chain.id in ranks else None
-            names = [w.id.rpartition(".")[0] if w.kind == "output" else w.id for w in chain.through]
+            names = [leaf for w in chain.through for leaf in list_passed_leaves(architecture, w.kind, w.id)]
             yield (
                 f"chain:{chain.id}",
                 chain.id,
@@ -240,21 +253,24 @@ class _MapMaker:
             )
 
     def requirement_rows(self) -> Iterator[Row]:
-        """Yield the requirements that shown components serve."""
+        """Yield the requirements that shown components serve, and composed ones as a whole."""
+        served_ids = {use.text for shell in self.shells for use in shell.requirements if use.is_id}
         for requirement in self.lookup.architecture.requirements.values():
             servers = self.lookup.components_for_requirement.get(requirement.id, ())
             numbers = tuple(self.component_numbers[c.id] for c in servers if c.id in self.component_numbers)
-            if numbers:
+            if numbers or requirement.id in served_ids:
                 yield (f"requirement:{requirement.id}", requirement.id, requirement.title, numbers)
 
     def finding_rows(self) -> Iterator[Row]:
-        """Yield the findings about shown components and nodes."""
+        """Yield the findings about shown components, nodes and composed components."""
+        shell_numbers = {shell.id: number for number, shell in enumerate(self.shells)}
+        # A composed one that is not designed to its end is among the components as well.
+        tables = ((2, shell_numbers), (0, self.component_numbers), (1, self.node_numbers))
         for element_id, findings in self.lookup.findings_of.items():
-            is_node = element_id not in self.component_numbers
-            number = (self.node_numbers if is_node else self.component_numbers).get(element_id)
-            if number is not None:
+            kind, numbers = next((each for each in tables if element_id in each[1]), (0, {}))
+            if element_id in numbers:
                 yield from (
-                    (int(is_node), number, finding.effective_severity.value, finding.message.replace("`", ""))
+                    (kind, numbers[element_id], finding.effective_severity.value, finding.message.replace("`", ""))
                     for finding in findings
                 )
 
@@ -275,30 +291,3 @@ def measure_steps(lookup: Lookup, components: Iterable[Component]) -> dict[str, 
         )
         steps[component.id] = int("".join("01"[is_done] for is_done in reversed(done)), base=2)
     return steps
-
-
-def _describe_paces(paces: Iterable[EventPace | None]) -> str:
-    """Return a short line on how often something happens: `15 Hz, event`, `2 activities`."""
-    words = dict.fromkeys(_describe_pace(pace) for pace in paces if pace)
-    texts = [word.replace("<=", "≤").replace(">=", "≥") for word in words if word != "?"]
-    return texts[0] if len(texts) == 1 else count_noun(len(texts), "rate") if texts else ""
-
-
-def _describe_pace(pace: EventPace) -> str:
-    """Return a rate without its period, and the behaviour: a box is narrow."""
-    first_line, *more_lines = rate_phrases.format_box_lines(pace)
-    # A long figure takes two lines, the period being the second; what is not periodic says so on the last one.
-    behaviour = more_lines[-1:] if pace.behaviour != "periodic" else ()
-    return ", ".join((first_line.partition(" · ")[0], *behaviour))
-
-
-def _shortest_step(paces: Iterable[EventPace | None]) -> str:
-    """Return the step of the period scale that is shortest, `unknown` where nothing is known."""
-    order = list(rate_phrases.PERIOD_STEP_WORDS)
-    return min((rate_phrases.find_period_step(pace) for pace in paces), key=order.index, default="unknown")
-
-
-def _shorten_text(*texts: str | None) -> str:
-    """Return the beginning of a description, on one line."""
-    text = to_plain_text(*texts)
-    return text if len(text) <= _MAX_SUMMARY else f"{text[:_MAX_SUMMARY].rsplit(' ', 1)[0]} …"

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
-from archgen.model.component import Input, Output
+from archgen.model.component import Component, Input, Output
 from archgen.views.explorer.map_shapes import Row
 from archgen.views.graphs.component_flows import flow_style, list_flows
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import join_words
 
+_OPTIONAL, _MADE = 1, 2
 _STYLES = ("data", "physical", "service", "action")
 
 Numbers = Mapping[str, int]
 """The positions of elements in their table, by id."""
 
 
-def make_flow_tables(lookup: Lookup, components: Numbers, nodes: Numbers) -> dict[str, tuple[Row, ...]]:
+def make_flow_tables(
+    lookup: Lookup, components: Numbers, nodes: Numbers, shells: Iterable[Component]
+) -> dict[str, tuple[Row, ...]]:
     """Make the tables of ports, of flows between shown components, and of topics between shown nodes."""
     architecture = lookup.architecture
     types = {name: number for number, name in enumerate(architecture.types)}
@@ -31,7 +34,8 @@ def make_flow_tables(lookup: Lookup, components: Numbers, nodes: Numbers) -> dic
     links = tuple(_list_link_rows(architecture, nodes, topics))
     return {
         "outputs": tuple(_port_row(port, components, types) for port in outputs),
-        "inputs": tuple((*_port_row(port, components, types), int(port.optional)) for port in inputs),
+        "inputs": tuple((*_port_row(port, components, types), _mark_input(port)) for port in inputs),
+        "rims": tuple(_list_rim_rows(architecture, shells, types, {"input": input_numbers, "output": output_numbers})),
         "flows": flows,
         "extra": tuple(_list_extra_steps(architecture, components, flows, outputs, inputs)),
         "topics": tuple((f"topic:{name}", name, architecture.topics[name].flow) for name in topics),
@@ -42,6 +46,33 @@ def make_flow_tables(lookup: Lookup, components: Numbers, nodes: Numbers) -> dic
 def _port_row(port: Input | Output, components: Numbers, types: Numbers) -> Row:
     note = join_words(port.external, "physical" if port.physical else "")
     return (components[port.component], port.name, types.get(port.type or "", -1), note)
+
+
+def _mark_input(port: Input) -> int:
+    """Return what is special about an input, as bits. `autoconnect` joins only what has no source: all of it is made, or none."""
+    is_made = bool(port.connections) and all(connection.is_made for connection in port.connections)
+    return _OPTIONAL * port.optional + _MADE * is_made
+
+
+def _list_rim_rows(
+    architecture: Architecture, shells: Iterable[Component], types: Numbers, leaf_numbers: Mapping[str, Numbers]
+) -> Iterator[Row]:
+    """Yield the ports of composed components, with the ports of leaves that stand behind each."""
+    for number, shell in enumerate(shells):
+        ports: tuple[Input | Output, ...] = (*shell.inputs.values(), *shell.outputs.values())
+        for port in ports:
+            kind = "input" if isinstance(port, Input) else "output"
+            behind = architecture.leaf_ports_of(kind, port.id)
+            numbers = tuple(leaf_numbers[kind][each] for each in behind if each in leaf_numbers[kind])
+            marks = _mark_input(port) if isinstance(port, Input) else 0
+            _, *values = _port_row(port, {shell.id: number}, types)
+            yield (number, int(kind == "output"), *values, marks, numbers, _list_sources(port, leaf_numbers["output"]))
+
+
+def _list_sources(port: Input | Output, outputs: Numbers) -> tuple[int, ...]:
+    """Return the outputs that feed an input from outside."""
+    connections = port.connections if isinstance(port, Input) else ()
+    return tuple(outputs[each] for connection in connections for each in connection.outputs if each in outputs)
 
 
 def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Numbers) -> Iterator[Row]:

@@ -13,60 +13,62 @@ from archgen.views.lookup import Lookup
 
 NO_HOME = ""
 """The group or host of nodes that have none."""
+Path = tuple[str, ...]
+"""What is around an element, the outermost first (a group or host, then composed components), and the element itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class MapPlaces:
-    """Places by id: in the whole for groups and hosts, in their group or host for components and nodes."""
+    """The place of everything inside of what is directly around it, by its path; that of a group or host is on the map."""
 
-    groups: Mapping[str, Place]
-    components: Mapping[str, Place]
-    node_groups: Mapping[str, Place]
-    nodes_by_group: Mapping[str, Place]
-    hosts: Mapping[str, Place]
-    nodes_by_host: Mapping[str, Place]
+    components: Mapping[Path, Place]
+    nodes_by_group: Mapping[Path, Place]
+    nodes_by_host: Mapping[Path, Place]
 
 
 def find_places(
     lookup: Lookup,
-    component_groups: Mapping[str, str],
+    component_paths: Mapping[str, Path],
     node_groups: Mapping[str, str],
     node_hosts: Mapping[str, str],
     node_ids: Collection[str],
 ) -> MapPlaces:
-    """Find the places of what is shown; each mapping names the group or host of an element."""
+    """Find the places of what is shown: of components by their paths, of nodes by their group and host."""
     component_flows = [(flow.tail, flow.head) for flow in list_flows(lookup.architecture)]
     node_flows = _list_pairs(build_node_graph(lookup.architecture))
-    groups, components = _place_homes(component_flows, component_groups)
-    grouped_nodes = {node: node_groups.get(node, NO_HOME) for node in node_ids}
-    hosted_nodes = {node: node_hosts.get(node, NO_HOME) for node in node_ids}
-    groups_of_nodes, nodes_by_group = _place_homes(node_flows, grouped_nodes)
-    # Without a host there is no map of hosts: all nodes would lie in one frame.
-    hosts, nodes_by_host = _place_homes(node_flows, hosted_nodes) if node_hosts else ({}, {})
-    return MapPlaces(groups, components, groups_of_nodes, nodes_by_group, hosts, nodes_by_host)
+    grouped_nodes = {node: (node_groups.get(node, NO_HOME), node) for node in node_ids}
+    hosted_nodes = {node: (node_hosts.get(node, NO_HOME), node) for node in node_ids}
+    return MapPlaces(
+        _place_paths(component_flows, component_paths),
+        _place_paths(node_flows, grouped_nodes),
+        # Without a host there is no map of hosts: all nodes would lie in one frame.
+        _place_paths(node_flows, hosted_nodes) if node_hosts else {},
+    )
 
 
 def _list_pairs(graph: FlowGraph) -> list[tuple[str, str]]:
     return [(tail, head) for tail, heads in graph.successors.items() for head in heads]
 
 
-def _place_homes(
-    flows: Iterable[tuple[str, str]], homes: Mapping[str, str]
-) -> tuple[dict[str, Place], dict[str, Place]]:
-    """Place groups or hosts by all that flows between them, and their members by what flows inside of each."""
-    outer_weights: dict[tuple[str, str], int] = defaultdict(int)
-    inner_weights: dict[str, dict[tuple[str, str], int]] = defaultdict(lambda: defaultdict(int))
+def _place_paths(flows: Iterable[tuple[str, str]], paths: Mapping[str, Path]) -> dict[Path, Place]:
+    """Place what stands side by side by all that flows between it, whatever is at the ends inside."""
+    weights: dict[Path, dict[tuple[str, str], int]] = defaultdict(lambda: defaultdict(int))
     for tail, head in flows:
-        if tail not in homes or head not in homes:
-            continue
-        if homes[tail] == homes[head]:
-            inner_weights[homes[tail]][tail, head] += 1
-        else:
-            outer_weights[homes[tail], homes[head]] += 1
-    members: dict[str, list[str]] = defaultdict(list)
-    for element, home in homes.items():
-        members[home].append(element)
-    member_places: dict[str, Place] = {}
-    for home, ids in members.items():
-        member_places |= place_in_columns(ids, inner_weights[home], is_inner=True)
-    return place_in_columns(list(members), outer_weights), member_places
+        if tail != head and tail in paths and head in paths:
+            around, *ends = _split_paths(paths[tail], paths[head])
+            weights[around][ends[0], ends[1]] += 1
+    members: dict[Path, dict[str, None]] = defaultdict(dict)
+    for path in paths.values():
+        for depth, name in enumerate(path):
+            members[path[:depth]][name] = None
+    places: dict[Path, Place] = {}
+    for around, names in members.items():
+        inner_places = place_in_columns(list(names), weights[around], is_inner=bool(around))
+        places |= {(*around, name): place for name, place in inner_places.items()}
+    return places
+
+
+def _split_paths(tail_path: Path, head_path: Path) -> tuple[Path, str, str]:
+    """Return what is around both ends of a flow, and which two things in there it joins."""
+    depth = next(at for at, (one, other) in enumerate(zip(tail_path, head_path, strict=False)) if one != other)
+    return tail_path[:depth], tail_path[depth], head_path[depth]

@@ -13,7 +13,7 @@ from archgen.frozen import dataclass
 
 Row = tuple[object, ...]
 """Texts, numbers and tuples of them."""
-LINKED_TABLES = frozenset({"groups", "hosts", "components", "nodes", "topics", "chains", "requirements"})
+LINKED_TABLES = frozenset({"groups", "hosts", "components", "shells", "nodes", "topics", "chains", "requirements"})
 """Tables whose first field is an anchor: a site writes the address of its page there."""
 
 
@@ -31,16 +31,18 @@ class ExplorerMap:
     | `groups` | anchor, id, title, owners, summary, place among components, place among nodes, written in |
     | `hosts` | anchor, id, title, line, summary, place, written in |
     | `components` | anchor, id, title, group, line, summary, keys, period, progress, severity, place, written in |
+    | `shells` | anchor, id, title, group, shell around, components directly inside, line, summary, keys, severity, place, written in |
     | `nodes` | anchor, id, title, components, group, host, line, summary, keys, period, severity, places, written in |
     | `topics` | anchor, name, flow |
     | `outputs` | component, name, type, note |
-    | `inputs` | component, name, type, note, optional |
+    | `inputs` | component, name, type, note, marks (1 optional, 2 joined by autoconnect) |
+    | `rims` | shell, is it an output, name, type, note, marks, ports behind it, outputs that feed it: of composed components |
     | `flows` | style, input, outputs: between components |
     | `extra` | tail, head: what feeds a component of which no output is known yet |
     | `links` | tail, head, topic: between nodes |
     | `chains` | anchor, id, title, status, words, components, nodes |
     | `requirements` | anchor, id, title, components |
-    | `findings` | is it a node, element, severity, message |
+    | `findings` | kind (0 component, 1 node, 2 shell), element, severity, message |
     """
 
     tables: Mapping[str, tuple[Row, ...]] = field(default_factory=dict)

@@ -57,42 +57,48 @@ MAX_COMPOSED_PICTURES = 300
 """With more composed components they have pictures only where single components have them."""
 
 
-def make_all_graphs(
+def make_all_graphs(  # noqa: PLR0913 - what pictures show, and how
     architecture: Architecture,
     selection: Selection | None = None,
     findings: Iterable[Diagnostic] = (),
     timed: TimingLookup | None = None,
     *,
     undrawn_kinds: Collection[str] = (),
+    depth: int = 0,
 ) -> tuple[Graph, ...]:
     """Make all graphs; with a selection, one of it and those of what is selected. Empty graphs are left out.
 
     Without those of the `undrawn_kinds`; where single components are not drawn, composed ones are as long as they are few.
+    Composed components are open to a depth.
     """
     lookup = make_lookup(architecture, findings, timing_lookup=timed)
-    return tuple(graph for graph in _iterate_graphs(lookup, selection, undrawn_kinds) if graph.boxes)
+    return tuple(graph for graph in _iterate_graphs(lookup, selection, undrawn_kinds, depth) if graph.boxes)
 
 
-def _iterate_graphs(lookup: Lookup, selection: Selection | None, undrawn_kinds: Collection[str]) -> Iterator[Graph]:
+def _iterate_graphs(
+    lookup: Lookup, selection: Selection | None, undrawn_kinds: Collection[str], depth: int
+) -> Iterator[Graph]:
     architecture = lookup.architecture
     shown_components = list(architecture.components.values())
     if selection is None:
         yield fold_graph(draw_overview(lookup))
-        yield fold_graph(draw_components(lookup))
+        yield fold_graph(draw_components(lookup, depth))
     else:
         shown_components = [component for component in shown_components if component.id in selection.components]
         # The same ids as without a selection (`overview` here, `ros` below), since pages and reports refer to graphs by
         # id.
-        yield selection_graphs.draw_functional_part(lookup, "overview", "The selected part", selection.components)
+        yield selection_graphs.draw_functional_part(
+            lookup, "overview", "The selected part", selection.components, depth
+        )
     groups = dict.fromkeys(each.group for each in shown_components)
     for name in groups if "group" not in undrawn_kinds else ():
-        yield fold_graph(draw_group(lookup, name))
+        yield fold_graph(draw_group(lookup, name, depth))
     shown_ids = {component.id for component in shown_components}
     shown_shells = [each for each in architecture.shells if not shown_ids.isdisjoint(architecture.leaves_of(each))]
     for shell_id in (
         shown_shells if "component" not in undrawn_kinds or len(shown_shells) <= MAX_COMPOSED_PICTURES else ()
     ):
-        yield draw_composed(lookup, shell_id)
+        yield draw_composed(lookup, shell_id, depth)
     for each in shown_components if "component" not in undrawn_kinds else ():
         # A composed one that is not designed to its end is among them, and has its own picture already.
         if each.id not in architecture.shells:
@@ -113,4 +119,4 @@ def _iterate_graphs(lookup: Lookup, selection: Selection | None, undrawn_kinds: 
     # Views of the project show what they say, whatever is selected.
     for project_view in architecture.views.values():
         view_selection, _ = selecting.evaluate(project_view.show)
-        yield selection_graphs.draw_view(lookup, project_view, view_selection)
+        yield selection_graphs.draw_view(lookup, project_view, view_selection, depth)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from archgen.model.component import Component, Input, Output
+from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_passed_shell, list_surrounding
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes
@@ -23,6 +23,7 @@ from archgen.views.graphs.component_flows import (
 from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.open_frames import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 
@@ -31,9 +32,14 @@ _MAX_NAMED = 3
 """How many components a port at the rim names."""
 
 
-def draw_composed(lookup: Lookup, shell_id: str) -> Graph:
-    """Draw a composed component open."""
-    return _ComposedDrawing(lookup, lookup.architecture.shells[shell_id]).draw()
+def draw_composed(lookup: Lookup, shell_id: str, depth: int = 0) -> Graph:
+    """Draw a composed component open, and those inside of it to a depth."""
+    shell = lookup.architecture.shells[shell_id]
+
+    def draw_opened(each: int) -> Graph:
+        return _ComposedDrawing(lookup, shell, list_opened(lookup.architecture, shell.children, each)).draw()
+
+    return draw_to_depth(lookup.architecture, draw_opened, depth)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,16 +48,27 @@ class _ComposedDrawing:
 
     lookup: Lookup
     shell: Component
+    opened: frozenset[str] = frozenset()
+    """What is open inside of it."""
 
     @property
     def level(self) -> DrawnLevel:
         """What is drawn inside: this component and all around it are open."""
         around = list_surrounding(self.lookup.architecture, self.shell.id)
-        return DrawnLevel(self.lookup, frozenset((*around, self.shell.id)))
+        return DrawnLevel(self.lookup, frozenset((*around, self.shell.id, *self.opened)))
+
+    @property
+    def own_ids(self) -> tuple[str, ...]:
+        """What has a box inside, by complete ids."""
+        if not self.opened:
+            return self.shell.children
+        leaves = self.lookup.architecture.leaves_of(self.shell.id)
+        return tuple(dict.fromkeys(self.level.find_box(leaf) for leaf in leaves if leaf != self.shell.id))
 
     def draw(self) -> Graph:
         shell, lookup = self.shell, self.lookup
-        own_ids = set(shell.children)
+        own_ids = set(self.own_ids)
+        children, frames = place_in_frames(lookup, self._draw_children(), self.opened, shell.id)
         flows = [flow for flow in self.level.list_flows_at(own_ids) if not self._passes_rim(flow)]
         inner_flows = [flow for flow in flows if flow.tail in own_ids and flow.head in own_ids]
         outer_flows = [flow for flow in flows if flow.tail not in own_ids or flow.head not in own_ids]
@@ -65,7 +82,7 @@ class _ComposedDrawing:
             f"composed/{shell.id}",
             shell.title,
             "group",
-            (*self._draw_children(), *self._draw_ports(), *self._draw_neighbours(outer_flows)),
+            (*children, *self._draw_ports(), *self._draw_neighbours(outer_flows)),
             arrows,
             (
                 Cluster(
@@ -77,6 +94,7 @@ class _ComposedDrawing:
                     ref=f"component:{shell.id}",
                     tooltip=f"{shell.title} ({shell.id})",
                 ),
+                *frames,
             ),
             direction=shell.layout.direction or lookup.architecture.layout.direction,
             alt=self._describe(len(inner_flows)),
@@ -87,33 +105,42 @@ class _ComposedDrawing:
 
     def _passes_rim(self, flow: ComponentFlow) -> bool:
         """Whether a flow comes in or goes out through a port of this component: the ports have arrows of their own."""
-        connection, own_ids = flow.connection, tuple(self.shell.children)
+        connection, own_ids = flow.connection, self.own_ids
         if flow.tail in own_ids and flow.head in own_ids:
             return False
         reader = connection.input.rpartition(".")[0]
         if self.level.find_box(reader) in own_ids:
-            return find_passed_shell(self.lookup.architecture, reader, connection) == self.shell.id
+            return self._comes_through_rim(reader, connection)
         port_id = connection.shell_port
-        return port_id is not None and not f"{port_id}.".startswith(tuple(f"{each}." for each in own_ids))
+        return port_id is not None and not f"{port_id}.".startswith(tuple(f"{each}." for each in self.shell.children))
+
+    def _comes_through_rim(self, reader: str, connection: Connection) -> bool:
+        """Whether a connection comes through an input of this component, through those of open ones on the way to it."""
+        passed_id = find_passed_shell(self.lookup.architecture, reader, connection)
+        if passed_id is None or passed_id == self.shell.id:
+            return passed_id is not None
+        name = (connection.shell_port or "").rpartition(".")[2]
+        port = self.lookup.architecture.shells[passed_id].inputs[name]
+        return any(self._comes_through_rim(passed_id, outer) for outer in port.connections)
 
     def _place_ends(self, flow: ComponentFlow) -> tuple[str, str]:
-        own_ids = self.shell.children
+        own_ids = self.own_ids
         return (
             flow.tail if flow.tail in own_ids else f"<{flow.tail}",
             flow.head if flow.head in own_ids else f">{flow.head}",
         )
 
     def _draw_children(self) -> Iterator[Box]:
-        for name in self.shell.children:
-            component = self.level.find_component(name)
+        for name in self.own_ids:
+            component = find_drawn(self.lookup.architecture, name, self.opened)
             lines = element_boxes.type_lines(self.lookup, component)
             box = element_boxes.component_box(self.lookup, component, lines=lines)
             # Without a hue: the frame has it.
-            yield replace(box, colour=None, cluster=self.shell.id)
+            yield replace(box, colour=None)
 
     def _draw_neighbours(self, flows: Iterable[ComponentFlow]) -> Iterator[Box]:
         ends = (end for flow in flows for end in self._place_ends(flow))
-        for box_id in dict.fromkeys(end for end in ends if end not in self.shell.children):
+        for box_id in dict.fromkeys(end for end in ends if end not in self.own_ids):
             side: Literal["left", "right"] = "left" if box_id[0] == "<" else "right"
             component = self.level.find_component(box_id[1:])
             yield replace(element_boxes.neighbour_box(self.lookup, component, side), id=box_id)
@@ -154,7 +181,7 @@ class _ComposedDrawing:
         arrows: dict[str, Arrow] = {}
         for port in self._list_ports():
             kind = "input" if isinstance(port, Input) else "output"
-            for inner_id in self.lookup.architecture.shell_ports.get(f"{kind} {port.id}", ()):
+            for inner_id in self._list_behind(kind, port.id):
                 arrow = self._draw_rim_arrow(port, inner_id)
                 if arrow is None:
                     continue
@@ -172,18 +199,26 @@ class _ComposedDrawing:
                 )
         yield from arrows.values()
 
+    def _list_behind(self, kind: str, port_id: str) -> Iterator[str]:
+        """Yield the ports that stand behind one, of what has a box here."""
+        for inner_id in self.lookup.architecture.shell_ports.get(f"{kind} {port_id}", ()):
+            behind = self._list_behind(kind, inner_id) if inner_id.rpartition(".")[0] in self.opened else ()
+            yield from tuple(behind) or (inner_id,)
+
     def _draw_rim_arrow(self, port: Input | Output, inner_id: str) -> Arrow | None:
         """Return the arrow between a port and one that stands behind it; None where the input's port has it already."""
         holder, _, name = inner_id.rpartition(".")
-        inner = self.level.find_component(holder)
+        inner = find_drawn(self.lookup.architecture, holder, self.opened)
         style, box_id = self._find_style(port), _port_box_id(port)
         if holder == self.shell.id:
             if isinstance(port, Output):
                 return None
             # What comes in goes out again.
-            other, is_made, optional = _port_box_id(inner.outputs[name]), False, False
+            other, is_made, optional = _port_box_id(inner.outputs[name]), inner.outputs[name].is_made, False
+        elif isinstance(port, Output):
+            other, is_made, optional = holder, port.is_made, False
         else:
-            reader = inner.inputs.get(name) if isinstance(port, Input) else None
+            reader = inner.inputs.get(name)
             made = [each.is_made for each in reader.connections if each.shell_port == port.id] if reader else []
             other, is_made, optional = holder, bool(made) and all(made), bool(reader and reader.optional)
         runs_in = isinstance(port, Input) != (style in _CALLS)

@@ -57,7 +57,7 @@ class DrawnLevel:
 
     def list_group_boxes(self, group_id: str) -> tuple[str, ...]:
         """Return the ids of what a group has boxes for."""
-        return component_nesting.list_members(self.architecture, group_id)
+        return component_nesting.list_members(self.architecture, group_id, self.open_shells)
 
     def list_flows(self) -> tuple[ComponentFlow, ...]:
         """Return all flows, in the order of the connections."""

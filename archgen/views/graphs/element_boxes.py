@@ -18,7 +18,10 @@ BadgeSeverity = Literal["error", "warning", "note"]
 
 
 def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...] = ()) -> Box:
-    """Return the box of a component, in the hue of its group. A composed one is closed, and says how many are inside."""
+    """Return the box of a component, in the hue of its group. A composed one is closed: it says how many are inside, and its
+    badge is that of the worst finding inside.
+    """
+    inner_findings = list_findings_inside(lookup, component) if component.children else []
     return Box(
         component.id,
         component.title,
@@ -28,7 +31,8 @@ def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...
         cluster=component.group,
         ref=f"component:{component.id}",
         tooltip=_component_tooltip(lookup, component),
-        badge=worst_severity(lookup, component.id),
+        badge=name_severity(inner_findings) if inner_findings else worst_severity(lookup, component.id),
+        badge_count=len(inner_findings),
     )
 
 
@@ -92,6 +96,17 @@ def worst_severity(lookup: Lookup, element_id: str) -> BadgeSeverity | None:
     return name_severity(finding.effective_severity for finding in lookup.findings_of.get(element_id, ()))
 
 
+def list_findings_inside(lookup: Lookup, shell: Component) -> list[Severity]:
+    """Return the severities of the findings about a composed component and all that stands in it."""
+    pending, severities = [shell.id], list[Severity]()
+    while pending:
+        component_id = pending.pop()
+        severities += (finding.effective_severity for finding in lookup.findings_of.get(component_id, ()))
+        inner_shell = lookup.architecture.shells.get(component_id)
+        pending += inner_shell.children if inner_shell else ()
+    return severities
+
+
 def name_severity(severities: Iterable[Severity]) -> BadgeSeverity | None:
     """Return the worst of some severities as a badge names it."""
     worst = max(severities, default=None)
@@ -109,6 +124,7 @@ def neighbour_box(lookup: Lookup, component: Component, side: Literal["left", "r
         cluster=None,
         side=side,
         badge=None,
+        badge_count=0,
     )
 
 

@@ -12,12 +12,13 @@ from dataclasses import replace
 from typing import Literal
 
 from archgen.model.component import Component
-from archgen.model.component_nesting import find_component
+from archgen.model.component_nesting import find_component, list_members
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
 from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.open_frames import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 
@@ -25,9 +26,15 @@ MAX_FLOWS = 45
 """With more flows the neighbours are folded by group."""
 
 
-def draw_group(lookup: Lookup, group_id: str) -> Graph:
-    """Draw one group with its neighbours."""
-    group, level = lookup.architecture.groups[group_id], DrawnLevel(lookup)
+def draw_group(lookup: Lookup, group_id: str, depth: int = 0) -> Graph:
+    """Draw one group with its neighbours; its composed components are open to a depth."""
+    return draw_to_depth(lookup.architecture, lambda each: _draw_opened(lookup, group_id, each), depth)
+
+
+def _draw_opened(lookup: Lookup, group_id: str, depth: int) -> Graph:
+    group = lookup.architecture.groups[group_id]
+    opened = list_opened(lookup.architecture, list_members(lookup.architecture, group_id), depth)
+    level = DrawnLevel(lookup, opened)
     own_ids = set(level.list_group_boxes(group_id))
     touching_flows = level.list_flows_at(own_ids)
     is_folded = len(touching_flows) > MAX_FLOWS
@@ -37,20 +44,16 @@ def draw_group(lookup: Lookup, group_id: str) -> Graph:
     ends = {id(flow): (tail, head) for flow, tail, head in placed_flows}
     arrows = merge_flows(touching_flows, lambda flow: ends[id(flow)], labels=not is_folded)
     arrows = tuple(_label_arrow(lookup, arrow, own_ids, group_id, is_folded=is_folded) for arrow in arrows)
+    members = (find_drawn(lookup.architecture, each, opened) for each in level.list_group_boxes(group_id))
+    boxes, frames = place_in_frames(lookup, (_draw_member(lookup, each) for each in members), opened, group_id)
     graph = Graph(
         f"groups/{group_id}",
         group.title,
         "group",
         # Without a hue: all of them are in the same group, and its frame has it.
-        (
-            *(
-                _draw_member(lookup, find_component(lookup.architecture, each))
-                for each in level.list_group_boxes(group_id)
-            ),
-            *neighbour_boxes,
-        ),
+        (*boxes, *neighbour_boxes),
         arrows,
-        (element_boxes.group_frame(lookup, group_id),),
+        (element_boxes.group_frame(lookup, group_id), *frames),
         direction=group.layout.direction or lookup.architecture.layout.direction,
         notes=("Neighbours are folded: a box for each group, with the number of flows.",) if is_folded else (),
         alt=_describe_group(lookup, group_id, touching_flows, own_ids),

@@ -7,7 +7,7 @@ from typing import get_args
 
 from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
 
-_BADGE_KEYS = ("badge:error", "badge:warning", "badge:note")
+_BADGE_KEYS = ("badge:error", "badge:warning", "badge:note", "badge:inside")
 _BOX_KEYS = ("composed", "port", "source", "sink", "reactive", "external", "node", "topic", "fold")
 _BOX_KEY_OF_FLOW = {"service": "service-box", "action": "action-box"}
 _STATUS_KEYS = ("planned", "adapted")
@@ -59,6 +59,7 @@ def _period_keys(graph: Graph) -> list[str]:
 def _box_kinds(box: Box) -> set[str]:
     kinds = {_BOX_KEY_OF_FLOW.get(box.style, "external" if box.style in {"physical", "partner"} else box.style)}
     kinds |= {f"badge:{box.badge}"} if box.badge else set()
+    kinds |= {"badge:inside"} if box.badge_count else set()
     return kinds | {box.emphasis} | ({box.status} if box.status else set())
 
 

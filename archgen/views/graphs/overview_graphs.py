@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from archgen.views.graph_shapes import Arrow, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
 from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.open_frames import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 
@@ -32,8 +33,47 @@ def draw_overview(lookup: Lookup) -> Graph:
     return add_legend_keys(graph)
 
 
-def draw_components(lookup: Lookup) -> Graph:
-    """Draw all groups with their components: flows inside a group one by one, between groups merged and counted."""
+def draw_components(lookup: Lookup, depth: int = 0) -> Graph:
+    """Draw all groups with their components: flows inside a group one by one, between groups merged and counted.
+
+    With composed components open to a depth all flows are drawn one by one.
+    """
+
+    def draw_opened(each: int) -> Graph:
+        return _draw_open_components(lookup, each) if each else _draw_closed_components(lookup)
+
+    return draw_to_depth(lookup.architecture, draw_opened, depth)
+
+
+def _draw_open_components(lookup: Lookup, depth: int) -> Graph:
+    architecture = lookup.architecture
+    opened = list_opened(architecture, (each.id for each in DrawnLevel(lookup).list_boxes()), depth)
+    level = DrawnLevel(lookup, opened)
+    flows = level.list_flows()
+    boxes, clusters = list[Box](), list[Cluster]()
+    for group in architecture.groups:
+        members = (find_drawn(architecture, name, opened) for name in level.list_group_boxes(group))
+        own_boxes = (replace(element_boxes.component_box(lookup, each), colour=None) for each in members)
+        placed_boxes, frames = place_in_frames(lookup, own_boxes, opened, group)
+        boxes += placed_boxes
+        clusters += [element_boxes.group_frame(lookup, group), *frames]
+    arrows = merge_flows(flows, lambda flow: (flow.tail, flow.head), labels=False)
+    graph = _draw_closed_components(lookup)
+    return add_legend_keys(
+        replace(
+            graph,
+            layout="framed",
+            boxes=tuple(boxes),
+            clusters=tuple(clusters),
+            arrows=tuple(
+                replace(arrow, colour=element_boxes.group_hue(lookup, _group_of(arrow.tail))) for arrow in arrows
+            ),
+            asked=len(flows),
+        )
+    )
+
+
+def _draw_closed_components(lookup: Lookup) -> Graph:
     architecture, level = lookup.architecture, DrawnLevel(lookup)
     inside = [flow for flow in level.list_flows() if _group_of(flow.tail) == _group_of(flow.head)]
     between = _flows_between_groups(lookup)

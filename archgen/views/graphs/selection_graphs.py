@@ -12,12 +12,13 @@ from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
 from archgen.model.selector_evaluation import Selection
-from archgen.views.graph_shapes import Arrow, Box, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes, ros_graph
 from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
 from archgen.views.graphs.drawn_level import DrawnLevel, list_open_shells
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.open_frames import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 
@@ -26,19 +27,36 @@ _SMALL_PICTURE = (26, 45)
 _TITLES_PER_BOX = 3
 
 
-def draw_functional_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collection[str]) -> Graph:
-    """Draw selected components and their neighbours."""
-    level = DrawnLevel(lookup, list_open_shells(lookup.architecture, component_ids))
-    box_ids = {level.find_box(name): name for name in lookup.architecture.components if name in component_ids}
-    components = [level.find_component(name) for name in box_ids]
+def draw_functional_part(
+    lookup: Lookup, graph_id: str, title: str, component_ids: Collection[str], depth: int = 0
+) -> Graph:
+    """Draw selected components and their neighbours; composed ones among the former are open to a depth."""
+
+    def draw_opened(each: int) -> Graph:
+        return _draw_part(lookup, graph_id, title, component_ids, each)
+
+    return draw_to_depth(lookup.architecture, draw_opened, depth)
+
+
+def _draw_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collection[str], depth: int) -> Graph:
+    architecture = lookup.architecture
+    partly_open = list_open_shells(architecture, component_ids)
+    shown_ids = [name for name in architecture.components if name in component_ids]
+    closed_ids = dict.fromkeys(DrawnLevel(lookup, partly_open).find_box(name) for name in shown_ids)
+    opened = list_opened(architecture, (name for name in closed_ids if name not in partly_open), depth)
+    level = DrawnLevel(lookup, partly_open | opened)
+    box_ids = {level.find_box(name): name for name in shown_ids}
+    components = [find_drawn(architecture, name, opened) for name in box_ids]
     touching_flows = level.list_flows_at(box_ids)
     neighbour_ids = dict.fromkeys(
         end for flow in touching_flows for end in (flow.tail, flow.head) if end not in box_ids
     )
     is_small = len(components) + len(neighbour_ids) <= _SMALL_PICTURE[0] and len(touching_flows) <= _SMALL_PICTURE[1]
-    graph = (_draw_small_part if is_small else _draw_large_part)(
+    graph = (_draw_small_part if is_small or opened else _draw_large_part)(
         lookup, components, touching_flows, list(neighbour_ids)
     )
+    if opened:
+        graph = _frame_opened(lookup, graph, opened, has_labels=is_small)
     summary = (
         f"{count_noun(len(components), 'component')}: {', '.join(component.title for component in components[:12])}"
     )
@@ -72,6 +90,21 @@ def _draw_small_part(
     ]
     arrows = merge_flows(touching_flows, lambda flow: (flow.tail, flow.head), labels=True)
     return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows), kind="overview")
+
+
+def _frame_opened(lookup: Lookup, graph: Graph, opened: frozenset[str], *, has_labels: bool) -> Graph:
+    """Set what stands in open components into frames. Labels have room in small pictures only."""
+    placed_boxes, placed_frames = place_in_frames(lookup, graph.boxes, opened, None)
+    # The group is said at the outermost frame, instead of at each box inside.
+    boxes = tuple(replace(box, lines=box.lines[1:]) if box.cluster else box for box in placed_boxes)
+    frames = tuple(frame if frame.parent else _name_group(lookup, frame) for frame in placed_frames)
+    arrows = graph.arrows if has_labels else tuple(replace(arrow, label="") for arrow in graph.arrows)
+    return replace(graph, layout="framed", boxes=boxes, clusters=frames, arrows=arrows)
+
+
+def _name_group(lookup: Lookup, frame: Cluster) -> Cluster:
+    group = lookup.architecture.groups[(frame.ref or "").removeprefix("component:").partition(".")[0]]
+    return replace(frame, lines=(" · ".join((group.title, *frame.lines)),))
 
 
 def _draw_large_part(
@@ -186,13 +219,14 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
     return fold_graph(add_legend_keys(graph))
 
 
-def draw_view(lookup: Lookup, project_view: View, selection: Selection) -> Graph:
-    """Draw one of the project's views."""
+def draw_view(lookup: Lookup, project_view: View, selection: Selection, depth: int = 0) -> Graph:
+    """Draw one of the project's views; `depth` holds where it does not say how deep it opens composed components."""
     name = f"views/{project_view.id}"
     if project_view.level == "implementation":
         graph = draw_implementation_part(lookup, name, project_view.title, selection.nodes)
     else:
-        graph = draw_functional_part(lookup, name, project_view.title, selection.components)
+        own_depth = depth if project_view.depth is None else project_view.depth
+        graph = draw_functional_part(lookup, name, project_view.title, selection.components, own_depth)
     graph = replace(graph, kind="view", direction=project_view.layout.direction or graph.direction)
     return (
         colour_graph(lookup, graph, project_view.colour)

@@ -114,8 +114,7 @@ class ComponentPages:
         blocks = add_own_value(blocks, make_own_value_fact(self.lookup, component, self._type_texts))
         section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
         path = f"components/{component.id}.html"
-        is_on_map = not is_composed
-        return Page(path, section.anchor, component.title, "components", section, crumbs, lead, is_on_map=is_on_map)
+        return Page(path, section.anchor, component.title, "components", section, crumbs, lead)
 
     def list_type_pages(self) -> Iterator[Page]:
         """Yield the page that lists the component types, and one for each; nothing where there are none."""

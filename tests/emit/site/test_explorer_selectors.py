@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 from playwright.sync_api import Page as Tab
-from playwright.sync_api import sync_playwright
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import NO_SPAN
@@ -21,7 +22,17 @@ from archgen.model.selector_parser import SELECTOR_KEYS
 from archgen.views.explorer import make_explorer_map
 from archgen.views.lookup import make_lookup
 from archgen.views.shapes import Page, Section
-from tests.selector_cases import FINDINGS, FOUND_NOTHING, ROBOT, SELECTED, SELECTED_NODES, WRONG
+from tests.selector_cases import (
+    COMPOSED_FINDINGS,
+    COMPOSED_ROBOT,
+    COMPOSED_SELECTED,
+    FINDINGS,
+    FOUND_NOTHING,
+    ROBOT,
+    SELECTED,
+    SELECTED_NODES,
+    WRONG,
+)
 
 SELECT = """text => {
   const model = archgenExplorer.readModel();
@@ -65,11 +76,39 @@ def architecture(derived: Callable[[str], Architecture]) -> Architecture:
 
 
 @pytest.fixture(scope="module")
-def tab(architecture: Architecture, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tab]:
+def composed(derived: Callable[[str], Architecture]) -> Architecture:
+    return derived(COMPOSED_ROBOT)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Browser, architecture: Architecture, tmp_path_factory: pytest.TempPathFactory) -> Tab:
     """Open the explorer of the robot that the cases are about."""
+    return open_explorer(browser, architecture, FINDINGS, tmp_path_factory.mktemp("out") / "site")
+
+
+@pytest.fixture(scope="module")
+def composed_tab(browser: Browser, composed: Architecture, tmp_path_factory: pytest.TempPathFactory) -> Tab:
+    """Open the explorer of the robot with components in components."""
+    return open_explorer(browser, composed, COMPOSED_FINDINGS, tmp_path_factory.mktemp("out") / "composed")
+
+
+def open_explorer(
+    browser: Browser, architecture: Architecture, ids_by_rule: Mapping[str, frozenset[str]], folder: Path
+) -> Tab:
+    """Write a site of two pages, and open the explorer."""
     findings = [
         Diagnostic(rule, "", NO_SPAN, Severity.WARNING, element=element)
-        for rule, elements in FINDINGS.items()
+        for rule, elements in ids_by_rule.items()
         for element in sorted(elements)
     ]
     pages = [
@@ -85,16 +124,10 @@ def tab(architecture: Architecture, tmp_path_factory: pytest.TempPathFactory) ->
         chapter_files=lambda _: None,
         explorer_map=make_explorer_map(make_lookup(architecture, findings)),
     )
-    folder = tmp_path_factory.mktemp("out") / "site"
     write_tree(tree, folder)
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        page = browser.new_page()
-        page.goto(f"file://{folder}/explorer.html")
-        yield page
-        browser.close()
+    page = browser.new_page()
+    page.goto(f"file://{folder}/explorer.html")
+    return page
 
 
 @pytest.fixture(scope="module")
@@ -147,6 +180,17 @@ def test_the_page_warns_where_nothing_is_selected(select: Callable[[str], Any], 
 def test_terminal_and_page_answer_alike(select: Callable[[str], Any], architecture: Architecture, text: str) -> None:
     selection, problems = evaluate_selector(text, architecture, FINDINGS)
     answer = select(text)
+    assert answer["components"] == sorted(selection.components)
+    assert answer["nodes"] == sorted(selection.nodes)
+    assert answer["problems"] == [[p.message, p.start, p.end, p.severity, p.help] for p in problems]
+
+
+@pytest.mark.parametrize("text", COMPOSED_SELECTED)
+def test_terminal_and_page_answer_alike_of_components_in_components(
+    composed_tab: Tab, composed: Architecture, text: str
+) -> None:
+    selection, problems = evaluate_selector(text, composed, COMPOSED_FINDINGS)
+    answer = composed_tab.evaluate(SELECT, text)
     assert answer["components"] == sorted(selection.components)
     assert answer["nodes"] == sorted(selection.nodes)
     assert answer["problems"] == [[p.message, p.start, p.end, p.severity, p.help] for p in problems]

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.emit.graphviz import graph_drawing
 from archgen.model.architecture import Architecture
 from archgen.views import graphs
@@ -141,6 +143,62 @@ def test_what_autoconnect_joined_is_marked(robot: Architecture) -> None:
     assert not find_arrow(graph, "outside.world", ">arms.arm").is_made
     assert "made" in graph.legend
     assert "made" not in draw_group(make_lookup(robot), "arms").legend
+
+
+def test_what_autoconnect_gives_on_is_dotted(tmp_path: Path) -> None:
+    text = """
+archgen: 1
+groups:
+  g:
+    components:
+      shell:
+        outputs: {o: State, p: {from: leaf.p}}
+        autoconnect: ports
+        components: {leaf: {outputs: {o: State, p: State}}}
+      reader: {inputs: {o: shell.o, p: shell.p}}
+"""
+    architecture = read_project(tmp_path, text)
+    graph = draw_composed(make_lookup(architecture), "g.shell")
+    assert find_arrow(graph, "g.shell.leaf", "out o").is_made
+    assert not find_arrow(graph, "g.shell.leaf", "out p").is_made
+    assert {name: port.is_made for name, port in architecture.shells["g.shell"].outputs.items()} == {
+        "o": True,
+        "p": False,
+    }
+
+
+@pytest.mark.parametrize(
+    ("places", "badge"),
+    [
+        ({"arms.arm.hand.finger": Severity.NOTE}, ("note", 1)),
+        (
+            {"arms.arm.hand.finger": Severity.NOTE, "arms.arm.hand": Severity.ERROR, "arms.arm": Severity.WARNING},
+            ("error", 3),
+        ),
+        ({"arms.arm.elbow.state": Severity.WARNING, "arms.arm.goal": Severity.NOTE}, ("warning", 2)),
+        ({"arms.planner": Severity.ERROR}, (None, 0)),
+    ],
+)
+def test_a_closed_box_has_the_badge_of_the_worst_finding_inside_and_their_number(
+    robot: Architecture, places: dict[str, Severity], badge: tuple[str | None, int]
+) -> None:
+    findings = [Diagnostic("rule", "text", NO_SPAN, severity, element=place) for place, severity in places.items()]
+    graph = draw_group(make_lookup(robot, findings), "arms")
+    box = next(box for box in graph.boxes if box.id == "arms.arm")
+    assert (box.badge, box.badge_count) == badge
+
+
+def test_a_counted_badge_says_how_many_findings_are_inside(robot: Architecture) -> None:
+    findings = [
+        Diagnostic("rule", "text", NO_SPAN, Severity.WARNING, element=name)
+        for name in ("arms.arm.elbow", "arms.arm.watch", "arms.planner")
+    ]
+    graph = draw_group(make_lookup(robot, findings), "arms")
+    text = (graph_drawing.draw_picture(graph, {}, ("svg",)).svg or b"").decode()
+    assert "2 findings inside, the worst is: warning" in text
+    assert ">W 2</text>" in text
+    assert "badge:inside" in graph.legend
+    assert ">W</text>" in text
 
 
 def test_a_part_opens_what_is_selected_in_part(robot: Architecture) -> None:

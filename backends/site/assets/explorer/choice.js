@@ -10,9 +10,9 @@ archgenExplorer.readChoice = (function () {
       const guess = archgenExplorer.findClosest(name, things.map(({ id }) => id));
       hints.push(`${name} is not here${guess ? `; nearest: ${guess}` : ""}.`);
     };
-    const picked = readPick(level, state.pick, nearest);
-    const open = readOpen(level, state.open, picked, nearest);
     const isNodes = level.members === model.nodes;
+    const picked = readPick(level, isNodes ? [] : model.shells, state.pick, nearest);
+    const open = readOpen(level, state.open, picked, nearest);
     const numbersOf = (selection) => (isNodes ? selection.nodes : selection.components);
     const selection = state.sel ? select(state.sel) : null;
     const isWrong = selection?.problems.some(({ severity }) => severity === "error");
@@ -23,19 +23,26 @@ archgenExplorer.readChoice = (function () {
     return { picked, open, selection, lit, focus, sideOf, hints };
   };
 
-  function readPick(level, id, nearest) {
+  function readPick(level, allShells, id, nearest) {
     if (!id || id.includes(">") || id.startsWith("fold ") || id === "rest") return null;
-    const found = level.members.find((member) => member.id === id) ?? level.homes.find((home) => home.id === id);
-    if (!found) return void nearest(id, [...level.members, ...level.homes]) ?? null;
-    return level.opens || level.homes.includes(found) ? found : level.homes[level.homeOf(found)];
+    // Composed components first: ports that nothing carries yet are a component of the same id.
+    const found = [...allShells, ...level.members, ...level.homes].find((each) => each.id === id);
+    if (!found) return void nearest(id, [...allShells, ...level.members, ...level.homes]) ?? null;
+    return level.opens || level.isHome(found) ? found : level.homes[level.homeOf(found)];
   }
 
-  // The home of what is chosen is open: else it would have no box.
+  // `*` opens all homes, `**` all that they hold as well. What is around something open or chosen is open: else that would have no box.
   function readOpen(level, ids, picked, nearest) {
-    const open = ids.includes("*") ? level.homes.map(({ id }) => id) : [...ids];
-    const known = open.filter((id) => level.homes.some((home) => home.id === id) || void nearest(id, level.homes));
-    if (picked && !level.homes.includes(picked)) known.push(level.homes[level.homeOf(picked)].id);
-    return [...new Set(known)];
+    const containers = [...level.homes, ...level.shells];
+    const byId = new Map(containers.map((each) => [each.id, each]));
+    const wanted = ids.includes("**") ? containers : ids.includes("*") ? [...level.homes] : [];
+    for (const id of ids.filter((each) => each !== "*" && each !== "**")) {
+      if (byId.has(id)) wanted.push(byId.get(id));
+      else nearest(id, containers);
+    }
+    const open = wanted.flatMap((each) => [...level.aroundOf(each), each]);
+    if (picked) open.push(...level.aroundOf(picked));
+    return archgenExplorer.unique(open.map(({ id }) => id));
   }
 
   // A selector of one word is a focus, with steps before and after.

@@ -44,7 +44,8 @@ archgenExplorer.makeDrawing = function (map, layers) {
 
   function makeNode(box, colouring, ...children) {
     const hue = box.element && box.kind !== "fold" ? hueOf(box, colouring) : "hue-none";
-    const node = shape("g", { class: `box ${box.kind} ${hue}${box.picked ? " picked" : ""}`, transform: `translate(${box.x} ${box.y})`, role: "button", tabindex: -1,
+    const inner = box.element?.isComposed ? ` composed${countFrames(box) % 2 ? " odd" : ""}` : "";
+    const node = shape("g", { class: `box ${box.kind} ${hue}${inner}${box.picked ? " picked" : ""}`, transform: `translate(${box.x} ${box.y})`, role: "button", tabindex: -1,
       "data-box": box.id }, ...children);
     const title = shape("title"); // the tooltip, and the name that is read aloud
     title.textContent = box.tip;
@@ -52,6 +53,8 @@ archgenExplorer.makeDrawing = function (map, layers) {
     nodes.set(box.id, node);
     return node;
   }
+
+  const countFrames = (box) => (box.parent ? 1 + countFrames(box.parent) : 0);
 
   // A closed home has the colour of its members where they agree.
   function hueOf(box, colouring) {
@@ -76,15 +79,14 @@ archgenExplorer.makeDrawing = function (map, layers) {
 
   function drawBox(box, colouring) {
     const { width, height } = box;
-    const isHome = !box.parent && box.element;
     const parts = [];
-    if ((isHome && box.opens) || box.kind === "fold") parts.push(shape("rect", { class: "under", x: 3, y: -4, width: width - 6, height: 20, rx: 8 }));
+    if (box.opens || box.kind === "fold") parts.push(shape("rect", { class: "under", x: 3, y: -4, width: width - 6, height: 20, rx: 8 }));
     parts.push(shape("rect", { class: "shell", width, height, rx: 8 }), ...drawBars(box, colouring));
     const far = layOut.wrap(box.title, width - 18, 2, "600 20px Inter, system-ui, sans-serif");
     parts.push(...drawTexts(box.lines, "title near", 14, 20, 16), ...drawTexts(far, "title far", 12, far.length > 1 ? 20 : 31, 21));
-    parts.push(...drawTexts([layOut.cut(box.line, width - (isHome && box.opens ? 44 : 26), "400 12px Inter, system-ui, sans-serif")], "line", 14, height - 11, 0));
+    parts.push(...drawTexts([layOut.cut(box.line, width - (box.opens ? 44 : 26), "400 12px Inter, system-ui, sans-serif")], "line", 14, height - 11, 0));
     if (box.severity) parts.push(drawBadge(box));
-    if ((isHome && box.opens) || box.kind === "fold") parts.push(shape("path", { class: "sign", d: `M${width - 22} ${height - 15}h10m-5 -5v10` }));
+    if (box.opens || box.kind === "fold") parts.push(shape("path", { class: "sign", d: `M${width - 22} ${height - 15}h10m-5 -5v10` }));
     parts.push(shape("rect", { class: "ring", x: -4, y: -4, width: width + 8, height: height + 8, rx: 11 }));
     return makeNode(box, colouring, ...parts);
   }
@@ -108,8 +110,9 @@ archgenExplorer.makeDrawing = function (map, layers) {
     const count = arrow.flows.length;
     const weight = count > 3 ? "many" : count > 1 ? "some" : "one";
     const [x, y] = arrow.stop, back = -arrow.direction;
-    const node = shape("g", { class: `arrow ${weight} ${arrow.style}${arrow.optional ? " optional" : ""}`, "data-arrow": arrow.id },
+    const node = shape("g", { class: `arrow ${weight} ${arrow.style}${arrow.optional ? " optional" : ""}${arrow.made ? " made" : ""}`, "data-arrow": arrow.id },
       shape("path", { class: "hit", d: arrow.path }), shape("path", { class: "way", d: arrow.path }),
+      ...(arrow.style === "physical" ? [shape("path", { class: "core", d: arrow.path })] : []),
       shape("path", { class: "head", d: `M${x} ${y}l${back * 8} -4v8z` }));
     const title = shape("title");
     title.textContent = arrow.tip;

@@ -1,5 +1,5 @@
-// Where each box is, in pixels of the map: columns and heights come from the build, sizes from here. Opening a home widens its
-// column and pushes aside only what it would cover.
+// Where each box is, in pixels of the map: columns and heights come from the build, sizes from here. Opening a home (a group, a
+// host, a composed component) widens its column and pushes aside only what it would cover.
 "use strict";
 archgenExplorer.layOut = (function () {
   const BOX = { width: 178, height: 48, line: 16 };
@@ -7,7 +7,7 @@ archgenExplorer.layOut = (function () {
   const PITCHES = [92, 160]; // px from one row of the closed map to the next: as far apart as a screen's height allows
   const HEIGHT_SHARE = 0.5;
   const INNER = { pitch: 76, gap: 26, channel: 92 };
-  const FRAME = { top: 62, side: 20, bottom: 20, lane: 9 };
+  const FRAME = { top: 62, side: 20, bottom: 20, lane: 9, loop: 24 };
   const FONT = '600 13px Inter, system-ui, sans-serif';
   const pen = document.createElement("canvas").getContext("2d");
   const widths = new Map();
@@ -104,38 +104,74 @@ archgenExplorer.layOut = (function () {
     box.height = BOX.height + (box.lines.length - 1) * BOX.line;
   }
 
+  // Where the ways of two boxes part: the innermost open box around both (null on the map itself), and what stands in there.
+  function meet(one, other) {
+    const pathOf = (box) => (box ? [...pathOf(box.parent), box] : []);
+    const [first, second] = [pathOf(one), pathOf(other)];
+    const at = first.findIndex((box, index) => box !== second[index]);
+    return { home: first[at - 1] ?? null, tail: first[at], head: second[at] };
+  }
+
   // How many arrows run back inside of a home past whole columns: they stand below its boxes.
-  function countFeedback(scene, home) {
-    return scene.arrows.filter(({ tail, head }) => tail.parent === home && head.parent === home && tail.column - head.column > 1).length;
+  function countFeedback(arrows) {
+    return arrows.filter(({ meeting: { tail, head } }) => tail.column - head.column > 1).length;
+  }
+
+  // Whether something runs within the last column: it swings out to the right of it.
+  function hasLoop(arrows, last) {
+    return arrows.some(({ meeting: { tail, head } }) => tail.column === last && head.column === last);
+  }
+
+  function findInside(scene) {
+    const inside = new Map([[null, []]]), arrows = new Map();
+    for (const box of scene.boxes) {
+      sizeBox(box);
+      inside.get(box.parent ?? null).push(box);
+      if (box.open) inside.set(box, []);
+    }
+    for (const arrow of scene.arrows) {
+      arrow.meeting = meet(arrow.tail, arrow.head);
+      const { home } = arrow.meeting;
+      arrows.set(home, [...(arrows.get(home) ?? []), arrow]);
+    }
+    return { inside, arrows };
   }
 
   return Object.assign(function layOut(scene, level) {
-    const outer = scene.boxes.filter((box) => !box.parent);
-    const inside = new Map(outer.map((box) => [box, []]));
-    for (const box of scene.boxes) {
-      sizeBox(box);
-      if (box.parent) inside.get(box.parent).push(box);
-    }
-    for (const [home, members] of inside) {
-      if (!home.open) continue;
-      const below = findEnd(members.map((box) => box.element && level.placeOf(box.element)).filter(Boolean));
-      const size = place(members, (box) => (box.element && level.placeOf(box.element)) || below, INNER);
+    const { inside, arrows } = findInside(scene);
+    const placeIn = (boxes, placeOf, sizes) => {
+      const places = boxes.map((box) => box.element && placeOf(box.element)).filter(Boolean);
+      const below = findEnd(places);
+      return place(boxes, (box) => (box.element && placeOf(box.element)) || below, sizes(places, below[0]));
+    };
+
+    // From the inside to the outside: a home is as large as what it holds.
+    function sizeHome(home) {
+      const members = inside.get(home);
+      members.filter((box) => box.open).forEach(sizeHome);
+      const size = placeIn(members, level.placeOf, () => INNER);
       home.inner = size;
       home.lines = wrap(home.title, Math.max(BOX.width, size.width) - 40, 1);
-      home.width = Math.max(BOX.width + 40, size.width + 2 * FRAME.side);
-      home.height = (members.length ? size.bottom - size.top : 0) + FRAME.top + FRAME.bottom + countFeedback(scene, home) * FRAME.lane;
+      home.loops = hasLoop(arrows.get(home) ?? [], size.columns.length - 1) ? FRAME.loop : 0;
+      home.width = Math.max(BOX.width + 40, size.width + 2 * FRAME.side) + home.loops;
+      home.height = (members.length ? size.bottom - size.top : 0) + FRAME.top + FRAME.bottom + countFeedback(arrows.get(home) ?? []) * FRAME.lane;
     }
-    const known = outer.map((box) => box.element && level.homePlaceOf(box.element)).filter(Boolean);
-    const below = findEnd(known);
-    const size = place(outer, (box) => (box.element && level.homePlaceOf(box.element)) || below, { ...OUTER, pitch: choosePitch(known, below[0]) });
-    for (const [home, members] of inside) {
-      const indent = (home.width - (home.inner?.width ?? 0)) / 2;
-      for (const box of members) {
+
+    // And from the outside to the inside: what a home holds moves with it.
+    function moveInside(home) {
+      const indent = (home.width - home.loops - home.inner.width) / 2;
+      for (const box of inside.get(home)) {
         box.x += home.x + indent;
         box.columnX += home.x + indent;
         box.y += home.y + FRAME.top - home.inner.top;
+        if (box.open) moveInside(box);
       }
     }
+
+    const outer = inside.get(null);
+    outer.filter((box) => box.open).forEach(sizeHome);
+    const size = placeIn(outer, level.homePlaceOf, (known, last) => ({ ...OUTER, pitch: choosePitch(known, last) }));
+    outer.filter((box) => box.open).forEach(moveInside);
     return { left: 0, right: size.width, top: size.top, bottom: size.bottom, columns: size.columns };
   }, { measure, wrap, cut, BOX });
 })();

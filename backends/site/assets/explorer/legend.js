@@ -7,6 +7,7 @@ archgenExplorer.makeLegend = function (actions) {
 
   function sample(name, path, head = true) {
     return shape("svg", { width: 34, height: 14, "aria-hidden": "true" }, shape("g", { class: name }, shape("path", { class: "way", d: path ?? "M1 7H25" }),
+      ...(name.includes("physical") ? [shape("path", { class: "core", d: path ?? "M1 7H25" })] : []),
       ...(head ? [shape("path", { class: "head", d: "M33 7l-8 -4v8z" })] : [])));
   }
 
@@ -21,12 +22,14 @@ archgenExplorer.makeLegend = function (actions) {
     if (hasLit && has(({ side, tail }) => side === "after" || (side === "" && tail.picked))) rows.push(entry(sample("arrow lit after"), "fed by it"));
     if (!hasLit && has(({ flows }) => flows.length > 3)) rows.push(entry(sample("arrow many"), "4 flows or more"));
     if (has(({ optional }) => optional)) rows.push(entry(sample("arrow one optional"), "optional input"));
+    if (has(({ made }) => made)) rows.push(entry(sample("arrow one made"), "joined by autoconnect"));
     if (has(({ style }) => style === "physical")) rows.push(entry(sample("arrow one physical"), "physical"));
     if (has(({ style }) => style === "service" || style === "action")) rows.push(entry(sample("arrow one service"), "service or action"));
-    if (scene.boxes.some(({ parent, opens, open }) => !parent && opens && !open)) {
+    const closed = scene.boxes.filter(({ opens, open }) => opens && !open);
+    if (closed.length) {
       const mark = shape("svg", { width: 34, height: 16, "aria-hidden": "true" }, shape("rect", { class: "key", x: 5, y: 1, width: 24, height: 8, rx: 3 }),
         shape("rect", { class: "key", x: 2, y: 4, width: 30, height: 11, rx: 3 }));
-      rows.push(entry(mark, `closed ${scene.boxes[0].kind}, + opens`));
+      rows.push(entry(mark, closed.some(({ element: each }) => each.isComposed) ? "closed, + opens" : `closed ${scene.boxes[0].kind}, + opens`));
     }
     return rows;
   }
@@ -53,13 +56,15 @@ archgenExplorer.makeLegend = function (actions) {
       rows.push(element("p", { className: "problem", textContent: (message + (help ? `; ${help}` : "")).replaceAll("`", "") }));
     }
     const folded = [...scene.folded, ...scene.cut];
+    const composed = folded.filter(({ element: each, parent }) => each?.isComposed || parent?.element.isComposed).length;
     if (folded.length || scene.rest.length || scene.dropped.length) {
       const words = [];
       const hiddenCount = [...scene.folded, ...scene.cut].reduce((sum, { members }) => sum + members.length, 0);
-      if (folded.length) words.push(`${count(folded.length, scene.boxes[0].kind)} folded, ${count(hiddenCount, scene.boxes[0].members[0]?.kind ?? "element")}`);
+      const parts = [folded.length - composed && count(folded.length - composed, scene.boxes[0].kind), composed && count(composed, "composed component")].filter(Boolean);
+      if (folded.length) words.push(`${parts.join(" and ")} folded, ${count(hiddenCount, scene.boxes[0].members[0]?.kind ?? "element")}`);
       if (scene.rest.length) words.push(`${count(scene.rest.length, scene.rest[0].kind)} in one box`);
       if (scene.dropped.length) words.push(`${count(scene.dropped.length, "thin arrow")} left out`);
-      rows.push(element("p", {}, words.join(", ") + ". ", scene.folded.slice(0, 12).map(({ home }) => act(home.title, () => actions.openHome(home))),
+      rows.push(element("p", {}, words.join(", ") + ". ", scene.folded.slice(0, composed ? 6 : 12).map(({ element: each }) => act(each.fullTitle ?? each.title, () => actions.openHome(each))),
         act("Show all", () => actions.showAll())));
     }
     notes.replaceChildren(...rows);

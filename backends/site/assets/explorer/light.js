@@ -5,13 +5,18 @@ archgenExplorer.makeLight = function (drawing, camera, stage) {
   const LEAVE_DELAY = 60;
   let scene = null, lit = null, pickedArrow = null, waiting = 0, hovered = null;
 
+  // A box with the frames around it.
+  function addBox(box, boxes) {
+    for (let each = box; each; each = each.parent) boxes.add(each);
+  }
+
   function addArrow(arrow, side, boxes, arrows) {
     arrows.set(arrow, side);
-    for (const box of [arrow.tail, arrow.head]) boxes.add(box).add(box.parent ?? box);
+    for (const box of [arrow.tail, arrow.head]) addBox(box, boxes);
   }
 
   function addAround(box, boxes, arrows) {
-    boxes.add(box).add(box.parent ?? box);
+    addBox(box, boxes);
     for (const arrow of scene.arrows) {
       if (arrow.head === box) addArrow(arrow, "before", boxes, arrows);
       else if (arrow.tail === box) addArrow(arrow, "after", boxes, arrows);

@@ -22,7 +22,7 @@ archgenExplorer.makeList = function (actions) {
 
   function item(box, scene) {
     const into = scene.arrows.filter(({ head }) => head === box), out = scene.arrows.filter(({ tail }) => tail === box);
-    const toggle = box.home && !box.parent && box.opens ? element("button", { type: "button", textContent: box.open ? "Close" : "Open", ariaLabel: `${box.open ? "Close" : "Open"} ${box.title}` }) : "";
+    const toggle = box.element && box.opens ? element("button", { type: "button", textContent: box.open ? "Close" : "Open", ariaLabel: `${box.open ? "Close" : "Open"} ${box.title}` }) : "";
     if (toggle) toggle.addEventListener("click", () => actions.toggle(box));
     const inner = scene.boxes.filter(({ parent, hidden }) => parent === box && !hidden);
     return element("li", {}, element("span", { className: box.lit ? "lit" : "" }, name(box), " ", element("span", { className: "muted", textContent: [box.line, box.lit ? "lit" : ""].filter(Boolean).join(" · ") }), " ", toggle),

@@ -47,7 +47,7 @@
     choice = archgenExplorer.readChoice(model, select, state, level);
     const shows = colours.makeFilter(state.only);
     scene = archgenExplorer.makeScene(level, { ...choice, shows, full: state.full, pickedArrow: state.pick });
-    archgenExplorer.describeScene(scene);
+    archgenExplorer.describeScene(scene, level);
     bounds = archgenExplorer.layOut(scene, level);
     scene.arrows = scene.arrows.filter(({ tail, head }) => !tail.hidden && !head.hidden);
     archgenExplorer.routeArrows(scene, bounds);
@@ -101,7 +101,7 @@
   function resolvePage() {
     const address = new URLSearchParams(location.hash.slice(1)).get("page");
     if (address === null) return [];
-    for (const [name, things] of [["components", [...model.components, ...model.groups]], ["nodes", model.nodes], ["hosts", model.hosts]]) {
+    for (const [name, things] of [["components", [...model.shells, ...model.components, ...model.groups]], ["nodes", model.nodes], ["hosts", model.hosts]]) {
       const found = things.find((each) => each.address === address);
       if (found) {
         Object.assign(state, { level: name, pick: found.id });
@@ -127,7 +127,7 @@
 
   // The sign itself is small: the corner round it counts as well.
   function isAtSign(event, box) {
-    if (!box.opens || box.parent) return false;
+    if (!box.opens) return false;
     const at = stage.getBoundingClientRect();
     const x = (event.clientX - at.left - camera.view.x) / camera.view.zoom - box.x, y = (event.clientY - at.top - camera.view.y) / camera.view.zoom - box.y;
     return x > box.width - 42 && (box.open ? y < 44 : y > box.height - 30);
@@ -137,7 +137,8 @@
     const { picked } = choice;
     const box = scene.boxes.find((each) => each.id === state.pick);
     if (pickedArrow) panel.showArrow(pickedArrow);
-    else if (picked && level.homes.includes(picked)) panel.showHome(picked, level.members.filter((member) => level.homeOf(member) === picked.number));
+    else if (picked?.isComposed) panel.showShell(picked, level);
+    else if (picked && level.isHome(picked)) panel.showHome(picked, level.children.get(picked));
     else if (picked) panel.showMember(picked);
     else if (box?.kind === "fold") panel.showFold(box);
     else panel.hide();
@@ -160,20 +161,22 @@
 
   function toggle(box) {
     if (box.kind === "fold") return pickBox(box);
-    const home = box.home;
-    if (!level.opens) return;
+    const each = box.element;
+    if (!each || !level.opens) return;
     const y = box.y * camera.view.zoom + camera.view.y, x = box.x * camera.view.zoom + camera.view.x;
     const { open, picked } = choice;
-    const parts = { open: box.open ? open.filter((id) => id !== home.id) : [...open, home.id], at: null };
-    if (box.open && picked && !level.homes.includes(picked) && level.homeOf(picked) === home.number) parts.pick = home.id;
-    keepView(() => store.change(parts), home, x, y);
+    // With a box all closes that is open inside.
+    const inside = new Set(level.shells.filter((shell) => level.aroundOf(shell).includes(each)).map(({ id }) => id).concat(each.id));
+    const parts = { open: box.open ? open.filter((id) => !inside.has(id)) : [...open, each.id], at: null };
+    if (box.open && picked && level.aroundOf(picked).includes(each)) parts.pick = each.id;
+    keepView(() => store.change(parts), each, x, y);
   }
 
   // What was clicked stays under the pointer.
-  function keepView(act, home, x, y) {
+  function keepView(act, each, x, y) {
     state.at = null;
     act();
-    const box = scene.boxes.find((each) => each.element === home);
+    const box = scene.boxes.find(({ element: shown }) => shown === each);
     if (box) camera.set(x - box.x * camera.view.zoom, y - box.y * camera.view.zoom, camera.view.zoom);
     const tooWide = box && box.open && (box.x + box.width) * camera.view.zoom + camera.view.x > stage.clientWidth;
     if (tooWide) camera.show(box);
@@ -184,7 +187,7 @@
   }
 
   function toggleAll() {
-    store.change({ open: state.open.length ? [] : ["*"], at: null, pick: "" });
+    store.change({ open: choice.open.length ? [] : [level.shells.length ? "**" : "*"], at: null, pick: "" });
     fitAll();
   }
 
@@ -195,8 +198,8 @@
   function focusOn(name, before, after) {
     const steps = (number) => (number === Infinity ? "" : String(number));
     const { picked } = choice;
-    const home = picked && !level.homes.includes(picked) ? level.homes[level.homeOf(picked)].id : null;
-    store.change({ sel: `${before ? steps(before) + "+" : ""}${name}${after ? "+" + steps(after) : ""}`, at: null, open: home && !state.open.includes(home) ? [...state.open, home] : state.open });
+    const around = picked ? level.aroundOf(picked).map(({ id }) => id) : [];
+    store.change({ sel: `${before ? steps(before) + "+" : ""}${name}${after ? "+" + steps(after) : ""}`, at: null, open: archgenExplorer.unique([...state.open, ...around]) });
   }
 
   function step(side, by) {

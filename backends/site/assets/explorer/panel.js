@@ -6,8 +6,8 @@ archgenExplorer.makePanel = function (model, root, actions) {
   const panel = element("aside", { className: "panel", ariaLabel: "Details", hidden: true });
   const link = (address, text) => (address ? element("a", { href: root + address, textContent: text }) : element("span", { textContent: text }));
 
-  const pickButton = (each) => {
-    const button = element("button", { type: "button", className: "name", textContent: each.title });
+  const pickButton = (each, text = each.fullTitle ?? each.title) => {
+    const button = element("button", { type: "button", className: "name", textContent: text });
     button.addEventListener("click", () => actions.pick(each));
     return button;
   };
@@ -29,7 +29,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
   function open(kind, title, crumb, ...children) {
     const close = tool("×", () => actions.pick(null), "close");
     close.ariaLabel = "Close the details";
-    panel.replaceChildren(element("header", {}, element("p", { className: "crumb" }, ...[crumb].flat(), crumb ? " › " : "", kind), close,
+    panel.replaceChildren(element("header", {}, element("p", { className: "crumb" }, [crumb].flat().filter(Boolean).flatMap((each) => [each, " › "]), kind), close,
       element("h2", { textContent: title, tabIndex: -1 })), ...children.flat().filter(Boolean));
     panel.hidden = false;
     panel.scrollTop = 0;
@@ -43,23 +43,53 @@ archgenExplorer.makePanel = function (model, root, actions) {
     return [...new Set([...titlesOf(each, "owner"), ...titlesOf(each, "status"), ...titlesOf(each, "host"), ...tags])].map(tag);
   }
 
+  // What is around an element, the outermost first.
+  const shellsAround = (each) => (each.around ? [...shellsAround(each.around), each.around] : []);
+  const crumbsOf = (each) => [model.groups[each.group], ...shellsAround(each)].filter(Boolean).map((around) => pickButton(around, around.title));
+
   function showMember(each) {
-    const home = each.kind === "component" ? model.groups[each.group] : model.groups[each.group] ?? null;
     const chains = model.chains.filter((chain) => chain[each.kind + "s"].includes(each.number));
     const requirements = model.requirements.filter(({ components }) =>
       (each.kind === "component" ? [each.number] : each.components).some((at) => components.includes(at)));
-    open(each.kind, each.title, home ? pickButton(home) : "",
+    open(each.kind, each.title, crumbsOf(each),
       element("p", { className: "tags" }, ...tagsOf(each)),
       each.summary ? element("p", {}, each.summary + " ", each.address ? element("a", { href: root + each.address, textContent: "More" }) : "") : "",
       each.kind === "component" ? showPorts(each) : showTopics(each),
       each.line ? section("Timing", "", element("p", { textContent: each.line })) : "",
-      chains.length ? section("Chains through it", "", element("ul", {}, chains.map((chain) => element("li", { className: "chain" }, link(chain.address, chain.title),
-        chain.status ? chip(chain.status, chain.words) : chain.words ? element("span", { className: "muted", textContent: chain.words }) : "")))) : "",
-      requirements.length ? section("Requirements", String(requirements.length), element("ul", {}, requirements.map(({ id, title, address }) =>
-        element("li", {}, link(address, id), " ", title)))) : "",
+      showChains(chains), showRequirements(requirements),
       each.findings ? section("Open points", String(each.findings.length), element("ul", {}, each.findings.map(({ severity, message }) =>
         element("li", {}, chip(severity, severity), " ", message)))) : "",
       showOther(each), tools(each));
+  }
+
+  function showChains(chains) {
+    return chains.length ? section("Chains through it", "", element("ul", {}, chains.map((chain) => element("li", { className: "chain" }, link(chain.address, chain.title),
+      chain.status ? chip(chain.status, chain.words) : chain.words ? element("span", { className: "muted", textContent: chain.words }) : "")))) : "";
+  }
+
+  function showRequirements(requirements) {
+    return requirements.length ? section("Requirements", String(requirements.length), element("ul", {}, requirements.map(({ id, title, address }) =>
+      element("li", {}, link(address, id), " ", title)))) : "";
+  }
+
+  // A composed component: its own ports and open points, and what is inside.
+  function showShell(shell, level) {
+    const numbers = new Set(shell.leaves.map(({ number }) => number));
+    const isInside = ({ components }) => components.some((at) => numbers.has(at));
+    const serves = new Set(shell.keys.map((at) => model.keys[at]).filter(([key]) => key === "requirement").map(([, value]) => value));
+    const findings = [shell, ...model.shells.filter((each) => shellsAround(each).includes(shell)), ...shell.leaves]
+      .flatMap((each) => (each.findings ?? []).map((finding) => ({ each, ...finding })));
+    open("composed component", shell.title, crumbsOf(shell),
+      element("p", { className: "tags" }, shell.line ? tag(shell.line) : "", ...tagsOf(shell)),
+      shell.summary ? element("p", {}, shell.summary + " ", shell.address ? element("a", { href: root + shell.address, textContent: "More" }) : "") : "",
+      showPorts(shell),
+      section("Inside", count(shell.leaves.length, "component"), element("ul", { className: "columns" },
+        (level.children.get(shell) ?? model.components.filter(({ around }) => around === shell)).map((each) => element("li", {}, pickButton(each, each.title))))),
+      showChains(model.chains.filter(isInside)), showRequirements(model.requirements.filter((each) => isInside(each) || serves.has(each.id))),
+      findings.length ? section("Open points", findings.length > MAX_FLOWS ? `the first ${MAX_FLOWS} of ${findings.length}` : String(findings.length),
+        element("ul", {}, findings.slice(0, MAX_FLOWS).map(({ each, severity, message }) => element("li", {}, chip(severity, severity), " ", message,
+          each === shell ? "" : [" ", element("span", { className: "muted" }, "at "), pickButton(each, each.title)])))) : "",
+      tools(shell));
   }
 
   function showOther(each) {
@@ -69,15 +99,21 @@ archgenExplorer.makePanel = function (model, root, actions) {
   }
 
   function showPorts(component) {
-    const typeOf = (port) => model.types[port.type]?.name ?? model.types[model.outputs[model.sources[port.number]?.[0]]?.type]?.name ?? "";
+    const sourcesOf = (port) => port.sources ?? model.sources[port.number] ?? [];
+    const typeOf = (port) => model.types[port.type]?.name ?? model.types[model.outputs[sourcesOf(port)[0]]?.type]?.name ?? "";
     const row = (port, direction, others, flowNote) => element("li", {}, element("span", { className: "muted", textContent: direction }),
-      element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "",
+      element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "", port.made ? [" ", tag("autoconnect")] : "",
         port.note ? element("div", { className: "muted", textContent: port.note }) : "",
         others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other), others.length === 1 && other.line ? element("span", { className: "muted", textContent: " · " + other.line }) : ""])) : ""));
-    const unique = (list) => [...new Set(list)].map((at) => model.components[at]);
+    // The other end as it is called from here: of what lies in another composed component, that component.
+    const own = [...shellsAround(component), component];
+    const facing = (at) => [...shellsAround(model.components[at]), model.components[at]].find((each) => !own.includes(each));
+    const others = (numbers) => archgenExplorer.unique([...numbers].map(facing).filter(Boolean));
+    const isInside = (at) => component.isComposed && shellsAround(model.components[at]).includes(component);
     const inputs = component.inputs.map((port) => row(port, "in",
-      unique([...model.writers[port.number]]), "from "));
-    const outputs = component.outputs.map((port) => row(port, "out", unique([...model.readers[port.number]]), "to "));
+      others(component.isComposed ? port.sources.map((at) => model.outputs[at].component) : model.writers[port.number]), "from "));
+    const outputs = component.outputs.map((port) => row(port, "out", others(component.isComposed
+      ? port.ports.flatMap((at) => [...model.readers[at]]).filter((at) => !isInside(at)) : model.readers[port.number]), "to "));
     if (!inputs.length && !outputs.length) return "";
     return section("Ports", `${inputs.length} in, ${outputs.length} out`, element("ul", { className: "ports" }, inputs, outputs));
   }
@@ -97,7 +133,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
     open(home.kind, home.title, "", element("p", { className: "tags" }, home.owners ? tag(home.owners) : "", home.line ? tag(home.line) : ""),
       home.summary ? element("p", { textContent: home.summary }) : "",
       section(members[0]?.kind === "node" ? "Nodes" : "Components", String(members.length),
-        element("ul", { className: "columns" }, members.map((member) => element("li", {}, pickButton(member))))), tools(home));
+        element("ul", { className: "columns" }, members.map((member) => element("li", {}, pickButton(member, member.title))))), tools(home));
   }
 
   function tools(each) {
@@ -114,22 +150,20 @@ archgenExplorer.makePanel = function (model, root, actions) {
   // --- arrows and folds -----------------------------------------------------------------------------------------
   function showArrow(arrow) {
     const members = arrow.flows[0].topic ? model.nodes : model.components;
+    const endOf = (flow, side) => flow.ends?.[side] ?? members[flow[side]];
     const rows = arrow.flows.slice(0, MAX_FLOWS).map((flow) => element("li", {},
-      element("div", {}, element("strong", { textContent: flow.label }), flow.optional ? [" ", tag("optional")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : ""),
-      element("div", {}, pickButton(members[flow.tail]), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.from : flow.to}` }),
-        " → ", pickButton(members[flow.head]), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.to : flow.from}` }))));
+      element("div", {}, element("strong", { textContent: flow.label }), flow.optional ? [" ", tag("optional")] : "", flow.made ? [" ", tag("autoconnect")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : ""),
+      element("div", {}, pickButton(endOf(flow, "tail")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.from : flow.to}` }),
+        " → ", pickButton(endOf(flow, "head")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.to : flow.from}` }))));
     open(count(arrow.flows.length, "flow"), `${arrow.tail.title} → ${arrow.head.title}`, "",
       section("What flows", arrow.flows.length > MAX_FLOWS ? `the first ${MAX_FLOWS}` : "", element("ul", { className: "flows" }, rows)));
   }
 
   function showFold(box) {
-    const rows = box.homes ? box.homes.map((home) => {
-      const button = tool(home.title, () => actions.openHome(home), "name");
-      return element("li", {}, button);
-    }) : box.members.map((member) => element("li", {}, pickButton(member)));
+    const rows = box.elements.map((each) => element("li", {}, box.homes ? tool(each.title, () => actions.openHome(each), "name") : pickButton(each, each.title)));
     open("folded", box.title, "", element("p", { textContent: "These have no box of their own, so that the map stays within 150 boxes." }),
       element("ul", { className: "columns" }, rows), element("p", { className: "tools" }, tool("Show all boxes", () => actions.showAll())));
   }
 
-  return { panel, showMember, showHome, showArrow, showFold, hide: () => (panel.hidden = true) };
+  return { panel, showMember, showShell, showHome, showArrow, showFold, hide: () => (panel.hidden = true) };
 };

@@ -18,15 +18,14 @@ archgenExplorer.routeArrows = (function () {
     arrow.tailSide = arrow.turn === "back" ? "left" : "right";
     arrow.headSide = arrow.turn === "forward" ? "left" : "right";
     // Back past whole columns: round the outside of the map, or below what is in the same home, where it crosses no box.
-    arrow.isOutside = arrow.turn === "back" && passesColumns(arrow);
+    arrow.isOutside = arrow.turn === "back" && arrow.meeting.tail.column - arrow.meeting.head.column > 1;
   }
 
-  const homeOf = (box) => box.parent ?? box;
-  const isWithin = ({ tail, head }) => Boolean(tail.parent) && tail.parent === head.parent;
-
-  function passesColumns(arrow) {
-    const [tail, head] = isWithin(arrow) ? [arrow.tail, arrow.head] : [homeOf(arrow.tail), homeOf(arrow.head)];
-    return tail.column - head.column > 1;
+  // The open boxes around a box, the innermost first, up to the one that holds the whole arrow.
+  function listFrames(box, home) {
+    const frames = [];
+    for (let frame = box.parent ?? null; frame !== home; frame = frame.parent ?? null) frames.push(frame);
+    return frames;
   }
 
   function spreadEnds(arrows) {
@@ -54,21 +53,27 @@ archgenExplorer.routeArrows = (function () {
   // The columns that a line passes on its way, from left to right: each with what is in the way there.
   function listStrips(arrow, scene, bounds) {
     const [left, to] = arrow.turn === "forward" ? [arrow.tail, arrow.head] : [arrow.head, arrow.tail];
+    const { home } = arrow.meeting;
+    const [leaves, enters] = [listFrames(left, home), listFrames(to, home).reverse()];
+    const ends = new Set([left, to, ...leaves, ...enters]);
     const strips = [];
     const add = (boxes, min, max) => {
       const [{ columnX, columnWidth }] = boxes;
       // A narrow box in a wide column: the line passes what is beside it.
       const [from, end] = [Math.max(columnX, min), Math.min(columnX + columnWidth, max)];
-      const own = boxes.filter((box) => box !== left && box !== to && box !== left.parent && box !== to.parent && right(box) > from + 1 && box.x < end - 1);
+      const own = boxes.filter((box) => !ends.has(box) && right(box) > from + 1 && box.x < end - 1);
       if (own.length && end - from > 4) strips.push({ from, to: end, boxes: own });
     };
     const [start, end] = [right(left), to.x];
-    if (left.parent && left.parent === to.parent) for (const column of left.parent.inner.columns) add(column, start, end);
-    else {
-      if (left.parent) for (const column of left.parent.inner.columns) add(column, start, Math.min(end, right(left.parent)));
-      for (const column of bounds.columns) add(column, left.parent ? right(left.parent) : start, to.parent ? to.parent.x : end);
-      if (to.parent) for (const column of to.parent.inner.columns) add(column, Math.max(start, to.parent.x), end);
+    let from = start;
+    for (const frame of leaves) {
+      for (const column of frame.inner.columns) add(column, from, Math.min(end, right(frame)));
+      from = right(frame);
     }
+    for (const column of home ? home.inner.columns : bounds.columns) add(column, from, enters.length ? enters[0].x : end);
+    enters.forEach((frame, at) => {
+      for (const column of frame.inner.columns) add(column, Math.max(start, frame.x), enters[at + 1]?.x ?? end);
+    });
     return strips;
   }
 
@@ -140,32 +145,35 @@ archgenExplorer.routeArrows = (function () {
     return path + `L${text(points.at(-1))}`;
   }
 
-  // From a box that is inside of an open home: down between the columns there, and below the home to its side.
-  function leaveHome([x, y], box, at, side) {
-    if (!box.parent) return [[x, y]];
-    const between = (side < 0 ? box.columnX - OUTSIDE.inner : box.columnX + box.columnWidth + OUTSIDE.inner) + side * (at % 6) * 4;
-    const below = box.parent.y + box.parent.height + 7 + (at % 6) * 4;
-    return [[x, y], [between, y], [between, below]];
+  // From a box that is inside of open homes: down between the columns there, and below each home to its side.
+  function leaveHomes(start, box, home, at, side) {
+    const points = [start];
+    let inner = box;
+    for (const frame of listFrames(box, home)) {
+      const between = (side < 0 ? inner.columnX - OUTSIDE.inner : inner.columnX + inner.columnWidth + OUTSIDE.inner) + side * (at % 6) * 4;
+      points.push([between, points.at(-1)[1]], [between, frame.y + frame.height + 7 + (at % 6) * 4]);
+      inner = frame;
+    }
+    return points;
   }
 
   // Feedback: down beside the column that it leaves, to the left below all boxes, up beside the column that it reaches. Short
   // ways run inside of long ones. The map grows by what they take; a home has grown by it already (see `layOut`).
   function routeOutside(arrows, bounds) {
     const outside = arrows.filter((arrow) => arrow.isOutside);
-    const span = ({ tail, head }) => tail.columnX - head.columnX;
+    const span = ({ meeting: { tail, head } }) => tail.columnX - head.columnX;
     outside.sort((a, b) => span(a) - span(b) || b.start[1] - a.start[1] || (a.id < b.id ? -1 : 1));
     const bottom = bounds.bottom;
     const counts = new Map();
-    const total = (place) => outside.filter((arrow) => (isWithin(arrow) ? arrow.tail.parent : null) === place).length;
+    const total = (place) => outside.filter(({ meeting }) => meeting.home === place).length;
     for (const arrow of outside) {
-      const within = isWithin(arrow) ? arrow.tail.parent : null;
+      const { home: within, tail, head } = arrow.meeting;
       const at = counts.get(within) ?? 0, step = Math.min(OUTSIDE.channel, 60 / Math.max(1, total(within)));
       counts.set(within, at + 1);
       const y = within ? within.y + within.height - OUTSIDE.inner - (total(within) - 1 - at) * OUTSIDE.lane : bottom + OUTSIDE.first + at * OUTSIDE.lane;
-      const [tail, head] = within ? [arrow.tail, arrow.head] : [homeOf(arrow.tail), homeOf(arrow.head)];
       const [from, to] = [tail.columnX - 22 - at * step, head.columnX + head.columnWidth + 22 + at * step];
-      const leave = within ? [arrow.start] : leaveHome(arrow.start, arrow.tail, at, -1);
-      const reach = within ? [arrow.stop] : leaveHome(arrow.stop, arrow.head, at, 1);
+      const leave = leaveHomes(arrow.start, arrow.tail, within, at, -1);
+      const reach = leaveHomes(arrow.stop, arrow.head, within, at, 1);
       arrow.direction = -1;
       arrow.points = [[from, y], [to, y]];
       arrow.path = roundCorners([...leave, [from, leave.at(-1)[1]], [from, y], [to, y], [to, reach.at(-1)[1]], ...reach.reverse()], OUTSIDE.corner);

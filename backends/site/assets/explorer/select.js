@@ -6,15 +6,27 @@ archgenExplorer.makeSelector = function (model) {
   const NAMES_HELP = "`archgen list` gives the names of all elements";
   const MAX_LISTED = 8;
   const BLANKS = /[\t-\r\x1c-\x20\x85\xa0\u1680\u2000-\u200a\u2028\u2029\u202f\u205f\u3000]+/u;
+  const ALL_BELOW = ".**"; // behind a path: everything below it, to any depth
   const PATH_KINDS = ["group", "component", "output"];
   const numbers = (things) => things.map((_, at) => at);
   const union = (...sets) => new Set(sets.flatMap((set) => [...set]));
 
   // --- names: any ending of a complete id -----------------------------------------------------------------------
   const portId = (port) => `${model.components[port.component].id}.${port.name}`;
+  // Behind the components stand the composed ones, behind the ports theirs; what is among both is one.
+  const shellsById = new Map(model.shells.map((shell) => [shell.id, shell]));
+  const componentIds = new Set(model.components.map(({ id }) => id));
+  const wholes = model.shells.filter(({ id }) => !componentIds.has(id));
+  const rimId = (rim) => `${rim.element.id}.${rim.name}`;
+  const listRims = (isOutput, ports) => {
+    const known = new Set(ports.map(portId));
+    return model.rims.filter((rim) => Boolean(rim.isOutput) === isOutput && !known.has(rimId(rim)));
+  };
+  const rims = { output: listRims(true, model.outputs), input: listRims(false, model.inputs) };
   const ids = {
-    group: model.groups.map((group) => group.id), component: model.components.map((component) => component.id),
-    output: model.outputs.map(portId), input: model.inputs.map(portId), node: model.nodes.map((node) => node.id),
+    group: model.groups.map((group) => group.id), component: [...model.components, ...wholes].map((component) => component.id),
+    output: [...model.outputs.map(portId), ...rims.output.map(rimId)], input: [...model.inputs.map(portId), ...rims.input.map(rimId)],
+    node: model.nodes.map((node) => node.id),
   };
   const endings = {};
   for (const [kind, names] of Object.entries(ids)) {
@@ -58,16 +70,19 @@ archgenExplorer.makeSelector = function (model) {
   const hitOf = (components, nodes, more = {}) =>
     ({ components: new Set(components), nodes: new Set(nodes), elements: [], outputs: [], onlyNodes: false, includesComponents: true, ...more });
 
+  // The ports of components behind that of a composed one; any other stands for itself.
+  const listLeafPorts = (kind, at) => rims[kind][at - model[kind + "s"].length]?.ports ?? [at];
+
   function hitOfElements(elements) {
     const components = new Set();
-    for (const { kind, at } of elements) {
+    for (const { kind, at, id } of elements) {
       if (kind === "group") for (const component of model.components) component.group === at && components.add(component.number);
-      if (kind === "component") components.add(at);
-      if (kind === "output" || kind === "input") components.add(model[kind + "s"][at].component);
+      if (kind === "component") for (const leaf of shellsById.get(id)?.leaves ?? [model.components[at]]) components.add(leaf.number);
+      if (kind === "output" || kind === "input") for (const port of listLeafPorts(kind, at)) components.add(model[kind + "s"][port].component);
     }
     const nodes = elements.filter(({ kind }) => kind === "node").map(({ at }) => at);
     const outputs = elements.filter(({ kind }) => kind === "output").map(({ at }) => at);
-    return hitOf(components, nodes, { elements, outputs: outputs.length === elements.length ? outputs : [],
+    return hitOf(components, nodes, { elements, outputs: outputs.length === elements.length ? outputs.flatMap((at) => listLeafPorts("output", at)) : [],
       onlyNodes: nodes.length > 0 && !components.size });
   }
 
@@ -90,10 +105,13 @@ archgenExplorer.makeSelector = function (model) {
       if (!hit.components.size && !hit.nodes.size) problems.push(problem(`nothing has \`${key}:${value}\``, start, end, null, "warning"));
       return hit;
     }
+    if (value.endsWith(ALL_BELOW) && !value.slice(0, -ALL_BELOW.length).includes("*")) {
+      return evaluatePath(value.slice(0, -ALL_BELOW.length), start, end - ALL_BELOW.length, problems);
+    }
     if (value.includes("*")) {
       const parts = value.split(".");
       const found = ["group", "component", "output", "node"].flatMap((kind) =>
-        numbers(ids[kind]).filter((at) => fitsEnding(ids[kind][at], parts)).map((at) => ({ kind, at, id: ids[kind][at] })));
+        numbers(kind === "output" ? model.outputs : ids[kind]).filter((at) => fitsEnding(ids[kind][at], parts)).map((at) => ({ kind, at, id: ids[kind][at] })));
       if (!found.length) problems.push(problem(`nothing fits \`${value}\``, start, end, null, "warning"));
       return hitOfElements(found);
     }

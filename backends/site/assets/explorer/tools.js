@@ -36,7 +36,7 @@ archgenExplorer.makeTools = function (model, actions) {
   // Names are offered from the first key on: thousands of them would hold up the page while it opens.
   field.addEventListener("focus", () => {
     if (names.childElementCount) return;
-    const ids = [...model.groups, ...model.components, ...model.nodes].slice(0, 2000).map(({ id }) => id);
+    const ids = [...model.groups, ...model.shells, ...model.components, ...model.nodes].slice(0, 2000).map(({ id }) => id);
     const keys = model.keys.filter(([key]) => ["owner", "tag", "host", "status", "role"].includes(key)).map(([key, value]) => `${key}:${grammar.quote(value)}`);
     names.append(...[...ids, ...new Set(keys)].map((value) => element("option", { value })));
   });
@@ -139,7 +139,7 @@ archgenExplorer.makeTools = function (model, actions) {
     element("span", { className: "gap" }), openAll, colourBox, filterButton, wayButton, list, save, filterPanel, wayPanel, savePanel);
 
   // `focus`: { before, after } where the selector is one element with steps, else null.
-  function update({ state, selection, lit, shownCount, focus, homes }) {
+  function update({ state, selection, lit, shownCount, focus, homes, open }) {
     for (const made of levelButtons) made.ariaPressed = String(made.dataset.level === state.level);
     if (document.activeElement !== field || !form.contains(document.activeElement)) field.value = state.sel;
     clear.hidden = !state.sel;
@@ -157,7 +157,7 @@ archgenExplorer.makeTools = function (model, actions) {
     filterButton.classList.toggle("active", state.only.length > 0);
     list.ariaPressed = String(state.list);
     openAll.hidden = state.level === "groups";
-    openAll.textContent = homes.some((home) => state.open.includes(home.id)) ? "Close all" : "Open all";
+    openAll.textContent = homes.some((home) => open.includes(home.id)) ? "Close all" : "Open all";
   }
 
   return { bar, update, field };

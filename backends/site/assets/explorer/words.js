@@ -10,22 +10,30 @@ archgenExplorer.describeScene = (function () {
     return noun ? `${count} ${noun}${members.length === 1 ? "" : "s"}` : count;
   }
 
-  function writeLine(box) {
+  function writeLine(box, level) {
     const { element: each } = box;
     const noun = box.members[0]?.kind ?? "element";
     if (box.kind === "fold") return box.homes ? "open one in the panel" : "folded, + shows them";
-    if (box.parent) return each.line;
+    if (!level.isContainer(each)) return each.line;
+    if (each.isComposed) return [each.line, countMembers(box, each.line && !box.open ? "" : noun)].filter(Boolean).join(" · ");
     if (box.open) return [each.owners, countMembers(box, noun)].filter(Boolean).join(" · ");
     return [each.owners || each.line, countMembers(box, each.owners ? "" : noun)].filter(Boolean).join(" · ");
   }
 
-  function describeBox(box) {
-    box.line = writeLine(box);
-    const severities = box.shown.map((member) => member.severity);
+  function describeBox(box, level) {
+    box.line = writeLine(box, level);
+    const findings = [box.element, ...box.shown, ...listShells(box.element, level)];
+    const severities = archgenExplorer.unique(findings).map((each) => each?.severity);
     box.severity = box.open ? "" : SEVERITIES.find((severity) => severities.includes(severity)) ?? "";
-    const state = box.opens && !box.parent ? (box.open ? "open" : "closed") : "";
-    const kind = [box.kind, state, box.severity && `has a finding: ${box.severity}`].filter(Boolean).join(", ");
+    const state = box.opens ? (box.open ? "open" : "closed") : "";
+    const kind = [box.element?.isComposed ? "composed component" : box.kind, state, box.severity && `has a finding: ${box.severity}`].filter(Boolean).join(", ");
     box.tip = [box.title, box.element?.id, box.line, kind].filter(Boolean).join("\n");
+  }
+
+  // The composed components that a closed box holds, to any depth.
+  function listShells(each, level) {
+    const inner = (level.children.get(each) ?? []).filter(({ isComposed }) => isComposed);
+    return inner.flatMap((shell) => [shell, ...listShells(shell, level)]);
   }
 
   function describeArrow(arrow) {
@@ -34,8 +42,8 @@ archgenExplorer.describeScene = (function () {
     arrow.tip = [`${arrow.tail.title} → ${arrow.head.title}`, ...labels, rest ? `and ${rest} more` : ""].filter(Boolean).join("\n");
   }
 
-  return function describeScene(scene) {
-    scene.boxes.forEach(describeBox);
+  return function describeScene(scene, level) {
+    scene.boxes.forEach((box) => describeBox(box, level));
     scene.arrows.forEach(describeArrow);
   };
 })();
