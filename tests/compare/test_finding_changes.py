@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
@@ -36,10 +36,7 @@ def read_version(findings: str, hidden: str = "", waiting: str = "", unread: str
 def judge(before: Any, after: Any, matched: MatchedIds | None = None) -> str:  # noqa: ANN401
     """Return `new / cured / silenced`."""
     judged = judge_findings(before, after, matched or MatchedIds())
-    return " / ".join(
-        ", ".join(f"{each.rule} {each.message.split('`')[1]}" for each in cast("tuple[Diagnostic, ...]", part))
-        for part in judged
-    )
+    return " / ".join(", ".join(f"{each.rule} {each.message.split('`')[1]}" for each in part) for part in judged)
 
 
 @pytest.mark.parametrize(
