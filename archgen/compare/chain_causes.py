@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from archgen.compare.comparison import ChainChange, Change
-from archgen.compare.interface_figures import is_smaller
 from archgen.compare.kinds import Worsening, find_key
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.timing_causes import TimingCauses
@@ -57,8 +56,10 @@ def add_chain_causes(
 def _is_better(chain: ChainChange) -> bool:
     """Whether a chain takes shorter than before, as far as that is known."""
     old_bound, new_bound = (result.bound if result else UNKNOWN_VALUE for result in (chain.before, chain.after))
-    # The sum of what is known, where figures are missing, is no bound.
-    return is_smaller(old_bound, new_bound) or (new_bound.complete and not old_bound.complete)
+    # The sum of what is known, where figures are missing, is less than the bound that it was.
+    if old_bound.complete != new_bound.complete:
+        return new_bound.complete
+    return new_bound.value is not None and (old_bound.value is None or new_bound.value < old_bound.value)
 
 
 def _list_causes(context: ChangeContext, chain: ChainChange, causes: TimingCauses) -> Iterator[Change]:

@@ -1,6 +1,6 @@
-"""Projects and edits of them, with all that a comparison says: who is who, what changed, why, and whom it breaks.
+r"""Projects and edits of them, with all that a comparison says: who is who, what changed, why, and whom it breaks.
 
-A case is a project and, below each line `--- old => new` (several edits: ` && `, a new line: `\\n`, nothing:
+A case is a project and, below each line `--- old => new` (several edits: ` && `, a new line: `\n`, nothing:
 `()`), what is said of it; `--update-golden` writes that (read it).
 """
 
