@@ -57,9 +57,9 @@ class SuiteRecord:
         tests = frozenset[str]().union(
             *(self.tests_by_line.get((mutant.file, line), ()) for line in range(first_line, last_line + 1))
         )
-        # A constant or a shared fixture: any test may rest on it.
+        # A constant or a shared fixture: any test may rest on it, but those that execute the line come first.
         chosen = self.seconds_by_test if "" in tests else tests & self.seconds_by_test.keys()
-        ordered = sorted(chosen, key=lambda test: (self.seconds_by_test[test], test))
+        ordered = sorted(chosen, key=lambda test: (test not in tests, self.seconds_by_test[test], test))
         # What only the slowest tests would notice survives: such a fault should have a quick test.
         total_seconds = itertools.accumulate(self.seconds_by_test[test] for test in ordered)
         return [test for test, seconds in zip(ordered, total_seconds, strict=True) if seconds <= _TEST_SECONDS]

@@ -11,6 +11,7 @@ from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.timing_pair import TimingPair, can_affect_timing
 from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE
 
 
 class _ImprovementCauses(TimingCauses):
@@ -54,8 +55,11 @@ def add_chain_causes(
 
 def _is_better(chain: ChainChange) -> bool:
     """Whether a chain takes shorter than before, as far as that is known."""
-    old_bound, new_bound = (result.bound.value if result else None for result in (chain.before, chain.after))
-    return new_bound is not None and (old_bound is None or new_bound < old_bound)
+    old_bound, new_bound = (result.bound if result else UNKNOWN_VALUE for result in (chain.before, chain.after))
+    # The sum of what is known, where figures are missing, is less than the bound that it was.
+    if old_bound.complete != new_bound.complete:
+        return new_bound.complete
+    return new_bound.value is not None and (old_bound.value is None or new_bound.value < old_bound.value)
 
 
 def _list_causes(context: ChangeContext, chain: ChainChange, causes: TimingCauses) -> Iterator[Change]:

@@ -110,6 +110,39 @@ chains: {c: {through: [a, k], deadline: 1 s, requirements: [R]}}
 views: {v: {show: "g  .a", colour: owner, level: implementation, layout: {direction: top-bottom}}, w: {show: g, level: functional}}
 policies: {p: {forbid: {from: "g.a  g.b", to: g}}}
 """
+# What the first one does not say: component types and their parts, generic types, frames, uses, stored inputs, resources.
+FURTHER = """\
+partners: {certh: C, sssa: S}
+groups:
+  g:
+    owner: certh
+    components:
+      a:
+        timing: {rate: 10 Hz, wcet: {max: 8 ms, p50: 2 ms, measured: true}, uses: {gpu: {max: 2 ms, min: 1 ms}}, cores: [3]}
+        outputs: {o: {type: T, frame: eye}}
+        frames: {base: {title: B, parent: map, rate: 10 Hz}, eye: {parent: base, static: true}}
+      b:
+        inputs: {i: {external: the world}, j: {external: the world}, k: {from: a.o, freshness: 1 s}}
+        timing: {trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, cores: [1, 2], inputs: {k: {wcet: 1 ms, bcet: 0 ms}, i: {stored: at_once}}, deadline: 9 ms}
+      whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
+      copy: {same_as: drum, owner: sssa}
+component_types:
+  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, timing: {wcet: 1 ms}, node: {package: p, kind: driver}, tags: [t]}
+  box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world, optional: true}}, outputs: {o: X}, components: {}}
+  case: {components: {in: {is: drum, timing: {wcet: 2 ms}}}}
+types:
+  T: {message: sensor_msgs/msg/Image, status: planned, frame: map}
+  F: {fields: {x: {type: float64, default: 0.5, unit: m}, y: {type: "int8[]", default: [1, 2]}, t: "T[2]"}, constants: {A: {type: int8, value: 1}}}
+  G: {generic: [P], fields: {p: P, n: int8}, constants: {B: {type: int8, value: 4}}}
+  V: {generic: [P], values: [OFF, ON]}
+nodes:
+  n: {implements: a, owner: sssa, scheduling: ros2_executor, callback_groups: {fast: [a]}, host: pc, parameters: {x: 1}, tags: [t]}
+  m: b
+  w: {owner: sssa, internal: {publishes: {tf: {topic: /tf, message: tf2_msgs/msg/TFMessage}}}}
+frames: {map: {by: w}, odom: {by: a, parent: map}}
+hosts: {pc: {cores: 4, scheduling: edf}, arm: {scheduling: {0: fifo}}}
+resources: {gpu: {title: G, host: pc, scheduling: fifo}}
+"""
 # `a` has one node before and two after: both versions say its timing and ports at the nodes.
 SPLIT = (
     """\
@@ -160,7 +193,7 @@ hosts: {big: }
 views: {v: {show: two.a+}}
 """,
 )
-ROBOTS = {"all": (ALL, ALL), "split": SPLIT, "renamed": RENAMED}
+ROBOTS = {"all": (ALL, ALL), "further": (FURTHER, FURTHER), "split": SPLIT, "renamed": RENAMED}
 
 # The lines before, and those after where they differ.
 EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
@@ -195,6 +228,48 @@ EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
             "view w: show=g, title=W*",
             "port n.publishes.o below node n of sssa via g.a.o: qos.deadline=5 ms, qos.depth=5, qos.reliability=best_effort, topic=['/ns/o']",
             "port n.internal.calls.c below node n of sssa: carried=True, message=own_msgs/srv/S, topic=['/c']",
+        ],
+        None,
+    ),
+    "further": (
+        [
+            "partner certh of certh: title=C",
+            "partner sssa of sssa: title=S",
+            "component_type drum: description=D, functionality=F, inputs.i=T, inputs.i:external=the world, inputs.i:optional=True, is=box<T>, node.kind=['driver'], node.package=p, outputs.o=T, owner=certh, tags=['t'], timing.wcet=1 ms, title=D",
+            "component_type box: abstract=True, generic=['X'], inputs.i=X, inputs.i:external=the world, inputs.i:optional=True, outputs.o=X, title=Box*",
+            "component_type case: components=['in'], components.in:description=D, components.in:functionality=F, components.in:inputs.i=T, components.in:inputs.i:external=the world, components.in:inputs.i:optional=True, components.in:is=drum, components.in:node.kind=['driver'], components.in:node.package=p, components.in:outputs.o=T, components.in:tags=['t'], components.in:timing.wcet=2 ms, components.in:title=In*, title=Case*",
+            "group g of certh: owner=certh, title=G*",
+            "composed g.whole below group g of certh: owner=certh, title=Whole*",
+            "component g.a below group g of certh via g.a: mapped=True, outputs=some, owner=certh, timing.core=3, timing.rate=10 Hz, timing.uses.gpu=2 ms, timing.uses.gpu.min=1 ms, timing.wcet=8 ms, timing.wcet.measured=True, timing.wcet.p50=2 ms, title=A*",
+            "component g.b below group g of certh via g.b: inputs=some, mapped=True, owner=certh, timing.cores=[1, 2], timing.deadline=9 ms, timing.dropped=forgotten, timing.every=2, timing.inputs.i.stored=at_once, timing.inputs.k.bcet=0 ms, timing.inputs.k.wcet=1 ms, timing.trigger=match, timing.trigger.inputs=['g.b.i', 'g.b.j'], timing.trigger.within=1 ms, title=B*",
+            "component g.whole.part below group g of certh via g.whole.part: description=D, functionality=F, inputs=some, is=drum, mapped=True, outputs=some, owner=certh, tags=['t'], timing.wcet=1 ms, title=Part*",
+            "component g.copy below group g of sssa via g.copy: description=D, functionality=F, inputs=some, is=same as drum, mapped=True, outputs=some, owner=sssa, tags=['t'], timing.wcet=1 ms, title=Copy*",
+            "output g.a.o below component g.a of certh via g.a: frame=eye, type=T",
+            "output g.whole.part.o below component g.whole.part of certh via g.whole.part: external=the world, type=T",
+            "output g.copy.o below component g.copy of sssa via g.copy: type=T",
+            "input g.b.i below component g.b of certh via g.b: external=the world",
+            "input g.b.j below component g.b of certh via g.b: external=the world",
+            "input g.b.k below component g.b of certh via g.b: freshness=1 s",
+            "input g.whole.part.i below component g.whole.part of certh via g.whole.part: external=the world, optional=True, type=T",
+            "input g.copy.i below component g.copy of sssa via g.copy: external=the world, optional=True, type=T",
+            "type T: frame=map, message=sensor_msgs/msg/Image, status=planned",
+            "type F: fields.t=T[2], message=robot_msgs/msg/F",
+            "type G: fields.B=int8 4, fields.n=int8, fields.p=P, generic=['P']",
+            "type V: fields.OFF=0, fields.ON=1, generic=['P']",
+            "message robot_msgs/msg/F: comments.x=[m], constants.A=int8 1, defaults.x=0.5, defaults.y=[1, 2], fields=['float64 x', 'int8[] y', 'sensor_msgs/msg/Image[2] t']",
+            "node n of sssa via g.a: callback_groups.fast=['g.a'], host=pc, implements=['g.a'], owner=sssa, parameters.x=1, scheduling=ros2_executor, tags=['t'], title=N*",
+            "node m of certh via g.b: implements=['g.b'], owner=certh, title=M*",
+            "node w of sssa: owner=sssa, title=W*",
+            "node copy of sssa via g.copy: implements=['g.copy'], kind=['driver'], owner=sssa, package=p, title=Copy*",
+            "node part of certh via g.whole.part: implements=['g.whole.part'], kind=['driver'], owner=certh, package=p, title=Part*",
+            "host pc: cores=4, scheduling=edf, title=Pc*",
+            "host arm: scheduling.0=fifo, title=Arm*",
+            "resource gpu: host=pc, scheduling=fifo, title=G",
+            "frame map of sssa: by=w, title=map*",
+            "frame odom of certh via g.a: by=g.a, parent=map, title=odom*",
+            "frame base below component g.a of certh via g.a: by=g.a, parent=map, rate=10 Hz, title=B",
+            "frame eye below component g.a of certh via g.a: by=g.a, parent=base, static=True, title=eye*",
+            "port w.internal.publishes.tf below node w of sssa: carried=True, message=tf2_msgs/msg/TFMessage, topic=['/tf']",
         ],
         None,
     ),

@@ -20,6 +20,7 @@ from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
+from archgen.timing.load.host_loads import activity_share
 from archgen.timing.load.response_workings import ResponseWorkings
 from archgen.timing.rates.link_workings import work_out_link
 from archgen.timing.system.timing_system import Activity, Arc
@@ -125,8 +126,11 @@ def explain_host(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
         product = _format_figure(part, "share")
         if part.value and wcet:
             time = figure_wording.format_duration(wcet * analysis.system.tick)
-            product = multiply_rate(analysis.paces[activity].rate, time, figure_wording.format_share(part.value))
+            own_share = activity_share(analysis.system, activity, analysis.paces[activity]).value or Fraction(0)
+            product = multiply_rate(analysis.paces[activity].rate, time, figure_wording.format_share(own_share))
             product = f"{'at most ' if part.side == 'at most' else ''}{product}"
+            if own_share != part.value:
+                product = f"{product}, and {figure_wording.format_share(part.value)} with the messages that it stores"
         yield ReasonLine(1, f"{activity} adds {product}", _span_of_activity(analysis, activity))
     share_of_cores = load.share_of_cores
     if load.cores is not None and load.cores > 1 and load.utilisation.value is not None and share_of_cores is not None:
