@@ -11,9 +11,9 @@ two steps, with merged arrows, 3.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.frame_contents import lay_out_inside
@@ -38,6 +38,7 @@ _DIRECTIONS = {None: ("TB", "LR"), "left-right": ("LR",), "top-bottom": ("TB",)}
 """Directions to try by the one that the project asks for."""
 _TURNED_PENALTY = 1.2
 _TILE_MARGIN = 12.0
+RowMeasure = Callable[[tuple[str, ...]], tuple[float, float]]
 _INVISIBLE_NODE = {"style": '"invis"', "label": '""', "shape": '"point"'}
 """Attributes of the ends of arrows between frames: lines need nodes to end at."""
 
@@ -148,19 +149,30 @@ def _candidate_layouts(
         yield settings, forward_edges
         sizes = {name: (each.width, each.height)[:: 1 if direction == "TB" else -1] for name, each in tiles.items()}
         ends = [(item.tail, item.head) for _, item in arrows]
-        for rows in fold_order(tuple(tiles), partial(_estimate_cost, sizes, ends, direction)):
+        for rows in fold_order(tuple(tiles), partial(_estimate_cost, _measure_rows(sizes), ends, direction)):
             yield settings, [*_row_statements(rows, names), *forward_edges]
 
 
+def _measure_rows(sizes: Mapping[str, tuple[float, ...]]) -> RowMeasure:
+    """Return the function that measures a row, along it and across. Many ways of cutting an order share their rows."""
+
+    @cache
+    def measure_row(row: tuple[str, ...]) -> tuple[float, float]:
+        return math.fsum([sizes[item][0] + 30 for item in row]), max([sizes[item][1] for item in row]) + 40
+
+    return measure_row
+
+
 def _estimate_cost(
-    sizes: dict[str, tuple[float, ...]], ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows, limit: float
+    measure_row: RowMeasure, ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows, limit: float
 ) -> float:
     """Estimate the cost of rows before they are laid out: how large it gets, and how many arrows must pass a box.
 
-    `sizes` are along and across the rows. What costs the limit or more need not be exact.
+    What costs the limit or more need not be exact.
     """
-    along_rows = max(math.fsum(sizes[item][0] + 30 for item in row) for row in rows)
-    across = math.fsum(max(sizes[item][1] for item in row) + 40 for row in rows)
+    row_sizes = [measure_row(row) for row in rows]
+    along_rows = max([along for along, _ in row_sizes])
+    across = math.fsum([size for _, size in row_sizes])
     total_width, total_height = (along_rows, across) if direction == "TB" else (across, along_rows)
     overflow = _page_overflow(total_width, total_height)
     if overflow >= limit:
