@@ -15,10 +15,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
 from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.hidden_texts import hide_texts
+from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.palette import dark_rules
 from archgen.emit.graphviz.worker_pool import (
     DrawingObserver,
@@ -64,9 +66,10 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     }
     missing = [at for at in range(len(drawings)) if at not in pictures]
     if missing:
+        memory = LayoutMemory(cache, stamp_writers()) if cache else NO_MEMORY
         drawn_formats = tuple(form for form in wanted_formats if form != "dot")  # that one every picture has
         tasks = [
-            DrawingTask(drawing, dict(links), drawn_formats)
+            DrawingTask(drawing, dict(links), drawn_formats, memory=memory)
             for drawing, links in (hidden[at].mark_drawing() for at in missing)
         ]
 
