@@ -92,9 +92,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
         if cache:
             store.prune_pictures(cache, len(drawings))
     with_dot = "dot" in wanted_formats
-    return {
-        graph.id: hidden[at].restore_texts(pictures[at], with_dot=with_dot) for at, graph in enumerate(drawings)
-    }
+    return {graph.id: hidden[at].restore_texts(pictures[at], with_dot=with_dot) for at, graph in enumerate(drawings)}
 
 
 @contextmanager

@@ -67,7 +67,7 @@ def _count_hues(graph: Graph) -> int:
     return len(fills) + len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 
-def draw_picture(
+def draw_picture(  # noqa: PLR0913 - what to draw, and how, each by its name
     drawing: Drawing,
     links: Mapping[str, str],
     formats: Sequence[str],

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from html import escape
 from operator import attrgetter
 
 from archgen.emit.graphviz.dot_text import clean_label_text, quote_value, safe_address
 from archgen.emit.picture import Picture
+from archgen.frozen import replace
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
@@ -73,9 +74,7 @@ class HiddenTexts:
         drawing = self.drawing
         if not isinstance(drawing, Graph):
             return drawing, self.links
-        boxes = tuple(
-            replace(box, ref=f"b{at}", tooltip=f"archgen.tip/b{at}") for at, box in enumerate(drawing.boxes)
-        )
+        boxes = tuple(replace(box, ref=f"b{at}", tooltip=f"archgen.tip/b{at}") for at, box in enumerate(drawing.boxes))
         arrows = tuple(
             replace(arrow, ref=f"a{at}", flows=(f"archgen.tip/a{at}",)) for at, arrow in enumerate(drawing.arrows)
         )

@@ -135,9 +135,7 @@ def sample_curve(points: tuple[ScenePoint, ...], steps: int) -> Sequence[ScenePo
     # Each curve shares its end with the next one's start: 3n + 1 points are n curves.
     for at in range(0, len(points) - 3, 3):
         (x1, y1), (x2, y2), (x3, y3), (x4, y4) = points[at : at + 4]
-        samples += [
-            (a * x1 + b * x2 + c * x3 + d * x4, a * y1 + b * y2 + c * y3 + d * y4) for a, b, c, d in weights
-        ]
+        samples += [(a * x1 + b * x2 + c * x3 + d * x4, a * y1 + b * y2 + c * y3 + d * y4) for a, b, c, d in weights]
     return (*samples, *points[-1:])
 
 

@@ -47,10 +47,7 @@ def count_crossings(lines: Sequence[SceneLine], limit: float = math.inf) -> int:
 def _split_curve(curve: tuple[ScenePoint, ...]) -> _SegmentedLine:
     segments = _split_into_segments(curve)
     return _SegmentedLine(
-        [
-            (((ax, ay), (bx, by)), min(ax, bx), min(ay, by), max(ax, bx), max(ay, by))
-            for (ax, ay), (bx, by) in segments
-        ],
+        [(((ax, ay), (bx, by)), min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)) for (ax, ay), (bx, by) in segments],
         _bounds_of([p for each in segments for p in each]),
     )
 

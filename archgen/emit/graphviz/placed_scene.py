@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Literal
 
 from archgen.emit.graphviz.dot_text import quote_value
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 
 DotAttributes = dict[str, str]
 """DOT attributes as they are written: values quoted, or html-like in angle brackets."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+
 from archgen.emit import backend_manifests
 from archgen.emit.file_tree import FileTree, make_file_tree
 from archgen.emit.picture import Picture
