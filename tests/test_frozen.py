@@ -9,7 +9,7 @@ from dataclasses import field
 
 import pytest
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,3 +116,34 @@ def test_objects_of_many_fields_are_frozen_and_of_their_own_class() -> None:
         wide.one = 2  # type: ignore[misc]
     assert type(dataclasses.replace(wide, one=2)) is Wide
     assert pickle.loads(pickle.dumps(wide)) == copy.deepcopy(wide) == wide  # noqa: S301 - our own
+
+
+@pytest.mark.parametrize(
+    ("instance", "changes"),
+    [
+        (Place("a", 2, ["x"], at=3), {"line": 5, "at": 7}),
+        (Place("a", 2, ["x"], at=3), {}),
+        (Sum((1, 2)), {"parts": (3, 4)}),
+        (Named("a"), {"name": "b"}),
+        (Open(1), {"count": 2}),
+    ],
+)
+def test_a_copy_is_that_of_the_standard_library(instance: object, changes: dict[str, object]) -> None:
+    quick, usual = replace(instance, **changes), dataclasses.replace(instance, **changes)  # type: ignore[type-var]
+    assert type(quick) is type(usual)
+    assert {f.name: getattr(quick, f.name) for f in dataclasses.fields(quick)} == {  # type: ignore[type-var]
+        f.name: getattr(usual, f.name)
+        for f in dataclasses.fields(usual)  # type: ignore[type-var]
+    }
+    assert quick is not instance
+
+
+def test_a_copy_is_frozen_as_well() -> None:
+    place = replace(Place("a"), line=2)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        place.line = 3  # type: ignore[misc]
+
+
+def test_a_copy_has_no_field_that_its_class_lacks() -> None:
+    with pytest.raises(TypeError, match="unexpected keyword argument 'column'"):
+        replace(Place("a"), column=2)  # type: ignore[call-arg]

@@ -8,7 +8,6 @@ import sys
 import zlib
 from collections.abc import Iterable, Iterator
 from functools import cache
-from importlib import metadata, util
 from pathlib import Path
 
 from archgen import resources
@@ -71,6 +70,9 @@ def _describe_libraries() -> str:
 
 
 def _library_version(name: str) -> str:
+    # Imported here, and below: it takes long to load, and a process that only draws stamps nothing.
+    from importlib import metadata
+
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
@@ -82,6 +84,8 @@ def _describe_graphviz() -> Iterator[str]:
 
     One that was built again may hold another Graphviz under the same version of pygraphviz.
     """
+    from importlib import util
+
     module_spec = util.find_spec("pygraphviz")
     if module_spec is None or module_spec.origin is None:
         return

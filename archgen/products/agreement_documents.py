@@ -28,7 +28,7 @@ from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph, Section
 from archgen.views.tables.architecture_tables import describe_severities
-from archgen.views.timing.timing_lookup import analyse_with_chains
+from archgen.views.timing.timing_lookup import complete_with_chains
 
 AgreementFormat = Literal["docx", "markdown", "html"]
 FORMAT_BY_ENDING: Mapping[str, AgreementFormat] = {
@@ -124,7 +124,7 @@ def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
     """Build the look-ups of the whole project, with timing."""
     return replace(
         project_views.make_scoped_lookup(checked_project, OutputOptions()),
-        timing=analyse_with_chains(checked_project.architecture),
+        timing=complete_with_chains(checked_project.analysis, checked_project.architecture),
     )
 
 

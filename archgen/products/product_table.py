@@ -93,9 +93,7 @@ def make_diagrams_product(formats: Sequence[str], name_patterns: Sequence[str] =
     def start(_inputs: ProductInputs) -> FinishProduct:
         return lambda pictures: MadeProduct(picture_files.build_picture_tree(pictures, formats))
 
-    # `dot` is not drawn: it is the source, which every picture carries.
-    drawn_formats = tuple(picture_format for picture_format in formats if picture_format != "dot")
-    return Product("diagrams", "diagrams", start, drawn_formats, tuple(name_patterns) or ("*",))
+    return Product("diagrams", "diagrams", start, tuple(formats), tuple(name_patterns) or ("*",))
 
 
 def _start_packed(inputs: ProductInputs) -> FinishProduct:

@@ -29,7 +29,7 @@ from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.tables import project_growth, statistics_tables
-from archgen.views.timing.timing_lookup import analyse_with_chains
+from archgen.views.timing.timing_lookup import complete_with_chains
 
 _SHORT_HASH_LENGTH = 10
 """Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
@@ -84,7 +84,7 @@ def make_views(
     """
     lookup = replace(
         make_scoped_lookup(checked_project, options),
-        timing=analyse_with_chains(checked_project.architecture),
+        timing=complete_with_chains(checked_project.analysis, checked_project.architecture),
         repository=locate_repository(checked_project),
     )
     project_history = read_history(checked_project, options)

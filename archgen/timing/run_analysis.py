@@ -50,6 +50,18 @@ class AnalysisMemory:
         return self._last_analysis
 
 
+def complete_analysis(analysis: Analysis) -> Analysis:
+    """Return an analysis that was made for judging with what that left out: the same as one that left nothing out."""
+    if analysis.state is None:
+        return analyse_system(analysis.system, analysis.notes)
+    edge_context = EdgeContext(analysis.state, analysis.paces, analysis.outputs, analysis.responses)
+    return replace(
+        analysis,
+        topics=find_topic_loads(analysis.system, analysis.outputs),
+        edges=find_edge_fits(edge_context, judging=False),
+    )
+
+
 def analyse_for_chains(architecture: Architecture) -> Analysis:
     """Analyse what chains rest on and no more, for callers that ask the same of many versions of one project."""
     system, notes = build(architecture)

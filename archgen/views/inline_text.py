@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
 
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component

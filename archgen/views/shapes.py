@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Any, Literal
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.views.matrix_shapes import Matrix
 
 Record = Mapping[str, Any]
@@ -100,7 +100,7 @@ class Table:
 def drop_empty_columns(table: Table) -> Table:
     """Drop the columns that are empty in every row; the first column always stays."""
     kept_columns = [index for index in range(len(table.columns)) if index == 0 or any(row[index] for row in table.rows)]
-    return dataclasses.replace(
+    return replace(
         table,
         columns=tuple(table.columns[index] for index in kept_columns),
         rows=tuple(tuple(row[index] for index in kept_columns) for row in table.rows),

@@ -15,10 +15,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
 from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.hidden_texts import hide_texts
+from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.palette import dark_rules
 from archgen.emit.graphviz.worker_pool import (
     DrawingObserver,
@@ -33,8 +35,8 @@ from archgen.views.chart_shapes import Chart, Drawing
 
 __all__ = ["PICTURE_FORMATS", "MissingGraphviz", "dark_rules", "draw_pictures", "start_early_workers"]
 
-PICTURE_FORMATS: Final = ("svg", "svg_outlines", "png", "pdf")
-"""The formats that can be asked for, by Picture's fields; `dot` is always there."""
+PICTURE_FORMATS: Final = ("svg", "svg_outlines", "png", "pdf", "dot")
+"""The formats that can be asked for, by Picture's fields."""
 
 
 def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
@@ -58,13 +60,18 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     wanted_formats = tuple(form for form in PICTURE_FORMATS if form in formats)
     # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
     hidden = [hide_texts(graph, dict(_link_addresses(graph, resolve_link))) for graph in drawings]
-    keys = [store.picture_key(each.drawing, each.links) for each in hidden]
+    keys = [store.picture_key(each.describe_visible()) for each in hidden]
     pictures = {
         at: hit for at, name in enumerate(keys) if cache and (hit := store.load_picture(cache, name, wanted_formats))
     }
     missing = [at for at in range(len(drawings)) if at not in pictures]
     if missing:
-        tasks = [DrawingTask(hidden[at].drawing, dict(hidden[at].links), wanted_formats) for at in missing]
+        memory = LayoutMemory(cache, stamp_writers()) if cache else NO_MEMORY
+        drawn_formats = tuple(form for form in wanted_formats if form != "dot")  # that one every picture has
+        tasks = [
+            DrawingTask(drawing, dict(links), drawn_formats, memory=memory)
+            for drawing, links in (hidden[at].mark_drawing() for at in missing)
+        ]
 
         def keep_picture(index: int, picture: Picture) -> None:
             # A picture with a warning is drawn anew each time: a layout that was only too slow may succeed in the next
@@ -72,7 +79,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
             if cache and picture.warning is None:
                 # Stored as soon as it is drawn, in the worker's thread: while other pictures are still laid out.
                 with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
-                    store.store_picture(cache, keys[missing[index]], picture, wanted_formats)
+                    store.store_picture(cache, keys[missing[index]], picture, drawn_formats)
 
         drawn = _draw_tasks(
             tasks,
@@ -84,7 +91,8 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
         pictures.update(zip(missing, drawn, strict=True))
         if cache:
             store.prune_pictures(cache, len(drawings))
-    return {graph.id: hidden[at].restore_texts(pictures[at]) for at, graph in enumerate(drawings)}
+    with_dot = "dot" in wanted_formats
+    return {graph.id: hidden[at].restore_texts(pictures[at], with_dot=with_dot) for at, graph in enumerate(drawings)}
 
 
 @contextmanager

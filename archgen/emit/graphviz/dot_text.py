@@ -26,6 +26,10 @@ _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;",
 
 def clean_label_text(text: str, max_length: int = MAX_TEXT_LENGTH) -> str:
     """Return the text on one line, without characters that no picture can hold, cut at `max_length`."""
+    # Of all blanks only the space is printable: most texts have nothing to clean.
+    if text.isprintable() and "  " not in text:
+        text = text.strip()
+        return text if len(text) <= max_length else text[: max_length - 1] + "…"
     text = _BLANKS.sub(" ", text)
     if not text.isprintable():
         # Category Cn: unassigned characters, and noncharacters, which XML does not allow.

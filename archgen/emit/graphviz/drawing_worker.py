@@ -14,6 +14,7 @@ import sys
 from dataclasses import dataclass
 from typing import IO, Any
 
+from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Drawing
 
@@ -26,7 +27,7 @@ PROCESSOR_SECONDS = 30
 class DrawingTask:
     """One graph to draw: the addresses of its links, the formats, and how.
 
-    `simple` asks for the last resort, `warning` is passed on to the picture.
+    `simple` asks for the last resort, `warning` is passed on to the picture, `memory` knows layouts of earlier runs.
     """
 
     drawing: Drawing
@@ -34,6 +35,7 @@ class DrawingTask:
     formats: tuple[str, ...]
     simple: bool = False
     warning: str | None = None
+    memory: LayoutMemory = NO_MEMORY
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +86,9 @@ def _draw_task(task: DrawingTask) -> Picture | DrawingFailure:
 
     _limit_processor_time()
     try:
-        return draw_picture(task.drawing, task.links, task.formats, simple=task.simple, warning=task.warning)
+        return draw_picture(
+            task.drawing, task.links, task.formats, simple=task.simple, warning=task.warning, memory=task.memory
+        )
     except Exception as error:  # noqa: BLE001 - whatever it is costs this picture, not the others
         return DrawingFailure("layout", f"{type(error).__name__}: {error}")
 

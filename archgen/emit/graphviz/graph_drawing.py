@@ -8,6 +8,7 @@ from dataclasses import replace
 from archgen.emit.graphviz import chart_layout, flow_layout, framed_layout, layout_engine, two_step_layout
 from archgen.emit.graphviz.box_decorations import add_decorations
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
+from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
@@ -19,21 +20,26 @@ from archgen.views.graph_shapes import Graph
 _LAYOUT_FUNCTIONS = {
     "flow": flow_layout.lay_out_flow,
     "group": flow_layout.lay_out_group,
-    "two-step": two_step_layout.lay_out_two_step,
-    "overview": two_step_layout.lay_out_two_step,
     "framed": framed_layout.lay_out_framed,
 }
 _RENDER_FORMATS = {"svg_outlines": "svg:cairo", "pdf": "pdf"}
 _GRAPH_ATTRIBUTES = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
 
 
-def lay_out_graph(graph: Graph, links: Mapping[str, str], *, simple: bool = False) -> tuple[StyledGraph, Scene]:
+def lay_out_graph(
+    graph: Graph, links: Mapping[str, str], *, simple: bool = False, memory: LayoutMemory = NO_MEMORY
+) -> tuple[StyledGraph, Scene]:
     """Lay out a graph with its decorations, legend and notes.
 
     Raise LayoutError where the layout lost an arrow. `simple` takes the layout without frames and labels.
     """
     styled_graph = style_graph(graph, links.get, merged=graph.layout in {"two-step", "overview"})
-    scene = flow_layout.lay_out_simply(styled_graph) if simple else _LAYOUT_FUNCTIONS[graph.layout](styled_graph)
+    if simple:
+        scene = flow_layout.lay_out_simply(styled_graph)
+    elif graph.layout in {"two-step", "overview"}:
+        scene = two_step_layout.lay_out_two_step(styled_graph, memory)
+    else:
+        scene = _LAYOUT_FUNCTIONS[graph.layout](styled_graph)
     drawn_arrows = {line.arrow for line in scene.lines}
     wanted_arrows = {arrow.id for arrow in graph.arrows}
     if wanted_arrows - drawn_arrows:
@@ -61,20 +67,21 @@ def _count_hues(graph: Graph) -> int:
     return len(fills) + len((hues | {cluster.colour for cluster in graph.clusters}) - {None})
 
 
-def draw_picture(
+def draw_picture(  # noqa: PLR0913 - what to draw, and how, each by its name
     drawing: Drawing,
     links: Mapping[str, str],
     formats: Sequence[str],
     *,
     simple: bool = False,
     warning: str | None = None,
+    memory: LayoutMemory = NO_MEMORY,
 ) -> Picture:
     """Draw a graph or a chart in these formats (names of Picture's fields)."""
     if isinstance(drawing, Chart):
         return render_picture(
             drawing, chart_layout.lay_out_chart(drawing, links.get), formats, quick=True, warning=warning
         )
-    _, scene = lay_out_graph(drawing, links, simple=simple)
+    _, scene = lay_out_graph(drawing, links, simple=simple, memory=memory)
     return render_picture(drawing, scene, formats, quick=_count_hues(drawing) <= _FEW_HUES, warning=warning)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 
 FlowWeights = Mapping[tuple[str, str], int]
 GroupRows = tuple[tuple[str, ...], ...]
@@ -93,12 +94,9 @@ def fold_order(order: Sequence[str], judge_rows: RowJudge) -> list[GroupRows]:
 
 def _cut_order(order: Sequence[str], cut_bits: int) -> GroupRows:
     """Cut an order after each item whose bit is set."""
-    rows: list[list[str]] = [[]]
-    for at, item in enumerate(order):
-        rows[-1].append(item)
-        if cut_bits >> at & 1:
-            rows.append([])
-    return tuple(tuple(row) for row in rows)
+    items = tuple(order)
+    ends = [at + 1 for at in range(len(items)) if cut_bits >> at & 1]
+    return tuple([items[start:end] for start, end in pairwise([0, *ends, len(items)])])
 
 
 def _cut_evenly(order: Sequence[str], row_count: int) -> GroupRows:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from archgen.emit.graphviz.label_places import sample_line
+from archgen.emit.graphviz.label_places import sample_curve
 from archgen.emit.graphviz.placed_scene import Rectangle, SceneLine, ScenePoint
 
 LineSegment = tuple[ScenePoint, ScenePoint]
@@ -26,7 +27,7 @@ def count_crossings(lines: Sequence[SceneLine], limit: float = math.inf) -> int:
 
     Who only asks whether there are fewer than a limit is told any number from there on.
     """
-    paths = [_split_line(line) for line in lines]
+    paths = [_split_curve(line.curve) for line in lines]
     # A sweep from left to right: no line that begins beyond a line's right side can cross it, nor can any after that.
     paths.sort(key=lambda path: path.bounds[0])
     lefts = [path.bounds[0] for path in paths]
@@ -42,10 +43,12 @@ def count_crossings(lines: Sequence[SceneLine], limit: float = math.inf) -> int:
     return count
 
 
-def _split_line(line: SceneLine) -> _SegmentedLine:
-    segments = _line_segments(line)
+@lru_cache(8192)
+def _split_curve(curve: tuple[ScenePoint, ...]) -> _SegmentedLine:
+    segments = _split_into_segments(curve)
     return _SegmentedLine(
-        [(segment, *_bounds_of(segment)) for segment in segments], _bounds_of([p for each in segments for p in each])
+        [(((ax, ay), (bx, by)), min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)) for (ax, ay), (bx, by) in segments],
+        _bounds_of([p for each in segments for p in each]),
     )
 
 
@@ -77,12 +80,12 @@ def _bounds_of(points: Sequence[ScenePoint]) -> Rectangle:
 
 def line_length(line: SceneLine) -> float:
     """Measure the length of a line, in points."""
-    return math.fsum(math.dist(one, other) for one, other in _line_segments(line))
+    return math.fsum([math.dist(one, other) for one, other in _split_into_segments(line.curve)])
 
 
-def _line_segments(line: SceneLine) -> list[LineSegment]:
-    # Three straight pieces for each Bézier curve are enough to count crossings; labels need more (`sample_line`).
-    return list(pairwise(sample_line(line, 3)))
+def _split_into_segments(curve: tuple[ScenePoint, ...]) -> list[LineSegment]:
+    # Three straight pieces for each Bézier curve are enough to count crossings; labels need more.
+    return list(pairwise(sample_curve(curve, 3)))
 
 
 def _segments_cross(first: LineSegment, second: LineSegment) -> bool:

@@ -9,38 +9,35 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from archgen.cache.file_store import FileStore, digest_text
 from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.picture import Picture
-from archgen.views.chart_shapes import Drawing
 
 _SUFFIX = ".picture"
 _RUNS_KEPT = 4
 """The pictures of this many runs are kept; the oldest beyond that are removed."""
 
 
-def picture_key(drawing: Drawing, links: Mapping[str, str]) -> str:
-    """Return the name of a cached picture: a digest of the graph, its addresses and this program."""
-    # `repr` of the frozen dataclasses holds every field, and is the same in every process (shapes have tuples, no
-    # sets).
-    return digest_text(f"{stamp_writers()}\n{drawing!r}\n{sorted(links.items())!r}")
+def picture_key(visible_parts: str) -> str:
+    """Return the name of a cached picture: a digest of all that is seen of it, and of this program."""
+    return digest_text(f"{stamp_writers()}\n{visible_parts}")
 
 
 def load_picture(folder: Path, key: str, formats: Sequence[str]) -> Picture | None:
-    """Load a picture, or return None unless all the formats are cached and sound."""
+    """Load a picture, or return None unless all the formats are cached and sound. Its source is a format, too."""
     try:
         with (folder / f"{key}{_SUFFIX}").open("rb") as file:
             head = json.loads(file.readline())
             start = file.tell()
-            parts = {form: _read_blob(file.read, file.seek, start, head["parts"][form]) for form in (*formats, "dot")}
+            parts = {form: _read_blob(file.read, file.seek, start, head["parts"][form]) for form in formats}
         return Picture(
             head["id"],
             float(head["width"]),
             float(head["height"]),
-            dot=(parts.pop("dot") or b"").decode(),
+            dot=(parts.pop("dot", None) or b"").decode(),
             warning=head["warning"],
             **parts,
         )

@@ -62,8 +62,10 @@ class StyledGraph:
 
     def _write_port(self, box_id: str, port_name: str | None) -> str:
         """Return where an arrow ends at a box with ports: inputs at its left, outputs at its right."""
+        if port_name is None:
+            return ""
         box = next((each for each in self.graph.boxes if each.id == box_id), None)
-        if box is None or port_name is None:
+        if box is None:
             return ""
         rows = [(name, f":i{at}:w") for at, (name, _) in enumerate(box.ports_in)]
         rows += [(name, f":o{at}:e") for at, (name, _) in enumerate(box.ports_out)]

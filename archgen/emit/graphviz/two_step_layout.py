@@ -11,15 +11,16 @@ two steps, with merged arrows, 3.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.frame_contents import lay_out_inside
 from archgen.emit.graphviz.group_order import GroupRows, fold_order, order_forward
 from archgen.emit.graphviz.label_places import declutter_labels
 from archgen.emit.graphviz.layout_engine import format_attributes
+from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutCandidate, LayoutMemory
 from archgen.emit.graphviz.line_crossings import count_crossings, line_length
 from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, SceneLine, ScenePart, read_scene
 from archgen.emit.graphviz.styled_graph import (
@@ -38,6 +39,7 @@ _DIRECTIONS = {None: ("TB", "LR"), "left-right": ("LR",), "top-bottom": ("TB",)}
 """Directions to try by the one that the project asks for."""
 _TURNED_PENALTY = 1.2
 _TILE_MARGIN = 12.0
+RowMeasure = Callable[[tuple[str, ...]], tuple[float, float]]
 _INVISIBLE_NODE = {"style": '"invis"', "label": '""', "shape": '"point"'}
 """Attributes of the ends of arrows between frames: lines need nodes to end at."""
 
@@ -52,7 +54,7 @@ class LayoutTile:
     height: float
 
 
-def lay_out_two_step(styled_graph: StyledGraph) -> Scene:
+def lay_out_two_step(styled_graph: StyledGraph, memory: LayoutMemory = NO_MEMORY) -> Scene:
     """Lay out each frame by itself, then the frames."""
     home_frames = _find_home_frames(styled_graph)
     numbered_arrows = list(enumerate(styled_graph.graph.arrows))
@@ -65,12 +67,44 @@ def lay_out_two_step(styled_graph: StyledGraph) -> Scene:
     ]
     order = order_forward(tuple(tiles), _sum_weights(frame_arrows))
     tiles = {name: tiles[name] for name in order}  # dot breaks circles in the order in which it meets boxes
-    scenes = [
-        _lay_out_tiles(styled_graph, tiles, frame_arrows, statements)
-        for statements in _candidate_layouts(styled_graph, tiles, frame_arrows)
-    ]
-    scene = _fill_tiles(_best_scene(scenes, frame_arrows), tiles)
+    scene = _fill_tiles(_lay_out_best(styled_graph, tiles, frame_arrows, memory), tiles)
     return declutter_labels(place_labels_on_lines(styled_graph, scene))
+
+
+def _lay_out_best(
+    styled_graph: StyledGraph,
+    tiles: dict[str, LayoutTile],
+    arrows: Sequence[tuple[int, Arrow]],
+    memory: LayoutMemory,
+) -> Scene:
+    """Try all layouts of the outer graph, unless memory tells which one is the best."""
+    problem = _describe_problem(styled_graph, tiles, arrows)
+    candidate = memory.recall_choice(problem)
+    if candidate is not None:
+        return _lay_out_tiles(styled_graph, tiles, arrows, candidate)
+    candidates = list(_candidate_layouts(styled_graph, tiles, arrows))
+    scenes = [_lay_out_tiles(styled_graph, tiles, arrows, each) for each in candidates]
+    best = _find_best_scene(scenes, arrows)
+    memory.keep_choice(problem, candidates[best])
+    return scenes[best]
+
+
+def _describe_problem(
+    styled_graph: StyledGraph, tiles: dict[str, LayoutTile], arrows: Sequence[tuple[int, Arrow]]
+) -> str:
+    """Describe all that decides how the outer graph is laid out: no words, but for how many lines they take."""
+    positions = {name: at for at, name in enumerate(tiles)}
+    sizes = [(tile.width, tile.height) for tile in tiles.values()]
+    ends = [
+        (at, positions[arrow.tail], positions[arrow.head], arrow.count, _count_label_lines(arrow))
+        for at, arrow in arrows
+    ]
+    lines = [_line_attributes(styled_graph, at) for at, _ in arrows]
+    return repr((styled_graph.graph.direction, sizes, ends, lines))
+
+
+def _count_label_lines(arrow: Arrow) -> int:
+    return arrow.label.count("\n") + 1 if arrow.label else 0
 
 
 def _sum_weights(arrows: Sequence[tuple[int, Arrow]]) -> dict[tuple[str, str], int]:
@@ -124,7 +158,7 @@ def _make_tiles(
 
 def _candidate_layouts(
     styled_graph: StyledGraph, tiles: dict[str, LayoutTile], arrows: Sequence[tuple[int, Arrow]]
-) -> Iterator[tuple[str, list[str]]]:
+) -> Iterator[LayoutCandidate]:
     """Yield the ways to lay out the outer graph that are worth a try: settings and statements."""
     positions = {name: at for at, name in enumerate(tiles)}
     names = {name: f"o{at}" for at, name in enumerate(tiles)}
@@ -137,7 +171,7 @@ def _candidate_layouts(
         f"{' constraint=false' if positions[a.tail] > positions[a.head] else ''}];"
         for at, a in arrows
     ]
-    label_lines = max((item.label.count("\n") + 1 for _, item in arrows if item.label), default=0)
+    label_lines = max((_count_label_lines(item) for _, item in arrows), default=0)
     # Labels beside vertical arrows need height for their lines, beside horizontal ones width for their longest words.
     for direction in _DIRECTIONS[styled_graph.graph.direction]:
         ranksep = 0.5 + 0.16 * label_lines if direction == "TB" else 0.5 + 0.9 * bool(label_lines)
@@ -148,19 +182,30 @@ def _candidate_layouts(
         yield settings, forward_edges
         sizes = {name: (each.width, each.height)[:: 1 if direction == "TB" else -1] for name, each in tiles.items()}
         ends = [(item.tail, item.head) for _, item in arrows]
-        for rows in fold_order(tuple(tiles), partial(_estimate_cost, sizes, ends, direction)):
+        for rows in fold_order(tuple(tiles), partial(_estimate_cost, _measure_rows(sizes), ends, direction)):
             yield settings, [*_row_statements(rows, names), *forward_edges]
 
 
+def _measure_rows(sizes: Mapping[str, tuple[float, ...]]) -> RowMeasure:
+    """Return the function that measures a row, along it and across. Many ways of cutting an order share their rows."""
+
+    @cache
+    def measure_row(row: tuple[str, ...]) -> tuple[float, float]:
+        return math.fsum([sizes[item][0] + 30 for item in row]), max([sizes[item][1] for item in row]) + 40
+
+    return measure_row
+
+
 def _estimate_cost(
-    sizes: dict[str, tuple[float, ...]], ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows, limit: float
+    measure_row: RowMeasure, ends: Sequence[tuple[str, str]], direction: str, rows: GroupRows, limit: float
 ) -> float:
     """Estimate the cost of rows before they are laid out: how large it gets, and how many arrows must pass a box.
 
-    `sizes` are along and across the rows. What costs the limit or more need not be exact.
+    What costs the limit or more need not be exact.
     """
-    along_rows = max(math.fsum(sizes[item][0] + 30 for item in row) for row in rows)
-    across = math.fsum(max(sizes[item][1] for item in row) + 40 for row in rows)
+    row_sizes = [measure_row(row) for row in rows]
+    along_rows = max([along for along, _ in row_sizes])
+    across = math.fsum([size for _, size in row_sizes])
     total_width, total_height = (along_rows, across) if direction == "TB" else (across, along_rows)
     overflow = _page_overflow(total_width, total_height)
     if overflow >= limit:
@@ -199,7 +244,7 @@ def _lay_out_tiles(
     styled_graph: StyledGraph,
     tiles: dict[str, LayoutTile],
     arrows: Sequence[tuple[int, Arrow]],
-    candidate: tuple[str, list[str]],
+    candidate: LayoutCandidate,
 ) -> Scene:
     """Lay out the outer graph: a mark at the middle of each tile, a frame of the tile's size, and the lines."""
     settings, statements = candidate
@@ -231,12 +276,12 @@ def _fill_tiles(outer_scene: Scene, tiles: dict[str, LayoutTile]) -> Scene:
     return replace(outer_scene, frames=()).joined(*insides)
 
 
-def _best_scene(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) -> Scene:
-    """Return the scene that reads best. Crossings are expensive to count: only where they can still decide."""
+def _find_best_scene(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) -> int:
+    """Return the number of the scene that reads best. Crossings are expensive to count: only where they can still decide."""
     edges = {f"{at}" for at, _ in arrows}
     outer_lines = [[line for line in scene.lines if line.edge in edges] for scene in scenes]
     costs = [_scene_cost(scene, lines, arrows) for scene, lines in zip(scenes, outer_lines, strict=True)]
-    best, least = scenes[0], math.inf
+    best, least = 0, math.inf
     # From the cheapest on: once a scene's cost without crossings reaches the best total, no later one can win.
     for at in sorted(range(len(scenes)), key=lambda each: costs[each]):
         if costs[at] >= least:
@@ -247,7 +292,7 @@ def _best_scene(scenes: Sequence[Scene], arrows: Sequence[tuple[int, Arrow]]) ->
         limit = (least - costs[at]) / crossing_cost + 1 if crossing_cost else math.inf
         cost = costs[at] + crossing_cost * count_crossings(outer_lines[at], limit)
         if cost < least:
-            best, least = scenes[at], cost
+            best, least = at, cost
     return best
 
 

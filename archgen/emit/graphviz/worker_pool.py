@@ -30,6 +30,9 @@ from archgen.views.chart_shapes import Chart
 DRAWING_TIMEOUT = 300.0
 """Seconds that one drawing may take by the clock: for what hangs, and for a machine without limits on processor time."""
 
+_BOXES_FOR_WORKER = 400
+"""A further worker pays where there is so much to draw: to start one takes as long as to draw a hundred boxes."""
+
 ProgressCallback = Callable[[int, int], None]
 CommandLine = Sequence[str]
 
@@ -102,7 +105,8 @@ def draw_tasks(  # noqa: PLR0913 - what to draw, and how, each by its name
     """
     # Threads, since each only waits for its process; `ready` workers beyond the number of tasks are stopped by who made
     # them.
-    count = max(1, min(workers, len(tasks)))
+    enough = 1 + sum(map(_task_size, tasks)) // _BOXES_FOR_WORKER
+    count = max(1, min(workers, len(tasks), max(enough, len(ready_workers))))
     drawing_workers = [
         *ready_workers[:count],
         *(create_worker(folder, command_line) for _ in range(count - len(ready_workers))),

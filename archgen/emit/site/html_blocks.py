@@ -132,8 +132,9 @@ class PageWriter:
 
     def write_inlines(self, runs: Inlines) -> str:
         """Write runs of text."""
-        # Lists inside of join, here and below: join builds one anyway, and is slower to do so from a generator.
-        return "".join([self._write_run(run) for run in runs])
+        # Most cells have one run. Lists inside of join, here and below: join builds one anyway, and is slower to do so
+        # from a generator.
+        return self._write_run(runs[0]) if len(runs) == 1 else "".join([self._write_run(run) for run in runs])
 
     def _write_run(self, run: Text) -> str:
         if run.meter:

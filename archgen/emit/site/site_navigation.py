@@ -47,7 +47,7 @@ class SiteNavigation:
     home_title: str
     links: SiteLinks
     pages: Mapping[str, Page]
-    cached_html: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
+    cached_html: dict[tuple[str, tuple[str, ...], bool], str] = field(default_factory=dict)
     cached_entries: dict[tuple[str, str], str] = field(default_factory=dict)
     cached_kinds: dict[tuple[str, str, bool], str] = field(default_factory=dict)
     cached_counts: dict[str, str] = field(default_factory=dict)
@@ -55,9 +55,10 @@ class SiteNavigation:
     def write_tree(self, page: Page, root: str) -> str:
         """Write the tree for a page. Trees that differ only in the marked page are made once."""
         ancestry = self._ancestry_of(page.anchor)
-        # Without long lists a tree depends on the page right below the start page only, and hundreds of pages share it.
-        has_long_list = any(self._is_long(name, ancestry) for name in self._visible_lists(ancestry))
-        key = (root, ancestry if has_long_list or self._opens_further(ancestry) else ancestry[-1:])
+        # Unless the list below the page right below the start page is long, a tree depends on that page only, and
+        # hundreds of pages share it: of a long list of a kind it shows this page.
+        is_special = self._is_long(ancestry[-1], ancestry) or self._opens_further(ancestry)
+        key = (root, ancestry if is_special else ancestry[-1:], self._shows_branch(ancestry))
         if key not in self.cached_html:
             self.cached_html[key] = "\n".join(
                 self._write_kind(kind, title, ancestry, root) for kind, title in self.kinds
@@ -78,10 +79,6 @@ class SiteNavigation:
         while (parent := self.parents.get(anchor)) and parent in self.parents and parent not in ancestry:
             ancestry.append(anchor := parent)
         return tuple(ancestry)
-
-    def _visible_lists(self, ancestry: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the names of the lists that the tree shows to a reader here."""
-        return (*(f"kind {kind}" for kind, _ in self.kinds), ancestry[-1])
 
     def _is_long(self, list_name: str, ancestry: tuple[str, ...]) -> bool:
         """Return whether a list is too long to be shown in full to a reader here."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
+from archgen.frozen import replace
 from archgen.timing.figures.timing_values import TimingValue, UnknownCause, sum_fractions, unite_causes
 
 UNBOUNDED_VALUE = TimingValue(None, assumptions=("unbounded",))

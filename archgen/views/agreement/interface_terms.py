@@ -6,8 +6,9 @@ No term names a line of a file: text that moves changes nothing between the part
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from archgen.frozen import replace
 from archgen.model.component import Component
 from archgen.model.interface_ends import foreign_owners
 from archgen.model.node import Endpoint, Qos

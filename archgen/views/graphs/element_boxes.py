@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Literal, cast
 
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import replace
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component, list_members, list_surrounding
 from archgen.views.graph_shapes import Box, Cluster

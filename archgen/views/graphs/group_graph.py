@@ -8,9 +8,9 @@ folded, a box for each of their groups.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import Literal
 
+from archgen.frozen import replace
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component, list_members
 from archgen.views.graph_shapes import Arrow, Box, Graph

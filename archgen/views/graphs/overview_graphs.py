@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+from archgen.frozen import replace
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import ComponentFlow, merge_flows

@@ -6,8 +6,8 @@ Inside a frame each pair of nodes has its arrow; between frames the arrows are m
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.model.node import Node
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes

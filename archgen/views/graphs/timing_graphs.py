@@ -6,9 +6,9 @@ The period is in every box as text. Boxes without one (unknown, on an event, on 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Literal
 
+from archgen.frozen import replace
 from archgen.timing.system.timing_system import Arc
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from archgen.frozen import replace
 from archgen.model.feedback_order import MAX_EXACT, FeedbackOrder, order_by_feedback
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.views.agreement.interface_terms import partner_titles

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import Literal
 
+from archgen.frozen import replace
 from archgen.timing.analysis import ChainResult
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Page

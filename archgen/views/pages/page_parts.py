@@ -6,8 +6,8 @@ A browser takes seconds for a table of 10,000 rows, and for 100 pictures on one 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Bullets, Figure, Page, Paragraph, Section, Table, Text
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.views.element_references import place_run
 from archgen.views.lookup import Lookup

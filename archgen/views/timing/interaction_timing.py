@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.timing.analysis import EdgeFit, ServiceLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text

@@ -58,6 +58,17 @@ def analyse_with_chains(architecture: Architecture) -> TimingLookup:
     return bound_chains(analyse_architecture(architecture), architecture)
 
 
+def complete_with_chains(analysis: Analysis | None, architecture: Architecture) -> TimingLookup:
+    """Return the look-ups of an analysis that rules have judged, with all that they did not ask for; None is a project
+    without `timing`, where they asked for nothing.
+    """
+    if analysis is None:
+        return analyse_with_chains(architecture)
+    from archgen.timing.run_analysis import complete_analysis
+
+    return bound_chains(complete_analysis(analysis), architecture)
+
+
 def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
     """Build the look-ups of a timing analysis, with the bounds of all chains, and of the composed components that have limits."""
     from archgen.timing.chains.chain_bounds import bound_all_chains

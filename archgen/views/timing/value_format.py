@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import ROUND_HALF_UP, Decimal
 from fractions import Fraction
 from functools import lru_cache
 
+from archgen.frozen import replace
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.core_placement import is_missing_cores

@@ -193,7 +193,7 @@ def test_what_nobody_sees_draws_nothing_anew(tmp_path: Path, monkeypatch: pytest
     boxes = tuple(replace(box, tooltip='</title><b onclick="x">\nsecond', ref="page") for box in TINY.boxes)
     arrows = tuple(replace(arrow, flows=("archgen.tip/b0 & more",), ref=None) for arrow in TINY.arrows)
     told = replace(TINY, boxes=boxes, arrows=arrows, alt="Two <boxes>")
-    made = draw_pictures((told,), ("svg", "png"), resolve_link=lambda _: 'a"b.html', cache=tmp_path)["tiny"]
+    made = draw_pictures((told,), ("svg", "png", "dot"), resolve_link=lambda _: 'a"b.html', cache=tmp_path)["tiny"]
     svg = (made.svg or b"").decode()
     assert svg.count("<title>&lt;/title&gt;&lt;b onclick=&quot;x&quot;&gt;&#10;second</title>") == len(boxes)
     assert svg.count('<a xlink:href="a&quot;b.html"') == len(boxes)
