@@ -10,7 +10,16 @@ from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import ElementRef
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.model.selector_keys import matches_wildcard
-from tests.selector_cases import FINDINGS, FOUND_NOTHING, ROBOT, SELECTED, SELECTED_NODES, WRONG
+from tests.selector_cases import (
+    COMPOSED_FINDINGS,
+    COMPOSED_ROBOT,
+    FINDINGS,
+    FOUND_NOTHING,
+    ROBOT,
+    SELECTED,
+    SELECTED_NODES,
+    WRONG,
+)
 
 Derived = Callable[[str], Architecture]
 
@@ -43,6 +52,26 @@ def test_which_nodes_are_selected(derived: Derived, text: str, nodes: list[str])
     selection, problems = evaluate_selector(text, derived(ROBOT))
     assert problems == ()
     assert sorted(selection.nodes) == nodes
+
+
+@pytest.mark.parametrize(
+    ("text", "selected"),
+    [
+        # About an output of the right arm: all that is inside.
+        (
+            "finding:unread-output",
+            ["body.right.hand", "body.right.hand.finger", "body.right.joint", "body.right.planner"],
+        ),
+        # About what is not designed yet of the left hand: that alone.
+        ("finding:unfed-output", ["body.left.hand"]),
+    ],
+)
+def test_findings_about_composed_components_select_what_they_are_about(
+    derived: Derived, text: str, selected: list[str]
+) -> None:
+    selection, problems = evaluate_selector(text, derived(COMPOSED_ROBOT), COMPOSED_FINDINGS)
+    assert problems == ()
+    assert sorted(selection.components) == selected
 
 
 def test_what_paths_name(derived: Derived) -> None:

@@ -7,10 +7,10 @@ filters `mermaid_graph` and `mermaid`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from archgen.emit.safe_names import make_identifier
-from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, ElementChange, Graph
 
 _MAX_LABEL_LENGTH = 60
 _BOX_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])", "composed": "[[]]", "port": "[]"}
@@ -51,11 +51,20 @@ def write_flowchart(graph: Graph, *, has_stable_names: bool = False) -> Iterator
     yield f"flowchart {'TB' if graph.direction == 'top-bottom' else 'LR'}"
     yield from (f"  {_write_box(box, names)}" for box in graph.boxes if box.cluster not in frames)
     for cluster in graph.clusters:
-        yield f'  subgraph {frames[cluster.id]}["{_label_text(cluster.title)}"]'
-        yield from (f"    {_write_box(box, names)}" for box in graph.boxes if box.cluster == cluster.id)
-        yield "  end"
+        if cluster.parent not in frames:
+            yield from (f"  {line}" for line in _write_frame(graph, cluster, names))
     yield from (f"  {_write_arrow(arrow, names)}" for arrow in graph.arrows)
     yield from _write_styles(graph)
+
+
+def _write_frame(graph: Graph, cluster: Cluster, names: Mapping[str, str]) -> Iterator[str]:
+    """Yield a frame with its boxes and the frames inside."""
+    yield f'subgraph {names[cluster.id]}["{_label_text(cluster.title)}"]'
+    yield from (f"  {_write_box(box, names)}" for box in graph.boxes if box.cluster == cluster.id)
+    for inner in graph.clusters:
+        if inner.parent == cluster.id:
+            yield from (f"  {line}" for line in _write_frame(graph, inner, names))
+    yield "end"
 
 
 def escape_mermaid(text: object) -> str:
@@ -64,7 +73,7 @@ def escape_mermaid(text: object) -> str:
     return re.sub(r"[^\w .,:/()+·→-]", lambda found: f"#{ord(found.group())};", line) or " "
 
 
-def _write_box(box: Box, names: dict[str, str]) -> str:
+def _write_box(box: Box, names: Mapping[str, str]) -> str:
     shape = "[[]]" if box.change == "changed" and box.style not in _BOX_SHAPES else _BOX_SHAPES.get(box.style, "()")
     half = len(shape) // 2
     rows = [": ".join(words.replace("\n", ", ") for words in row if words) for row in box.rows]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.emit.markdown.mermaid_chart import write_flowchart
-from archgen.views.graph_shapes import Arrow, Box, Graph
+from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
 
 def test_composed_components_ports_and_made_connections_have_forms_of_their_own() -> None:
@@ -16,4 +16,26 @@ def test_composed_components_ports_and_made_connections_have_forms_of_their_own(
         '  n2("Leaf")',
         "  n1 --> n0",
         "  n0 -.-> n2",
+    ]
+
+
+def test_frames_stand_in_frames() -> None:
+    graph = Graph(
+        "g",
+        "G",
+        "framed",
+        (Box("a", "A", cluster="inner"), Box("b", "B", cluster="outer"), Box("c", "C")),
+        (),
+        clusters=(Cluster("outer", "Outer"), Cluster("inner", "Inner", parent="outer")),
+        kind="view",
+    )
+    assert list(write_flowchart(graph))[:8] == [
+        "flowchart LR",
+        '  n2("C")',
+        '  subgraph g0["Outer"]',
+        '    n1("B")',
+        '    subgraph g1["Inner"]',
+        '      n0("A")',
+        "    end",
+        "  end",
     ]

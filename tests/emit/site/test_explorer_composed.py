@@ -122,7 +122,7 @@ def test_what_runs_to_a_closed_one_runs_to_its_ports_and_to_an_open_one_to_what_
     page.locator(".map .arrow").filter(has_text="Left Arm → Controller").dispatch_event("click")
     assert page.locator(".panel .flows li").all_inner_texts() == ["Arm state\nLeft Arm · state → Controller · arms"]
     box(page, "Left Arm").locator(".sign").click(force=True)
-    assert {"Controller → Planner", "Watch → Controller", "Shoulder → Watch"} <= set(arrows(page))
+    assert {"Controller → Left Arm · Planner", "Left Arm · Watch → Controller", "Shoulder → Watch"} <= set(arrows(page))
     assert "Left Arm → Controller" not in arrows(page)
 
 
@@ -157,7 +157,7 @@ def test_a_focus_inside_lights_what_is_in_there_and_the_frames_around(visit: Ope
     assert address(page)["sel"] == "1+cleaning.left_arm.watch+1"
     assert titles(page, ".box.lit") == ["Cleaning", "Controller", "Elbow", "Left Arm", "Shoulder", "Watch"]
     assert arrows(page, ".arrow.lit.before") == ["Elbow → Watch", "Shoulder → Watch"]
-    assert arrows(page, ".arrow.lit.after") == ["Watch → Controller"]
+    assert arrows(page, ".arrow.lit.after") == ["Left Arm · Watch → Controller"]
     box(page, "Left Arm").locator(".fold-sign").click()
     assert titles(page, ".box.lit") == ["Cleaning", "Controller", "Left Arm"]
 
@@ -208,6 +208,13 @@ def test_the_list_has_what_is_inside_and_opens_it(visit: OpenPage) -> None:
     assert sorted(names) == sorted([*GROUP, *LEFT_ARM])
     inner = page.locator(".as-list li", has=page.get_by_role("button", name="Close Left Arm")).last
     assert "Watch" in inner.inner_text()
+    watch = page.locator(".as-list li", has=page.get_by_role("button", name="Watch", exact=True)).last
+    assert watch.inner_text().split("\n")[1:3] == [
+        "takes from Shoulder (1 flow), Elbow (1 flow)",
+        "gives to Controller (1 flow)",
+    ]
+    controller = page.locator(".as-list li", has_text="gives to Left Arm · Planner (1 flow)").last
+    assert controller.inner_text() == "gives to Left Arm · Planner (1 flow), Right Arm (1 flow)"
     page.get_by_role("button", name="Close Left Arm").click()
     assert address(page)["open"] == "cleaning"
 

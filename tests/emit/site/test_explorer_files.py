@@ -72,6 +72,7 @@ def test_a_large_map_comes_in_files_of_which_none_holds_up_the_page() -> None:
         ("group:a", "explorer.html#level=components&pick=a"),
         ("node:n n", "explorer.html#level=nodes&pick=n%20n"),
         ("host:h", "explorer.html#level=hosts&pick=h"),
+        ("component_type:motor", "explorer.html#level=components&sel=is%3Amotor"),
         ("topic:/t", None),
         ("page:index", None),
     ],

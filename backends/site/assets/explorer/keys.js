@@ -2,7 +2,7 @@
 "use strict";
 archgenExplorer.makeKeys = function (actions, camera, { tools, stage, boxes, drawing, unlight }) {
   const { element } = archgenExplorer;
-  const HELP = [["← ↑ → ↓", "to the nearest box"], ["Enter", "details"], ["o", "open or close a group or what is composed"], ["f", "focus: what feeds it and what it feeds"],
+  const HELP = [["← ↑ → ↓", "to the nearest box"], ["Enter", "details"], ["o", "open or close a group or composed component"], ["f", "focus: what feeds it and what it feeds"],
     ["[ ]", "fewer or more steps before"], ["{ }", "fewer or more steps after"], ["+ −", "zoom"], ["0", "all of the map"], ["Shift + arrows", "move the map"],
     ["s", "selector"], ["l", "list or map"], ["Esc", "close, clear"], ["/", "search everything"], ["?", "this list"]];
   let current = null;

@@ -132,7 +132,8 @@ archgenExplorer.layOut = (function () {
     for (const arrow of scene.arrows) {
       arrow.meeting = meet(arrow.tail, arrow.head);
       const { home } = arrow.meeting;
-      arrows.set(home, [...(arrows.get(home) ?? []), arrow]);
+      if (!arrows.has(home)) arrows.set(home, []);
+      arrows.get(home).push(arrow);
     }
     return { inside, arrows };
   }

@@ -4,8 +4,8 @@ archgenExplorer.makeList = function (actions) {
   const { element, count } = archgenExplorer;
   const root = element("section", { className: "as-list", ariaLabel: "The map as a list", hidden: true, tabIndex: -1 });
 
-  function name(box) {
-    const button = element("button", { type: "button", className: "name", textContent: box.title });
+  function name(box, text = box.title) {
+    const button = element("button", { type: "button", className: "name", textContent: text });
     button.addEventListener("click", () => actions.pickBox(box));
     return button;
   }
@@ -14,9 +14,9 @@ archgenExplorer.makeList = function (actions) {
     if (!arrows.length) return "";
     return element("li", {}, word + " ", arrows.flatMap((arrow, at) => {
       const button = element("button", { type: "button", className: "name muted", textContent: count(arrow.flows.length, "flow") });
-      button.ariaLabel = `${count(arrow.flows.length, "flow")}, ${arrow.tail.title} to ${arrow.head.title}`;
+      button.ariaLabel = `${count(arrow.flows.length, "flow")}, ${arrow.tailTitle} to ${arrow.headTitle}`;
       button.addEventListener("click", () => actions.pickArrow(arrow));
-      return [at ? ", " : "", name(arrow[side]), " (", button, ")"];
+      return [at ? ", " : "", name(arrow[side], arrow[side + "Title"]), " (", button, ")"];
     }));
   }
 

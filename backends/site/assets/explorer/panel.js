@@ -104,7 +104,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
     const row = (port, direction, others, flowNote) => element("li", {}, element("span", { className: "muted", textContent: direction }),
       element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "", port.made ? [" ", tag("autoconnect")] : "",
         port.note ? element("div", { className: "muted", textContent: port.note }) : "",
-        others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other), others.length === 1 && other.line ? element("span", { className: "muted", textContent: " · " + other.line }) : ""])) : ""));
+        others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other, other.title), others.length === 1 && other.line ? element("span", { className: "muted", textContent: " · " + other.line }) : ""])) : ""));
     // The other end as it is called from here: of what lies in another composed component, that component.
     const own = [...shellsAround(component), component];
     const facing = (at) => [...shellsAround(model.components[at]), model.components[at]].find((each) => !own.includes(each));
@@ -155,7 +155,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
       element("div", {}, element("strong", { textContent: flow.label }), flow.optional ? [" ", tag("optional")] : "", flow.made ? [" ", tag("autoconnect")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : ""),
       element("div", {}, pickButton(endOf(flow, "tail")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.from : flow.to}` }),
         " → ", pickButton(endOf(flow, "head")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.to : flow.from}` }))));
-    open(count(arrow.flows.length, "flow"), `${arrow.tail.title} → ${arrow.head.title}`, "",
+    open(count(arrow.flows.length, "flow"), `${arrow.tailTitle} → ${arrow.headTitle}`, "",
       section("What flows", arrow.flows.length > MAX_FLOWS ? `the first ${MAX_FLOWS}` : "", element("ul", { className: "flows" }, rows)));
   }
 

@@ -36,10 +36,16 @@ archgenExplorer.describeScene = (function () {
     return inner.flatMap((shell) => [shell, ...listShells(shell, level)]);
   }
 
+  // A box as it is called beside another one: where they stand in different frames, with what is around it.
+  function nameFrom(box, other) {
+    return box.parent === other.parent ? box.title : box.element?.fullTitle ?? box.title;
+  }
+
   function describeArrow(arrow) {
     const labels = arrow.flows.slice(0, MAX_NAMED_FLOWS).map(({ label }) => label);
     const rest = arrow.flows.length - labels.length;
-    arrow.tip = [`${arrow.tail.title} → ${arrow.head.title}`, ...labels, rest ? `and ${rest} more` : ""].filter(Boolean).join("\n");
+    [arrow.tailTitle, arrow.headTitle] = [nameFrom(arrow.tail, arrow.head), nameFrom(arrow.head, arrow.tail)];
+    arrow.tip = [`${arrow.tailTitle} → ${arrow.headTitle}`, ...labels, rest ? `and ${rest} more` : ""].filter(Boolean).join("\n");
   }
 
   return function describeScene(scene, level) {
