@@ -92,19 +92,21 @@ class SourceText:
 def find_mutants(file: str, text: str) -> Iterator[Mutant]:
     """Yield every mutant of a file.
 
-    Decorators are left out: `frozen=True`, `slots=True` and the sizes of caches compute nothing.
+    Decorators are left out: `frozen=True`, `slots=True` and the sizes of caches compute nothing. So is `strict=True` of
+    `zip`: it asserts that sides are of one length, and changes nothing where they are.
     """
     source = SourceText(file, text)
     tree = ast.parse(text)
-    decorating = {
+    without_effect = {
         id(part)
         for node in ast.walk(tree)
         if isinstance(node, (ast.ClassDef, ast.FunctionDef))
         for d in node.decorator_list
         for part in ast.walk(d)
     }
+    without_effect |= {id(k.value) for k in ast.walk(tree) if isinstance(k, ast.keyword) and k.arg == "strict"}
     for node in ast.walk(tree):
-        if id(node) not in decorating:
+        if id(node) not in without_effect:
             yield from _mutate_operators(source, node)
             yield from _mutate_values(source, node)
 

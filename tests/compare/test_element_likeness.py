@@ -89,3 +89,48 @@ def test_among_many_only_those_with_a_rare_mark_are_compared() -> None:
     assert list(find_likely_pairs(five, thirteen)) == []
     more = {"c": {"f": marks("other")}}
     assert len(list(find_likely_pairs(eight | more, {f"b{n}": {"f": marks("x y")} for n in range(8)}))) == 8
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "likeness"),
+    [
+        ("p q", "p q", 0.99),  # all that both hold
+        ("p q r", "p q", 2 / 3),  # two of three
+        ("p q", "p q r", 2 / 3),
+        ("p q", "p r s", 5 * 1 / 4 / 6),  # one alone decides nothing
+        ("p", "p", 5 / 6),
+        ("p q", "r s", 0),
+    ],
+)
+def test_a_decisive_feature_decides_where_both_hold_two_of_the_same(one: str, other: str, likeness: float) -> None:
+    sides = [{"holds": Feature(5, frozenset(text.split()), decisive=True)} for text in (one, other)]
+    assert measure_likeness(*sides) == pytest.approx(likeness)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "confidences"),
+    [
+        # The same in all but its name, and enough of it.
+        ("a: n=a x=1 y=2", "b: n=b x=1 y=2", [("a", "b", 0.99)]),
+        ("a: n=a x=1", "b: n=b x=1", []),
+        ("a: n=a x=1 y=2 z=", "b: n=b x=1 y=2 z=", [("a", "b", 0.99)]),
+        # What is said of neither weighs nothing; with a rival on either side nobody is certain.
+        ("a: n=a x=1 y= z=", "b: n=b x=1 y= z=", []),
+        ("a: n=a x=1 y=2", "b: n=b x=1 y=2; c: n=c x=1 y=2", [("a", "b", 0.6)]),
+        ("a: n=a x=1 y=2; c: n=c x=1 y=2", "b: n=b x=1 y=2", [("a", "b", 0.6)]),
+        ("a: n=a x=1 y=2 z=3", "b: n=b x=1 y=2 z=4", []),
+    ],
+)
+def test_who_is_the_same_in_all_but_the_name_is_certain(
+    before: str, after: str, confidences: list[tuple[str, str, float]]
+) -> None:
+    """Each feature weighs 3: two and the doubt of 1 and the name that differs are 6 / 10."""
+    assert list(find_likely_pairs(_read_named(before), _read_named(after))) == confidences
+
+
+def _read_named(text: str) -> dict[str, dict[str, Feature]]:
+    elements = {}
+    for name, _, words in (entry.partition(": ") for entry in text.split("; ")):
+        pairs = (word.partition("=") for word in words.split())
+        elements[name] = {{"n": "name"}.get(key, key): marks(value) for key, _, value in pairs}
+    return elements

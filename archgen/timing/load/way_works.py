@@ -64,8 +64,11 @@ class _WayWorkBuilder:
         self.costs = {name: cores.system.activities[name].wcet or 0 for name in cores.unit_of}
         self.keys: dict[_WayName, WayKey] = {}
         self.jobs = {job.key: job for job in cores.jobs}
+        # What works only at the start holds up nothing that comes later, and has no way.
+        silent_ids = cores.inner_triggers.silent_ids
         self.unit_jobs = {
-            unit: [cores.jobs[number] for number in numbers] for unit, numbers in cores.job_numbers.items()
+            unit: [cores.jobs[number] for number in numbers if cores.jobs[number].key[0] not in silent_ids]
+            for unit, numbers in cores.job_numbers.items()
         }
         self.calls = {
             (each.arc.source, name)
@@ -173,7 +176,9 @@ class _WayWorkBuilder:
                     tuple(
                         SharedWork(job.origin, job.work, job.key)
                         for job in self.cores.jobs
-                        if crowd_of.get(job.key[0]) == crowd and (len(own_units) > 1 or job.unit not in own_units)
+                        if crowd_of.get(job.key[0]) == crowd
+                        and (len(own_units) > 1 or job.unit not in own_units)
+                        and job.key[0] not in self.cores.inner_triggers.silent_ids
                     ),
                     crowd[1],
                 )

@@ -68,3 +68,12 @@ def test_a_step_is_at_its_upper_end() -> None:
     counter = _count(*range(1, 5000))
     counter.add_sample(1_000_001)
     assert counter.summarise().largest == 1_000_001
+
+
+def test_small_values_are_exact_whatever_comes_beside_them() -> None:
+    """Below 256 each value is a step of its own: half of the samples are 3."""
+    counter = _count(*range(1_000, 6_000))
+    for _ in range(5_001):
+        counter.add_sample(3)
+    statistics = counter.summarise()
+    assert (statistics.is_stepped, statistics.least, statistics.percentiles["p50"]) == (True, 3, 3)

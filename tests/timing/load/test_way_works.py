@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from archgen.timing.load.shared_cores import SharedCores
 from archgen.timing.load.way_works import SharedWork, WayWork, build_thread_work, build_way_works
 from tests.timing.load.test_idle_backlogs import EVENT, in_ms, prepare
+from tests.timing.sketches import analyse_sketch
 
 PC = "hosts: {pc: {cores: 2}}"
 NODES = {
@@ -156,3 +159,24 @@ def test_a_way_within_one_thread_has_no_steps_of_its_own() -> None:
     work = build_way_works(cores)["c", 0]
     assert show_work(cores, work) == " | 20 of b behind nothing, 3 of b behind nothing | "
     assert (work.cost, work.slowest) == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("threads", "members", "work_of_e"),
+    [
+        (1, {"o": "behaviour: once, wcet: 6 ms"}, "b 9 + e 3 |  | "),
+        (
+            2,
+            {"o": "behaviour: once, wcet: 6 ms", "f": "period: 50 ms, wcet: 4 ms"},
+            "b 9 + e 3 |  | 4 of f behind f in 2",
+        ),
+    ],
+)
+def test_what_works_only_at_the_start_holds_up_nothing_that_comes_later(
+    threads: int, members: dict[str, str], work_of_e: str
+) -> None:
+    nodes = {"b @pc": "period: 35 ms, wcet: 9 ms", "e +box": f"{EVENT}, wcet: 3 ms"}
+    nodes |= {f"{name} +box": timing for name, timing in members.items()}
+    rest = f"hosts: {{pc: {{cores: 3}}}}\ncontainers: {{box: {{threads: {threads}, host: pc}}}}"
+    assert show_ways(prepare(nodes, "b>e", rest))["e"] == work_of_e
+    assert analyse_sketch(nodes, "b>e", rest).responses["e"].worst.value is not None

@@ -155,3 +155,48 @@ def test_what_there_was_no_try_left_for_is_named() -> None:
     trials = start_trials(architecture(_read("300 ms")), 12)
     budget = find_chain_budget(trials, trials.bound_chain("c"))
     assert "drive.timing.period" in budget.untried
+
+
+def _write_budget(budget: ChainBudget) -> list[str]:
+    """Return all of a budget: figures, hosts, and what each may take."""
+    return [
+        *(
+            f"{each.activity}.{each.key} {_in_ms(each.written)} may be {_in_ms(each.largest)}{' free' if each.is_free else ''}"
+            for each in budget.figures
+        ),
+        *(f"{host}: {each.factor}{' free' if each.is_free else ''}" for host, each in budget.hosts),
+        f"all: {budget.shared.factor}",
+        *(
+            f"{' '.join(each.owners)} {each.activity}.{each.key} {_in_ms(each.written)} may take {_in_ms(each.may_take)}"
+            f"{' on the chain' if each.on_chain else ''}"
+            for each in budget.shared.shares
+        ),
+    ]
+
+
+def _in_ms(duration: Fraction | None) -> str:
+    return "nothing" if duration is None else str(duration / 10**6)
+
+
+def test_all_of_a_budget() -> None:
+    nodes = {
+        "a @p": "period: 50 ms, wcet: 2 ms, bcet: 1 ms, priority: 3",
+        "b @p": "wcet: 5 ms, priority: 2",
+        "n @p": "period: 40 ms, wcet: 4 ms, priority: 5",
+        "m @p": "period: 100 ms, wcet: 4 ms, priority: 1",
+        "f @q": "period: 100 ms, wcet: 4 ms",
+    }
+    rest = "hosts: {p: {cores: 1}, q: {cores: 1}}\nchains: {c: {through: [a, b], deadline: 80 ms}}"
+    trials = start_trials(architecture(sketch(nodes, "a>b", rest)))
+    assert _write_budget(find_chain_budget(trials, trials.bound_chain("c"))) == [
+        "a.wcet 2 may be 21",
+        "b.wcet 5 may be 24",
+        "a.period 50 may be 69",
+        "n.wcet 4 may be 23",
+        "p: 2727/1000",
+        "all: 2727/1000",
+        " a.wcet 2 may take 2727/500 on the chain",
+        " b.wcet 5 may take 2727/200 on the chain",
+        " n.wcet 4 may take 2727/250",
+        " m.wcet 4 may take 2727/250",
+    ]
