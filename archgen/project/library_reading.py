@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.project.project_search import PROJECT_FILE
 from archgen.project.source_reading import ReadingState, read_library_slices
 from archgen.syntax.library_files import LibraryFiles
-from archgen.syntax.project_files import FileRefusal
+from archgen.syntax.project_files import FileRefusal, ProjectFiles
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
 
 LIBRARY_SECTIONS = ("component_types", "types")
@@ -22,54 +23,62 @@ _SETTINGS = frozenset({"archgen", "project", "sources", "rules", "layout", "repo
 class LoadedLibrary:
     """A library of which the files have been read: its documents in normal form, in the order in which they are merged.
 
-    They hold component types and types only. `is_complete` is whether all of its files could be read.
+    They hold component types and types only. `folder` starts at the project's folder, "" for a library that could not be
+    read. `is_complete` is whether all of its files could be read.
     """
 
     id: str
     at: Span
+    folder: str = ""
     documents: tuple[YamlDocument, ...] = ()
     is_complete: bool = True
 
 
-def list_library_paths(state: ReadingState) -> dict[str, ScalarNode]:
-    """Return where the libraries lie, by their ids, as far as that is written."""
-    paths: dict[str, ScalarNode] = {}
-    for document in state.documents:
-        libraries = document.root.get("libraries")
-        for entry in libraries if isinstance(libraries, MappingNode) else ():
-            path = entry.value.get("path") if isinstance(entry.value, MappingNode) else None
-            if isinstance(path, ScalarNode) and path.value is not None:
-                paths.setdefault(entry.key, path)
-    return paths
+def list_library_paths(root: MappingNode) -> dict[str, ScalarNode]:
+    """Return where the libraries that a file names lie, by their ids; those that it holds itself have no path."""
+    libraries = root.get("libraries")
+    return {
+        entry.key: path
+        for entry in (libraries if isinstance(libraries, MappingNode) else ())
+        if isinstance(entry.value, MappingNode)
+        and isinstance(path := entry.value.get("path"), ScalarNode)
+        and path.value is not None
+    }
 
 
-def list_inner_folders(state: ReadingState) -> frozenset[str]:
+def list_inner_folders(root: MappingNode) -> frozenset[str]:
     """Return the folders of libraries that lie in the project's own: their files are none of the project's."""
-    folders = (posixpath.normpath(path.text) for path in list_library_paths(state).values())
+    folders = (posixpath.normpath(path.text) for path in list_library_paths(root).values())
     return frozenset(folder for folder in folders if folder != "." and not folder.startswith(("../", "/")))
 
 
-def read_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
-    """Read the files of all libraries. What is wrong with them goes to the state."""
-    for library_id, path in list_library_paths(state).items():
-        folder_files = state.files.open_folder(path.text)
-        if isinstance(folder_files, FileRefusal):
-            state.diagnostics.append(_diagnose_missing_library(library_id, path, folder_files))
-            state.partial = True
-            yield LoadedLibrary(library_id, path.span, is_complete=False)
-        else:
-            yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
+def read_libraries(state: ReadingState, first_file: str) -> Iterator[LoadedLibrary]:
+    """Read the files of all libraries. What is wrong with them goes to the state.
+
+    Only archgen.yaml names libraries: all partners answer for it, and what else a project consists of must be known
+    before its other files are read.
+    """
+    for document in state.documents:
+        for library_id, path in list_library_paths(document.root).items():
+            folder_files = _open_library(state, first_file, path)
+            if isinstance(folder_files, FileRefusal):
+                state.diagnostics.append(_diagnose_missing_library(library_id, path, folder_files))
+                state.partial = True
+                yield LoadedLibrary(library_id, path.span, is_complete=False)
+            else:
+                yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
 
 
-def refuse_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
-    """Report the libraries of a project of one file that lie elsewhere, as what its `sources` name is not read either."""
-    refusal = FileRefusal(
-        "a project of one file holds what it uses of its libraries", "`archgen pack` of the whole project puts it there"
-    )
-    for library_id, path in list_library_paths(state).items():
-        state.diagnostics.append(_diagnose_missing_library(library_id, path, refusal))
-        state.partial = True
-        yield LoadedLibrary(library_id, path.span, is_complete=False)
+def _open_library(state: ReadingState, first_file: str, path: ScalarNode) -> ProjectFiles | FileRefusal:
+    if first_file != PROJECT_FILE:
+        # What `sources` of such a file name is not read either.
+        return FileRefusal(
+            "a project of one file holds what it uses of its libraries",
+            "`archgen pack` of the whole project puts it there",
+        )
+    if path.span.file != first_file:
+        return FileRefusal(f"only {PROJECT_FILE} names libraries", "write it there, below `libraries`")
+    return state.files.open_folder(path.text)
 
 
 def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files: LibraryFiles) -> LoadedLibrary:
@@ -89,7 +98,7 @@ def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files:
     if not documents and is_complete:
         message = f"no file in `{path.text}` holds `component_types` or `types`"
         state.diagnostics.append(Diagnostic("missing-library", message, path.span, severity=Severity.WARNING))
-    return LoadedLibrary(library_id, path.span, tuple(documents), is_complete)
+    return LoadedLibrary(library_id, path.span, files.folder, tuple(documents), is_complete)
 
 
 def _find_unused_sections(document: YamlDocument, library_id: str) -> Iterator[Diagnostic]:

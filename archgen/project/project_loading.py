@@ -11,7 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
-from archgen.project.library_reading import LoadedLibrary, list_inner_folders, read_libraries, refuse_libraries
+from archgen.project.library_reading import LoadedLibrary, list_inner_folders, read_libraries
 from archgen.project.project_search import PROJECT_FILE, find_project
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
@@ -80,24 +80,12 @@ def load_from_files(files: ProjectFiles, first_file: str, parsed_slices: ParsedS
 
     Slices in `parsed_slices` are not parsed again, and new ones are added to it.
     """
-    parsed_slices = {} if parsed_slices is None else parsed_slices
-    state = _read_slices(files, first_file, parsed_slices)
-    # Which folders are libraries is known when all slices are read: those in them are taken out by reading once more.
-    inner_folders = list_inner_folders(state)
-    if inner_folders:
-        state = _read_slices(files, first_file, parsed_slices, inner_folders)
-    libraries = read_libraries(state) if first_file == PROJECT_FILE else refuse_libraries(state)
-    return _finish_loading(state, first_file, tuple(libraries))
-
-
-def _read_slices(
-    files: ProjectFiles, first_file: str, parsed_slices: ParsedSlices, skipped_folders: frozenset[str] = frozenset()
-) -> ReadingState:
-    state = ReadingState(files, parsed_slices=parsed_slices, skipped_folders=skipped_folders)
+    state = ReadingState(files, parsed_slices=parsed_slices)
     read_slice(state, first_file)
     if first_file == PROJECT_FILE:  # a file of any other name is the whole project: its `sources` are not followed
+        state.skipped_folders = list_inner_folders(state.documents[0].root) if state.documents else frozenset()
         read_sources(state)
-    return state
+    return _finish_loading(state, first_file, tuple(read_libraries(state, first_file)))
 
 
 def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[LoadedLibrary, ...]) -> LoadedProject:
