@@ -131,6 +131,10 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     used_types = {port.type for port in _all_ports(architecture)}
     for component in architecture.components.values():
         used_types.update(name for operation in component.operations.values() for name in operation.type_names)
+    # A library that is checked by itself has no instances.
+    for component_type in architecture.component_types.values():
+        port_types = {*component_type.inputs.values(), *component_type.outputs.values()}
+        used_types |= port_types.difference(component_type.generic)
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
         used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)

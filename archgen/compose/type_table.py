@@ -138,6 +138,10 @@ class TypeTable:
             help_line: str | None = "a generic type is bound as `filter<Pose>`, two as `pair<Pose, Twist>`"
             return Diagnostic("wrong-value", message, reference.span, help=help_line, element=element_id)
         names = tuple(self.entries)
+        library = library_of_type(expression.name)
+        own_names = [name for name in names if library_of_type(name) == library]
+        if library and any(self.entries[name].key_span.file == reference.span.file for name in own_names):
+            return _diagnose_in_library(reference, library, own_names, element_id)
         ending = next((name for name in names if name.rpartition(".")[2] == expression.name), None)
         guess = f"did you mean `{ending}`?" if ending else did_you_mean(expression.name, names)
         return Diagnostic(
@@ -147,6 +151,19 @@ class TypeTable:
             help=guess or "write it below `component_types`, or describe the component itself",
             element=element_id,
         )
+
+
+def _diagnose_in_library(reference: ScalarNode, library: str, library_names: list[str], element_id: str) -> Diagnostic:
+    """Return the finding for a name that is written in a library: what the project knows is no help there."""
+    name = reference.text.removeprefix(f"{library}.")
+    return Diagnostic(
+        "unknown-reference",
+        f"no component type named `{name}` in the library `{library}`",
+        reference.span,
+        help=did_you_mean(name, [each.removeprefix(f"{library}.") for each in library_names])
+        or "the component types of a library see only one another: write it below `component_types` there",
+        element=element_id,
+    )
 
 
 def list_generic_names(entry: MappingEntry) -> tuple[str, ...]:

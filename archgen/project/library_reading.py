@@ -109,12 +109,17 @@ def _find_unused_sections(document: YamlDocument, library_id: str) -> Iterator[D
             message = f"`{library_id}` is a library, and a library has no libraries of its own"
             help_line = "write what it takes from others into it, or name both libraries in the project"
             yield Diagnostic("missing-library", message, entry.key_span, help=help_line)
-        elif entry.key not in LIBRARY_SECTIONS and entry.key not in _SETTINGS:
+        elif entry.key not in LIBRARY_SECTIONS and entry.key not in _SETTINGS and not _names_distribution_only(entry):
             unused_entries.append(entry)
     if unused_entries:
         names = ", ".join(f"`{entry.key}`" for entry in unused_entries)
         message = f"of the library `{library_id}` only `component_types` and `types` are used, not {names}"
         yield Diagnostic("ignored-file", message, unused_entries[0].key_span)
+
+
+def _names_distribution_only(entry: MappingEntry) -> bool:
+    """Whether an entry is `ros` with nothing but the distribution for which a library is checked by itself."""
+    return entry.key == "ros" and isinstance(entry.value, MappingNode) and entry.value.entries.keys() <= {"distro"}
 
 
 def _diagnose_missing_library(library_id: str, path: ScalarNode, refusal: FileRefusal) -> Diagnostic:

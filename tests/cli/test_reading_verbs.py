@@ -112,6 +112,32 @@ def test_show(run: Run, first: Path) -> None:
     assert "    velocity (Velocity command) -> devices.drive.velocity\n" in ran.out
 
 
+def test_show_does_not_hide_a_component_behind_its_node_or_a_frame(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(
+        """\
+archgen: 1
+groups:
+  g:
+    components:
+      eye: {outputs: {o: std_msgs/msg/Empty}, frames: {eye: {parent: base, static: true}}, node: {package: p, executable: e}}
+      pair: {components: {left: {title: Left}}}
+frames: {pair: {parent: base, static: true}}
+""",
+        encoding="utf-8",
+    )
+    heads = {
+        word: [
+            line.split("   ")[0] for line in run("show", word, "-C", tmp_path).out.splitlines() if line[:1].isalpha()
+        ]
+        for word in ("eye", "pair", "g.eye")
+    }
+    assert heads == {
+        "eye": ["component g.eye - Eye", "node eye - Eye", "frame eye"],
+        "pair": ["composed g.pair - Pair", "frame pair"],
+        "g.eye": ["component g.eye - Eye"],
+    }
+
+
 def test_show_what_is_not_there(run: Run, first: Path) -> None:
     ran = run("show", "obstacle_stp", "-C", first)
     assert (ran.status, ran.out) == (2, "")

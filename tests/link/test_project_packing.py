@@ -63,7 +63,14 @@ def packed_again(checked: CheckedProject, folder: Path) -> CheckedProject:
 
 
 @pytest.mark.parametrize(
-    "example", ["examples/first_robot", "examples/cleaning_robot", "examples/arm", "example_ramcip"]
+    "example",
+    [
+        "examples/first_robot",
+        "examples/cleaning_robot",
+        "examples/arm",
+        "examples/vehicle/two_lasers",
+        "example_ramcip",
+    ],
 )
 def test_the_examples(example: str, tmp_path: Path) -> None:
     packed_again(check_project(ROOT / example), tmp_path)

@@ -1,4 +1,4 @@
-"""What other products know of libraries: who reviews them, and what editors offer of them."""
+"""What products know of libraries: who reviews them, what editors offer of them, and how documents name them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from pathlib import Path
 from archgen.pipeline import check_project
 from archgen.products.code_ownership import make_codeowners
 from archgen.products.schema_renewal import digest_texts, list_project_names
+from archgen.views.elements.component_type_blocks import make_type_table
+from archgen.views.lookup import make_lookup
 from tests.repositories import repository
 
 PROJECT = """archgen: 1
@@ -37,3 +39,17 @@ def test_editors_offer_all_component_types_of_a_library_and_none_of_them_as_a_ke
     assert list(names["component_types"]) == [("own", "Own")]
     (tmp_path / "lib" / "a.yaml").write_text(library.replace("lamp", "torch"))
     assert digest_texts(check_project(tmp_path)) != digest_texts(checked)
+
+
+def test_the_table_of_component_types_says_of_which_library_each_is_and_has_no_empty_columns(tmp_path: Path) -> None:
+    text = "archgen: 1\nlibraries: {common: lib}\ncomponent_types: {own: {}}\ngroups: {g: {components: {a: {is: common.laser}}}}\n"
+    for name, content in {
+        "archgen.yaml": text,
+        "lib/a.yaml": "component_types: {laser: {outputs: {o: Scan}}}\n",
+    }.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(content)
+    table = make_type_table(make_lookup(check_project(tmp_path).architecture))
+    assert table is not None
+    assert [column.title for column in table.columns] == ["Type", "Library", "Purpose", "Instances"]
+    assert ["".join(run.text for run in row[1]) for row in table.rows] == ["", "common"]

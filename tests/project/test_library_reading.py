@@ -129,9 +129,16 @@ def test_a_project_of_one_file_reads_no_library(tmp_path: Path) -> None:
     assert "a project of one file holds what it uses of its libraries | `archgen pack`" in error
 
 
+def test_of_ros_only_the_distribution_is_for_a_library_that_is_checked_by_itself(tmp_path: Path) -> None:
+    library = {"archgen.yaml": "archgen: 1\nros: {distro: jazzy, interfaces: [a.msg]}\n", "drivers.yaml": DRIVERS}
+    write(tmp_path, {"archgen.yaml": robot("lib"), **{f"lib/{name}": text for name, text in library.items()}})
+    notes = [d.message for d in check_project(tmp_path).findings if d.rule == "ignored-file"]
+    assert notes == ["of the library `common` only `component_types` and `types` are used, not `ros`"]
+
+
 def test_what_a_library_holds_besides_types_is_not_used(tmp_path: Path) -> None:
     library = {
-        "archgen.yaml": "archgen: 1\nproject: {title: Common}\nrules: {unread-output: error}\n",
+        "archgen.yaml": "archgen: 1\nproject: {title: Common}\nrules: {unread-output: error}\nros: {distro: jazzy}\n",
         "drivers.yaml": DRIVERS + "groups: {a: {title: A}}\nhosts: {pc: {}}\n",
         "values.yaml": "image: {tag: 1}\n",
         "template.yaml": "{{ x }}\n",

@@ -252,6 +252,30 @@ def test_the_document_has_partners_and_a_place_to_sign(tmp_path: Path) -> None:
     assert [line.split(" | ")[0] for line in signed[1:]] == ["North Robotics", "South Vision"]
 
 
+EYES = """\
+archgen: 1
+partners: {north: North, south: South}
+component_types: {eye: {components: {finder: {outputs: {places: std_msgs/msg/Empty}}}, outputs: {places: {from: finder.places}}}}
+groups:
+  seeing: {owner: south, components: {left: {is: eye}, right: {is: eye}}}
+  moving: {owner: north, components: {arm: {inputs: {places: [left.places, right.places]}}}}
+nodes: {arm: arm, left: left.finder, right: right.finder}
+"""
+
+
+def test_what_stands_in_two_instances_is_told_by_them(tmp_path: Path) -> None:
+    agreement = made(tmp_path, source=EYES)
+    titles = [each.title for each in section(agreement.outline, "From South to North").sections]
+    assert titles == ["Left · Finder · places", "Right · Finder · places"]
+    ends = lines(section(agreement.outline, "Left · Finder · places").blocks)
+    assert "publishes | South | Left · Finder · places | left | default (not written)" in ends
+    assert {(box.title, box.lines) for box in agreement.graph.boxes} == {
+        ("Finder", ("Seeing · Left",)),
+        ("Finder", ("Seeing · Right",)),
+        ("Arm", ("North",)),
+    }
+
+
 def test_nothing_changed(tmp_path: Path) -> None:
     moved = DUO.replace("  seeing:\n    owner: south\n", "  seeing: # moved\n\n    owner: south\n")
     assert moved != DUO

@@ -89,12 +89,9 @@ def _draw_box(lookup: Lookup, box_id: str, pair: tuple[str, str]) -> Box:
         box = node_boxes.node_box(lookup, lookup.architecture.nodes[element_id.removeprefix("node ")])
     else:
         component = lookup.architecture.components[element_id]
-        lines = (
-            (partner_titles(lookup, component.owners),)
-            if side
-            else (lookup.architecture.groups[component.group].title,)
-        )
-        box = element_boxes.component_box(lookup, component, lines=lines)
+        place = partner_titles(lookup, component.owners) if side else lookup.architecture.groups[component.group].title
+        line = " · ".join(filter(None, (place, element_boxes.join_surrounding_titles(lookup, component))))
+        box = element_boxes.component_box(lookup, component, lines=(line,))
     return replace(box, id=box_id, colour=_PARTNER_HUES[partner_index], cluster=cluster, side=side)
 
 

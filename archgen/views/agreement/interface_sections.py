@@ -12,6 +12,7 @@ from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
 from archgen.views.element_references import message_link
+from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
@@ -119,7 +120,10 @@ class SectionWriter:
         return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows, numbered=False))
 
     def _end_row(self, end: InterfaceEnd, undecided: Inlines) -> tuple[Inlines, ...]:
-        component = (inline_text.component_link(end.component),) if end.component else ()
+        component: Inlines = ()
+        if end.component:
+            place = join_surrounding_titles(self.lookup, end.component)
+            component = (*((Text(f"{place} · "),) if place else ()), inline_text.component_link(end.component))
         port = inline_text.to_inlines(" · ", Text(end.port, code=True)) if end.port else ()
         return (
             inline_text.to_inlines(Text(end.role, strong=not end.is_taker)),

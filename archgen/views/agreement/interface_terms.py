@@ -22,6 +22,7 @@ from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
 from archgen.views.element_references import message_link
+from archgen.views.graphs.element_boxes import name_in_place
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
@@ -130,7 +131,9 @@ def interface_title(lookup: Lookup, interface: PartnerInterface) -> str:
     """Return the name of an interface for people: component and port, or its topic."""
     if interface.output is None:
         return interface.key
-    return f"{lookup.architecture.components[interface.output.component].title} · {interface.output.name}"
+    return (
+        f"{name_in_place(lookup, lookup.architecture.components[interface.output.component])} · {interface.output.name}"
+    )
 
 
 def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interface_timing.TermFact]:

@@ -25,9 +25,10 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
     rows = tuple(
         (
             (type_page_link(each),),
+            _make_code_cell(each.library),
             inline_text.value_or_unknown(first_sentence(each.functionality)),
             _make_base_cell(lookup, each),
-            inline_text.to_inlines(", ".join(each.generic)),
+            _make_code_cell(", ".join(each.generic)),
             (Text(str(count), sort_number=str(count)),),
         )
         for each in architecture.component_types.values()
@@ -35,6 +36,7 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
     )
     columns = (
         Column("Type", 1.2),
+        Column("Library", 0.8),
         Column("Purpose", 2.4),
         Column("Made from", 1),
         Column("Generic names", 0.8),
@@ -60,6 +62,8 @@ def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Blo
 
 def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple[str, Inlines]]:
     architecture = lookup.architecture
+    if component_type.library:
+        yield "Library", _make_code_cell(component_type.library)
     if component_type.owner:
         yield "Owner", inline_text.owner_links(architecture, [component_type.owner])
     if component_type.base:
@@ -76,6 +80,10 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
     yield "Instances", inline_text.to_inlines(", ".join(filter(None, (count, words))))
 
 
+def _make_code_cell(text: str | None) -> Inlines:
+    return (Text(text, code=True),) if text else ()
+
+
 def _base_id(component_type: ComponentType) -> str:
     return (component_type.base or "").partition("<")[0].strip()
 
@@ -83,7 +91,7 @@ def _base_id(component_type: ComponentType) -> str:
 def _make_base_cell(lookup: Lookup, component_type: ComponentType) -> Inlines:
     base = lookup.architecture.component_types.get(_base_id(component_type))
     if base is None:
-        return inline_text.to_inlines(component_type.base or "")
+        return inline_text.to_inlines(component_type.base) if component_type.base else ()
     return (type_page_link(base),)
 
 

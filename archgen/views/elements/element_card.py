@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +23,9 @@ from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state, name_chain
 from archgen.views.tables.type_fields import list_field_lines
 from archgen.views.timing.element_timing import make_whole_fact
+
+_COMPONENT_KINDS = frozenset({"component", "composed"})
+_NAMED_AFTER_COMPONENTS = frozenset({"node", "frame"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +80,14 @@ def kinds_by_id(lookup: Lookup) -> dict[str, list[str]]:
 def find_elements(lookup: Lookup, name: str) -> list[tuple[str, str]]:
     """Find the elements that a name may mean, as (kind, id) pairs.
 
-    Full ids win; then ids that end in the name; then titles of groups and components, ignoring case.
+    Full ids win; then ids that end in the name; then titles of groups and components, ignoring case. A node or a frame
+    does not hide the components of its name: most nodes that nobody wrote are called after theirs.
     """
     kinds_of = kinds_by_id(lookup)
     if name in kinds_of:
-        return [(kind, name) for kind in kinds_of[name]]
+        has_component_name = _NAMED_AFTER_COMPONENTS.issuperset(kinds_of[name])
+        components = _list_components_called(name, kinds_of) if has_component_name else ()
+        return [*components, *((kind, name) for kind in kinds_of[name])]
     folded_name = name.casefold()
     # `.` ends a group or component in an id, `/` a namespace in a topic or node: `scan` finds `/lidar/scan`.
     suffix_matches = [
@@ -95,6 +101,12 @@ def find_elements(lookup: Lookup, name: str) -> list[tuple[str, str]]:
         for kind in kinds
         if _element_title(lookup, kind, key).casefold() == folded_name
     ]
+
+
+def _list_components_called(name: str, kinds_of: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:
+    for element_id, kinds in kinds_of.items():
+        if element_id.endswith(f".{name}"):
+            yield from ((kind, element_id) for kind in kinds if kind in _COMPONENT_KINDS)
 
 
 def _element_title(lookup: Lookup, kind: str, element_id: str) -> str:

@@ -78,6 +78,11 @@ def join_surrounding_titles(lookup: Lookup, component: Component) -> str:
     return " · ".join(shells[name].title for name in list_surrounding(lookup.architecture, component.id))
 
 
+def name_in_place(lookup: Lookup, component: Component) -> str:
+    """Return the title of a component, with those of the composed ones around it before it."""
+    return " · ".join(filter(None, (join_surrounding_titles(lookup, component), component.title)))
+
+
 def join_owner_titles(lookup: Lookup, partner_ids: Iterable[str]) -> str:
     """Join the titles of partners; empty where there are none."""
     # An owner that is no declared partner is a finding, not an error: it is shown as written.

@@ -9,9 +9,8 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.model.component import Component
 from archgen.views.chart_shapes import Drawing
-from archgen.views.graphs.element_boxes import join_surrounding_titles
+from archgen.views.graphs.element_boxes import name_in_place
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
@@ -144,7 +143,9 @@ class _ReportPrinter:
         for group_id in self.lookup.shown_groups():
             sections = tuple(
                 Section(
-                    f"implementation:{component.id}", self._name_place(component), self._make_ros_blocks(component.id)
+                    f"implementation:{component.id}",
+                    name_in_place(self.lookup, component),
+                    self._make_ros_blocks(component.id),
                 )
                 for component in self.lookup.shown_components(group_id)
                 if self.lookup.nodes_of.get(component.id)
@@ -152,10 +153,6 @@ class _ReportPrinter:
             if sections:
                 title = self.lookup.architecture.groups[group_id].title
                 yield Section(f"nodes:{group_id}", title, (), sections, appendix=True)
-
-    def _name_place(self, component: Component) -> str:
-        """Return the title of a component, with those of the composed ones around it."""
-        return " · ".join(filter(None, (join_surrounding_titles(self.lookup, component), component.title)))
 
     def _split_timing(self, section: Section) -> Iterator[Section]:
         """Yield the chapter of timing with its verdicts, and the annex of its tables."""

@@ -83,6 +83,23 @@ def _arrow(arrow: Arrow) -> str:
     return f"{arrow.tail} > {arrow.head}" + (f" {arrow.label} ({arrow.change})" if arrow.change else "")
 
 
+def test_a_component_inside_of_another_says_in_which(tmp_path: Path) -> None:
+    text = """archgen: 1
+component_types: {eye: {components: {finder: {outputs: {o: std_msgs/msg/Empty}, timing: {rate: 10 Hz}}}}}
+groups: {g: {components: {left: {is: eye}, right: {is: eye}}}}
+"""
+    sides = []
+    for name, content in (("before", text), ("after", text.replace("10 Hz", "20 Hz"))):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "robot.yaml").write_text(content, encoding="utf-8")
+        sides.append(ProjectVersion(name, pipeline.check_project(tmp_path / name / "robot.yaml")))
+    components = draw_changes(compare_named_versions(*sides))[0]
+    assert [(box.title, box.lines) for box in components.boxes] == [
+        ("~ Finder", ("Left",)),
+        ("~ Finder", ("Right",)),
+    ]
+
+
 def test_added_removed_and_changed_stand_in_one_picture(found: Compared) -> None:
     change = found(
         ("      lidar: {outputs: {scan: Scan}}\n", "      radar: {outputs: {tracks: People}}\n"),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from archgen.compare import Comparison
+from archgen.model.component import Component
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graph_shapes import Box, Cluster, ElementChange, Graph
 from archgen.views.graphs import element_boxes
@@ -214,9 +215,7 @@ def _draw_boxes(overlay: _OverlaidComponents, shown_components: set[str]) -> Ite
 def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
     change = overlay.change_notes.component_changes.get(name)
     component = overlay.new_lookup.architecture.components.get(name)
-    component_box = (
-        element_boxes.component_box(overlay.new_lookup, component) if component else _draw_removed_box(overlay, name)
-    )
+    component_box = _draw_placed_box(overlay.new_lookup, component) if component else _draw_removed_box(overlay, name)
     group_id = overlay.group_of(name)
     plain_box = replace(
         component_box, id=name, style="component", colour=None, cluster=group_id, ref=f"changes:{group_id}"
@@ -224,7 +223,7 @@ def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
     broken_partners = overlay.broken_components.get(name, ())
     if broken_partners:
         sign = CHANGE_SIGNS[change] if change else BREAK_SIGN
-        plain_box = replace(plain_box, lines=(f"breaks {', '.join(broken_partners)}",), broken=True)
+        plain_box = replace(plain_box, lines=(*plain_box.lines, f"breaks {', '.join(broken_partners)}"), broken=True)
         if change is None:
             return replace(plain_box, title=f"{sign} {component_box.title}", badge=None)
     if change is None:
@@ -240,13 +239,15 @@ def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
     )
 
 
+def _draw_placed_box(lookup: Lookup, component: Component) -> Box:
+    """Draw a component with what it stands in below its title: instances hold components of equal titles."""
+    place = element_boxes.join_surrounding_titles(lookup, component)
+    return element_boxes.component_box(lookup, component, lines=(place,) if place else ())
+
+
 def _draw_removed_box(overlay: _OverlaidComponents, name: str) -> Box:
-    return replace(
-        element_boxes.component_box(
-            overlay.old_lookup, overlay.old_lookup.architecture.components[_old_component_id(overlay, name) or name]
-        ),
-        badge=None,
-    )
+    component = overlay.old_lookup.architecture.components[_old_component_id(overlay, name) or name]
+    return replace(_draw_placed_box(overlay.old_lookup, component), badge=None)
 
 
 def _draw_frames(overlay: _OverlaidComponents, shown_components: set[str]) -> Iterator[Cluster]:
