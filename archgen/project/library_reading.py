@@ -1,4 +1,4 @@
-"""Read the libraries of a project: folders of component types and types that several projects share."""
+"""Read the libraries of a project: folders of component types and types that several projects share, and what ships."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import posixpath
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.project.shipped_library import SHIPPED_PATH, choose_distro, list_shipping_distros, read_shipped_document
 from archgen.project.source_reading import ReadingState, read_library_slices
 from archgen.syntax.library_files import LibraryFiles
 from archgen.syntax.project_files import FileRefusal
@@ -22,13 +24,15 @@ _SETTINGS = frozenset({"archgen", "project", "sources", "rules", "layout", "repo
 class LoadedLibrary:
     """A library of which the files have been read: its documents in normal form, in the order in which they are merged.
 
-    They hold component types and types only. `is_complete` is whether all of its files could be read.
+    They hold component types and types only. `is_complete` is whether all of its files could be read, `is_shipped`
+    whether it is the one that ships with archgen: all that it holds counts as written at `at`.
     """
 
     id: str
     at: Span
     documents: tuple[YamlDocument, ...] = ()
     is_complete: bool = True
+    is_shipped: bool = False
 
 
 def list_library_paths(state: ReadingState) -> dict[str, ScalarNode]:
@@ -45,13 +49,18 @@ def list_library_paths(state: ReadingState) -> dict[str, ScalarNode]:
 
 def list_inner_folders(state: ReadingState) -> frozenset[str]:
     """Return the folders of libraries that lie in the project's own: their files are none of the project's."""
-    folders = (posixpath.normpath(path.text) for path in list_library_paths(state).values())
+    folders = (
+        posixpath.normpath(path.text) for path in list_library_paths(state).values() if path.text != SHIPPED_PATH
+    )
     return frozenset(folder for folder in folders if folder != "." and not folder.startswith(("../", "/")))
 
 
-def read_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
+def read_libraries(state: ReadingState, distro: str | None) -> Iterator[LoadedLibrary]:
     """Read the files of all libraries. What is wrong with them goes to the state."""
     for library_id, path in list_library_paths(state).items():
+        if path.text == SHIPPED_PATH:
+            yield _read_shipped_library(state, library_id, path, distro)
+            continue
         folder_files = state.files.open_folder(path.text)
         if isinstance(folder_files, FileRefusal):
             state.diagnostics.append(_diagnose_missing_library(library_id, path, folder_files))
@@ -61,15 +70,33 @@ def read_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
             yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
 
 
-def refuse_libraries(state: ReadingState) -> Iterator[LoadedLibrary]:
-    """Report the libraries of a project of one file that lie elsewhere, as what its `sources` name is not read either."""
+def refuse_libraries(state: ReadingState, distro: str | None) -> Iterator[LoadedLibrary]:
+    """Report the libraries of a project of one file that lie elsewhere, as what its `sources` name is not read either.
+
+    The one that ships lies nowhere else.
+    """
     refusal = FileRefusal(
         "a project of one file holds what it uses of its libraries", "`archgen pack` of the whole project puts it there"
     )
     for library_id, path in list_library_paths(state).items():
+        if path.text == SHIPPED_PATH:
+            yield _read_shipped_library(state, library_id, path, distro)
+            continue
         state.diagnostics.append(_diagnose_missing_library(library_id, path, refusal))
         state.partial = True
         yield LoadedLibrary(library_id, path.span, is_complete=False)
+
+
+def _read_shipped_library(
+    state: ReadingState, library_id: str, path: ScalarNode, distro: str | None
+) -> LoadedLibrary:
+    if choose_distro(distro) in list_shipping_distros():
+        document = read_shipped_document(distro, path.span)
+        return LoadedLibrary(library_id, path.span, (document,), is_shipped=True)
+    message = f"the library `{library_id}` has no component types for the distribution `{distro}`"
+    help_line = f"it has them for {join_words(list_shipping_distros())}"
+    state.diagnostics.append(Diagnostic("missing-library", message, path.span, help=help_line))
+    return LoadedLibrary(library_id, path.span, is_complete=False, is_shipped=True)
 
 
 def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files: LibraryFiles) -> LoadedLibrary:

@@ -13,6 +13,7 @@ from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
 from archgen.project.library_reading import LoadedLibrary, list_inner_folders, read_libraries, refuse_libraries
 from archgen.project.project_search import PROJECT_FILE, find_project
+from archgen.project.shipped_library import describe_missing_type
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles
@@ -68,6 +69,12 @@ class LoadedProject:
         """The libraries of which something could not be read."""
         return frozenset(library.id for library in self.libraries if not library.is_complete)
 
+    def describe_missing_type(self, name: str) -> str | None:
+        """Return what is to be known of a type that a library lacks, by its name with the library's id; None for nothing."""
+        library_id, _, type_id = name.partition(".")
+        is_shipped = any(library.id == library_id and library.is_shipped for library in self.libraries)
+        return describe_missing_type(type_id, self.distro) if is_shipped else None
+
 
 def load_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> LoadedProject:
     """Read the project in a folder, in a file, or (None) around the current folder."""
@@ -86,8 +93,13 @@ def load_from_files(files: ProjectFiles, first_file: str, parsed_slices: ParsedS
     inner_folders = list_inner_folders(state)
     if inner_folders:
         state = _read_slices(files, first_file, parsed_slices, inner_folders)
-    libraries = read_libraries(state) if first_file == PROJECT_FILE else refuse_libraries(state)
-    return _finish_loading(state, first_file, tuple(libraries))
+    # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
+    # In a conflict the first value wins, as it does in merging.
+    distro = next(
+        (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
+    )
+    read = read_libraries if first_file == PROJECT_FILE else refuse_libraries
+    return _finish_loading(state, first_file, distro, tuple(read(state, distro)))
 
 
 def _read_slices(
@@ -100,7 +112,9 @@ def _read_slices(
     return state
 
 
-def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[LoadedLibrary, ...]) -> LoadedProject:
+def _finish_loading(
+    state: ReadingState, first_file: str, distro: str | None, libraries: tuple[LoadedLibrary, ...]
+) -> LoadedProject:
     # The default id and title come from the folder's name, or from the file's. A bare clone is called `robot.git`.
     stem = state.files.root.name.removesuffix(".git") if first_file == PROJECT_FILE else Path(first_file).stem
     name_words = re.findall(r"[a-z0-9]+", stem.lower())
@@ -113,11 +127,6 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         for file in expand_source_pattern(state, pattern)
     ]
     rule_entries = list(_list_rule_entries(state))
-    # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
-    # In a conflict the first value wins, as it does in merging.
-    distro = next(
-        (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
-    )
     return LoadedProject(
         files=state.files,
         first_file=first_file,
