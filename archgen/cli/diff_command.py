@@ -112,6 +112,40 @@ COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {
 """The functions that write a comparison, by the name of the format."""
 
 
+def _list_projects_below(after: str | None, project: Path | None) -> tuple[str, ...]:
+    from archgen.git import GitError
+    from archgen.products.repository_comparison import list_projects_below
+
+    try:
+        return list_projects_below(project, after)
+    except (GitError, OSError):  # said better by whoever reads the versions
+        return ()
+
+
+def _compare_projects(  # noqa: PLR0913 - what the verb was asked
+    folders: tuple[str, ...],
+    before: str | None,
+    after: str | None,
+    project: Path | None,
+    *,
+    breaking: bool,
+    exit_code: bool,
+) -> None:
+    """Print a line for each project of a repository; end with 1 where the options ask for it."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.products.repository_comparison import compare_projects_below
+
+    with command_support.explain_missing_versions():
+        comparisons = list(compare_projects_below(project, folders, before, after))
+    width = max(len(each.folder) for each in comparisons)
+    for each in comparisons:
+        click.echo(make_visible(f"{each.folder:{width}}  {each.summary}"))
+    if any(each.has_changes for each in comparisons):
+        click.echo("\n`archgen diff -C FOLDER` says what changed in a project.")
+    is_refused = breaking and any(each.is_refused for each in comparisons)
+    sys.exit(1 if is_refused or (exit_code and any(each.has_changes for each in comparisons)) else 0)
+
+
 def _write_output(document: str | bytes, output: Path | None) -> None:
     """Write a document to a file, all of it or nothing, or to standard output."""
     from archgen.emit import file_tree
@@ -152,11 +186,19 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
 
     A and B are revisions of git (`main`, `v1.2`, `HEAD~3`), folders, or single or packed files. B left out is the working
     tree; A left out is the commit at which the branch left its main line. `A..B` and `A...B` mean what they mean to git.
-    Order, comments, formatting and moves between files are no changes.
+    Order, comments, formatting and moves between files are no changes. In a folder that only holds projects, such as the
+    top of a repository, each of them has a line: what changed, and in which library.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
     from archgen.products import compared_versions
 
+    projects = _list_projects_below(after, project)
+    if projects:
+        if form != "text" or select is not None or output is not None:
+            msg = f"there are {len(projects)} projects here: name one with -C"
+            raise click.UsageError(msg)
+        _compare_projects(projects, before, after, project, breaking=breaking, exit_code=exit_code)
+        return
     old_version, new_version = _read_versions(before, after, project)
     comparison = _select_changes(
         compared_versions.compare_named_versions(old_version, new_version), old_version, new_version, select

@@ -190,7 +190,7 @@ def _diagnose_arguments(
 ) -> Diagnostic:
     form = f"{entry.key}<{', '.join(generic_names)}>"
     if generic_names:
-        asked = "one type" if len(generic_names) == 1 else f"{len(generic_names)} types"
+        asked = "type" if len(generic_names) == 1 else f"{len(generic_names)} types"
         message = f"`{reference.text}` does not say for which {asked} `{form}` stands"
         help_line = f"write `{form}` with types of the project"
     else:

@@ -6,6 +6,7 @@ escaped in it, and GitLab reads `[` as a section: `?` stands for such a characte
 
 from __future__ import annotations
 
+import posixpath
 import re
 from dataclasses import dataclass
 
@@ -36,7 +37,7 @@ def render_codeowners(ownership: Ownership, prefix: str = "") -> CodeownersFile:
     """Render CODEOWNERS. `prefix` is the project's folder relative to the repository's root."""
     lines: list[str] = []
     for file, partners in sorted(ownership.files.items()):
-        path = file_pattern(f"{prefix}/{file}" if prefix else file)
+        path = file_pattern(posixpath.normpath(posixpath.join(prefix, file)))
         # A dict, not a set: two partners may share a reviewer, and the order of the file must not change.
         handles = dict.fromkeys(
             name for partner in partners for name in partner.reviewers if REVIEWER_HANDLE.match(name)

@@ -69,7 +69,7 @@ Good:
 )
 
 
-def apply_ignores(
+def apply_ignores(  # noqa: PLR0913 - what the project says of its comments, by name
     diagnostics: Iterable[Diagnostic],
     ignores: Iterable[SilencingComment],
     rules: Mapping[str, Rule],

@@ -26,8 +26,13 @@ class CommitContents:
         documents = {document.file: self._digest(document, loaded_project) for document in loaded_project.documents}
         blobs = loaded_project.files.blobs if isinstance(loaded_project.files, CommittedFiles) else {}
         other_files = tuple((path, blob.object_id) for path, blob in blobs.items() if path not in documents)
+        libraries = tuple(
+            (library.id, self._digest(document, loaded_project))
+            for library in loaded_project.libraries
+            for document in library.documents
+        )
         messages = tuple((diagnostic.rule, diagnostic.message) for diagnostic in loaded_project.diagnostics)
-        return (tuple(documents.items()), other_files, messages)
+        return (tuple(documents.items()), libraries, other_files, messages)
 
     def _digest(self, document: YamlDocument, loaded_project: LoadedProject) -> str:
         """Return a document's digest. Where a comment silences findings, lines matter: then the whole text counts."""

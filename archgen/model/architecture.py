@@ -251,6 +251,11 @@ class Architecture:
                 base = self.component_types.get(name)
                 type_text = base.base if base else None
 
+    def list_libraries_of(self, component: Component) -> Iterator[str]:
+        """Yield the libraries of the component types that a component is an instance of, or is part of, each once."""
+        names = (self.component_types.get(text.partition("<")[0]) for text in self.list_types_of(component))
+        yield from dict.fromkeys(each.library for each in names if each is not None and each.library is not None)
+
     def list_ports(self) -> Iterator[Input | Output]:
         """Yield all ports: outputs, then inputs."""
         yield from self.outputs.values()

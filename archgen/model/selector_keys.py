@@ -53,9 +53,10 @@ def find_by_key(
     """Return the components and nodes that a key's value selects; `*` in it stands for any characters."""
     if key == "type":
         return SelectorHit(frozenset(_find_by_type(architecture, " ".join(value.split()))), frozenset())
-    if key == "is":
+    if key in _ORIGIN_KEYS:
+        list_origins = _ORIGIN_KEYS[key]
         instances = (
-            c.id for c in architecture.components.values() if _matches_any(value, architecture.list_types_of(c))
+            c.id for c in architecture.components.values() if _matches_any(value, list_origins(architecture, c))
         )
         return SelectorHit(frozenset(instances), frozenset())
     if key == "tag":
@@ -97,6 +98,10 @@ _COMPONENT_KEYS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
     "role": lambda component: (component.role,),
     "requirement": lambda component: (use.text for use in component.requirements if use.is_id),
     "behaviour": lambda component: (component.timing.behaviour if component.timing else None,),
+}
+_ORIGIN_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str]]] = {
+    "is": lambda architecture, component: architecture.list_types_of(component),
+    "library": lambda architecture, component: architecture.list_libraries_of(component),
 }
 _NODE_KEYS: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
     "owner": lambda node: node.owners,

@@ -31,6 +31,7 @@ SELECTOR_KEYS = (
     "finding",
     "node",
     "is",
+    "library",
     "parameter",
 )
 ALL_STEPS = -1

@@ -19,11 +19,16 @@ class TypePatterns:
     nodes: Mapping[str, Node] = field(default_factory=dict)
     """The nodes that components bring along, by the id of their pattern as it was linked."""
 
-    def list_parts(self, path: str) -> Iterator[tuple[str, Component]]:
+    def list_parts(self, type_id: str) -> Iterator[tuple[str, Component]]:
         """Yield what is inside of a type, to any depth, each with its path below the type."""
-        pattern = self.components.get(path)
+        # A type of a library has a dot in its id, so that the path is what follows it, not what follows the first dot.
+        return self._list_parts_below(type_id, "")
+
+    def _list_parts_below(self, type_id: str, path: str) -> Iterator[tuple[str, Component]]:
+        pattern = self.components.get(f"{type_id}{path}")
         for child in pattern.children if pattern else ():
             inner_path = f"{path}.{child.rpartition('.')[2]}"
-            if inner_path in self.components:
-                yield inner_path.partition(".")[2], self.components[inner_path]
-                yield from self.list_parts(inner_path)
+            inner_pattern = self.components.get(f"{type_id}{inner_path}")
+            if inner_pattern is not None:
+                yield inner_path.removeprefix("."), inner_pattern
+                yield from self._list_parts_below(type_id, inner_path)

@@ -38,10 +38,12 @@ def make_codeowners(checked_project: CheckedProject, prefix: str | None = None) 
 def _add_shared_files(ownership: Ownership, checked_project: CheckedProject) -> Ownership:
     """Return an ownership in which all partners review what is nobody's, and each the file of its agreements.
 
-    What is nobody's decides about everybody: archgen.yaml holds the policy, and types and messages cross all borders.
+    What is nobody's decides about everybody: archgen.yaml holds the policy, and types, messages and libraries cross all
+    borders.
     """
     partners = tuple(checked_project.architecture.partners.values())
-    shared_files = dict.fromkeys(checked_project.loaded_project.interface_files, partners)
+    loaded_project = checked_project.loaded_project
+    shared_files = dict.fromkeys((*loaded_project.interface_files, *loaded_project.library_files), partners)
     owned_files = {file: owners or partners for file, owners in ownership.files.items()}
     agreement_files = {agreement_file(partner.id): (partner,) for partner in partners}
     policy_file = {checked_project.loaded_project.first_file: partners}

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.project.project_search import PROJECT_FILE
 from archgen.project.shipped_library import SHIPPED_PATH, choose_distro, list_shipping_distros, read_shipped_document
 from archgen.project.source_reading import ReadingState, read_library_slices
 from archgen.syntax.library_files import LibraryFiles
-from archgen.syntax.project_files import FileRefusal
+from archgen.syntax.project_files import FileRefusal, ProjectFiles
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
 
 LIBRARY_SECTIONS = ("component_types", "types")
@@ -24,79 +25,92 @@ _SETTINGS = frozenset({"archgen", "project", "sources", "rules", "layout", "repo
 class LoadedLibrary:
     """A library of which the files have been read: its documents in normal form, in the order in which they are merged.
 
-    They hold component types and types only. `is_complete` is whether all of its files could be read, `is_shipped`
-    whether it is the one that ships with archgen: all that it holds counts as written at `at`.
+    They hold component types and types only. `folder` starts at the project's folder, "" for a library that could not be
+    read, and for the one that ships with archgen (`is_shipped`): all that it holds counts as written at `at`.
+    `is_complete` is whether all of its files could be read.
     """
 
     id: str
     at: Span
+    folder: str = ""
     documents: tuple[YamlDocument, ...] = ()
     is_complete: bool = True
     is_shipped: bool = False
 
 
-def list_library_paths(state: ReadingState) -> dict[str, ScalarNode]:
-    """Return where the libraries lie, by their ids, as far as that is written."""
-    paths: dict[str, ScalarNode] = {}
-    for document in state.documents:
-        libraries = document.root.get("libraries")
-        for entry in libraries if isinstance(libraries, MappingNode) else ():
-            path = entry.value.get("path") if isinstance(entry.value, MappingNode) else None
-            if isinstance(path, ScalarNode) and path.value is not None:
-                paths.setdefault(entry.key, path)
-    return paths
+def list_library_paths(root: MappingNode) -> dict[str, ScalarNode]:
+    """Return where the libraries that a file names lie, by their ids; what it holds itself and what ships lies nowhere."""
+    return {library_id: path for library_id, path in _list_written_paths(root).items() if path.text != SHIPPED_PATH}
 
 
-def list_inner_folders(state: ReadingState) -> frozenset[str]:
+def _list_written_paths(root: MappingNode) -> dict[str, ScalarNode]:
+    libraries = root.get("libraries")
+    return {
+        entry.key: path
+        for entry in (libraries if isinstance(libraries, MappingNode) else ())
+        if isinstance(entry.value, MappingNode)
+        and isinstance(path := entry.value.get("path"), ScalarNode)
+        and path.value is not None
+    }
+
+
+def list_inner_folders(root: MappingNode) -> frozenset[str]:
     """Return the folders of libraries that lie in the project's own: their files are none of the project's."""
-    folders = (
-        posixpath.normpath(path.text) for path in list_library_paths(state).values() if path.text != SHIPPED_PATH
-    )
+    folders = (posixpath.normpath(path.text) for path in list_library_paths(root).values())
     return frozenset(folder for folder in folders if folder != "." and not folder.startswith(("../", "/")))
 
 
-def read_libraries(state: ReadingState, distro: str | None) -> Iterator[LoadedLibrary]:
-    """Read the files of all libraries. What is wrong with them goes to the state."""
-    for library_id, path in list_library_paths(state).items():
-        if path.text == SHIPPED_PATH:
-            yield _read_shipped_library(state, library_id, path, distro)
-            continue
-        folder_files = state.files.open_folder(path.text)
-        if isinstance(folder_files, FileRefusal):
-            state.diagnostics.append(_diagnose_missing_library(library_id, path, folder_files))
-            state.partial = True
-            yield LoadedLibrary(library_id, path.span, is_complete=False)
-        else:
-            yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
+def read_libraries(state: ReadingState, first_file: str) -> Iterator[LoadedLibrary]:
+    """Read the files of all libraries. What is wrong with them goes to the state.
 
-
-def refuse_libraries(state: ReadingState, distro: str | None) -> Iterator[LoadedLibrary]:
-    """Report the libraries of a project of one file that lie elsewhere, as what its `sources` name is not read either.
-
-    The one that ships lies nowhere else.
+    Only archgen.yaml names libraries: all partners answer for it, and what else a project consists of must be known
+    before its other files are read.
     """
-    refusal = FileRefusal(
-        "a project of one file holds what it uses of its libraries", "`archgen pack` of the whole project puts it there"
-    )
-    for library_id, path in list_library_paths(state).items():
-        if path.text == SHIPPED_PATH:
-            yield _read_shipped_library(state, library_id, path, distro)
-            continue
-        state.diagnostics.append(_diagnose_missing_library(library_id, path, refusal))
-        state.partial = True
-        yield LoadedLibrary(library_id, path.span, is_complete=False)
+    for document in state.documents:
+        for library_id, path in list_library_paths(document.root).items():
+            folder_files = _open_library(state, first_file, path)
+            if isinstance(folder_files, FileRefusal):
+                state.diagnostics.append(_diagnose_missing_library(library_id, path, folder_files))
+                state.partial = True
+                yield LoadedLibrary(library_id, path.span, is_complete=False)
+            else:
+                yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
 
 
-def _read_shipped_library(
-    state: ReadingState, library_id: str, path: ScalarNode, distro: str | None
-) -> LoadedLibrary:
-    if choose_distro(distro) in list_shipping_distros():
-        document = read_shipped_document(distro, path.span)
-        return LoadedLibrary(library_id, path.span, (document,), is_shipped=True)
-    message = f"the library `{library_id}` has no component types for the distribution `{distro}`"
-    help_line = f"it has them for {join_words(list_shipping_distros())}"
-    state.diagnostics.append(Diagnostic("missing-library", message, path.span, help=help_line))
-    return LoadedLibrary(library_id, path.span, is_complete=False, is_shipped=True)
+def _open_library(state: ReadingState, first_file: str, path: ScalarNode) -> ProjectFiles | FileRefusal:
+    if first_file != PROJECT_FILE:
+        # What `sources` of such a file name is not read either.
+        return FileRefusal(
+            "a project of one file holds what it uses of its libraries",
+            "`archgen pack` of the whole project puts it there",
+        )
+    return _find_file_refusal(path, first_file) or state.files.open_folder(path.text)
+
+
+def _find_file_refusal(path: ScalarNode, first_file: str) -> FileRefusal | None:
+    if path.span.file == first_file:
+        return None
+    return FileRefusal(f"only {PROJECT_FILE} names libraries", "write it there, below `libraries`")
+
+
+def read_shipped_libraries(state: ReadingState, first_file: str, distro: str | None) -> Iterator[LoadedLibrary]:
+    """Read what ships with archgen for a distribution, for each library that is `builtin`."""
+    for document in state.documents:
+        for library_id, path in _list_written_paths(document.root).items():
+            if path.text == SHIPPED_PATH:
+                refusal = _find_file_refusal(path, first_file) or _find_distro_refusal(distro)
+                if refusal:
+                    state.diagnostics.append(_diagnose_missing_library(library_id, path, refusal))
+                    state.partial = True
+                documents = () if refusal else (read_shipped_document(distro, path.span),)
+                yield LoadedLibrary(library_id, path.span, "", documents, not refusal, is_shipped=True)
+
+
+def _find_distro_refusal(distro: str | None) -> FileRefusal | None:
+    distros = list_shipping_distros()
+    if choose_distro(distro) in distros:
+        return None
+    return FileRefusal(f"nothing ships for the distribution `{distro}`", f"component types ship for {join_words(distros)}")
 
 
 def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files: LibraryFiles) -> LoadedLibrary:
@@ -116,7 +130,7 @@ def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files:
     if not documents and is_complete:
         message = f"no file in `{path.text}` holds `component_types` or `types`"
         state.diagnostics.append(Diagnostic("missing-library", message, path.span, severity=Severity.WARNING))
-    return LoadedLibrary(library_id, path.span, tuple(documents), is_complete)
+    return LoadedLibrary(library_id, path.span, files.folder, tuple(documents), is_complete)
 
 
 def _find_unused_sections(document: YamlDocument, library_id: str) -> Iterator[Diagnostic]:

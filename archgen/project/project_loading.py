@@ -11,7 +11,12 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
-from archgen.project.library_reading import LoadedLibrary, list_inner_folders, read_libraries, refuse_libraries
+from archgen.project.library_reading import (
+    LoadedLibrary,
+    list_inner_folders,
+    read_libraries,
+    read_shipped_libraries,
+)
 from archgen.project.project_search import PROJECT_FILE, find_project
 from archgen.project.shipped_library import describe_missing_type
 from archgen.project.slice_parsing import ParsedSlices
@@ -87,34 +92,15 @@ def load_from_files(files: ProjectFiles, first_file: str, parsed_slices: ParsedS
 
     Slices in `parsed_slices` are not parsed again, and new ones are added to it.
     """
-    parsed_slices = {} if parsed_slices is None else parsed_slices
-    state = _read_slices(files, first_file, parsed_slices)
-    # Which folders are libraries is known when all slices are read: those in them are taken out by reading once more.
-    inner_folders = list_inner_folders(state)
-    if inner_folders:
-        state = _read_slices(files, first_file, parsed_slices, inner_folders)
-    # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
-    # In a conflict the first value wins, as it does in merging.
-    distro = next(
-        (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
-    )
-    read = read_libraries if first_file == PROJECT_FILE else refuse_libraries
-    return _finish_loading(state, first_file, distro, tuple(read(state, distro)))
-
-
-def _read_slices(
-    files: ProjectFiles, first_file: str, parsed_slices: ParsedSlices, skipped_folders: frozenset[str] = frozenset()
-) -> ReadingState:
-    state = ReadingState(files, parsed_slices=parsed_slices, skipped_folders=skipped_folders)
+    state = ReadingState(files, parsed_slices=parsed_slices)
     read_slice(state, first_file)
     if first_file == PROJECT_FILE:  # a file of any other name is the whole project: its `sources` are not followed
+        state.skipped_folders = list_inner_folders(state.documents[0].root) if state.documents else frozenset()
         read_sources(state)
-    return state
+    return _finish_loading(state, first_file, tuple(read_libraries(state, first_file)))
 
 
-def _finish_loading(
-    state: ReadingState, first_file: str, distro: str | None, libraries: tuple[LoadedLibrary, ...]
-) -> LoadedProject:
+def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[LoadedLibrary, ...]) -> LoadedProject:
     # The default id and title come from the folder's name, or from the file's. A bare clone is called `robot.git`.
     stem = state.files.root.name.removesuffix(".git") if first_file == PROJECT_FILE else Path(first_file).stem
     name_words = re.findall(r"[a-z0-9]+", stem.lower())
@@ -127,6 +113,12 @@ def _finish_loading(
         for file in expand_source_pattern(state, pattern)
     ]
     rule_entries = list(_list_rule_entries(state))
+    # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
+    # In a conflict the first value wins, as it does in merging.
+    distro = next(
+        (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
+    )
+    libraries = (*libraries, *read_shipped_libraries(state, first_file, distro))
     return LoadedProject(
         files=state.files,
         first_file=first_file,

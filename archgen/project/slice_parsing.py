@@ -133,12 +133,12 @@ long word without a colon is scanned once, not once for each of its letters.
 
 
 _SETTINGS_BLOCKS = tuple(
-    re.compile(rf"^{section}:.*(?:\n(?![A-Za-z\"']).*)*", re.MULTILINE) for section in ("sources", "ros")
+    re.compile(rf"^{section}:.*(?:\n(?![A-Za-z\"']).*)*", re.MULTILINE) for section in ("sources", "libraries", "ros")
 )
 
 
 def _recover_settings(parsed_slice: Slice) -> YamlDocument | None:
-    """Return `sources` and `ros` of a file that is not YAML, where they are sound by themselves; None if there are none.
+    """Return `sources`, `libraries` and `ros` of a file that is not YAML, where they are sound by themselves; None if there are none.
 
     Without them other files would be read than the project names, and messages judged by no distribution: a slip in one
     line of archgen.yaml would be a hundred findings.

@@ -32,6 +32,35 @@ Good:
 """,
     ),
     Rule(
+        "missing-library",
+        Severity.ERROR,
+        """A library that archgen.yaml names cannot be read.
+
+Why: a library is a folder in the same repository, so that each commit has the library that belongs to it, and a pull request
+from a stranger reads nothing else. It is reached without links, is not around the project's folder, and has no libraries of
+its own; without git it lies below the project's folder. A folder without component types and types is a warning.
+
+Bad:
+
+    # file: archgen.yaml
+    archgen: 1
+    libraries: {common: comon}
+    # file: common/drivers.yaml
+    component_types:
+      laser: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+
+Good:
+
+    # file: archgen.yaml
+    archgen: 1
+    libraries: {common: common}
+    # file: common/drivers.yaml
+    component_types:
+      laser: {outputs: {scan: sensor_msgs/msg/LaserScan}}
+""",
+        fixed=True,
+    ),
+    Rule(
         "missing-source",
         Severity.WARNING,
         """A pattern in `sources` or `ros.interfaces` matches no file.

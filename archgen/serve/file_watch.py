@@ -29,9 +29,9 @@ _SETTLING_TIME = 0.012
 
 @dataclass(frozen=True, slots=True)
 class WatchedPlaces:
-    """What to watch: a folder with all below it (None: nothing but the files), and files wherever they are."""
+    """What to watch: folders with all below them, and files wherever they are."""
 
-    folder: Path | None
+    folders: tuple[Path, ...] = ()
     files: tuple[Path, ...] = ()
 
 
@@ -40,7 +40,7 @@ def take_snapshot(places: WatchedPlaces) -> Snapshot:
     snapshot: dict[str, tuple[int, int, int]] = {}
     for file in places.files:
         _add_file(snapshot, os.fspath(file))
-    pending_folders = [] if places.folder is None else [os.fspath(places.folder)]
+    pending_folders = [os.fspath(folder) for folder in places.folders]
     while pending_folders:
         try:
             entries = list(os.scandir(pending_folders.pop()))

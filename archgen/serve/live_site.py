@@ -110,10 +110,13 @@ class LiveSite:
         return self._shared.status
 
     def list_watched_places(self) -> WatchedPlaces:
-        """Return what may change the site: the project's folder, or the files of a project of one file."""
+        """Return what may change the site: the folders of the project and its libraries, or a project's one file."""
         names = self.checked_project.input_files if self.checked_project else ()
+        libraries = self.checked_project.loaded_project.libraries if self.checked_project else ()
         files = join_paths(self._root, dict.fromkeys((self._first_file, *names)))
-        return WatchedPlaces(self._root if self._first_file == PROJECT_FILE else None, files)
+        # A library in the project's folder is watched twice, which costs less than to find out.
+        library_folders = join_paths(self._root, [library.folder for library in libraries if library.folder])
+        return WatchedPlaces((self._root, *library_folders) if self._first_file == PROJECT_FILE else (), files)
 
     def refresh(self) -> None:
         """Read the files as they are now. What is not sound is not shown: the last sound state stays."""

@@ -88,7 +88,8 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
 
     Only one of a repository `publishes`: there is one site.
     """
-    paths = [f"{folder}/**"] if _PLAIN_PATH_PATTERN.match(folder) else []
+    # Any YAML elsewhere may be a library of the project one day.
+    paths = [f"{folder}/**", "**/*.yaml"] if _PLAIN_PATH_PATTERN.match(folder) else []
     # A folder's name must not become an expression of GitHub; below, not a variable of GitLab.
     inert_folder = folder.replace("${{", "${{ '${{' }}")
     return fill_template(

@@ -175,11 +175,11 @@ def test_a_node_stands_in_the_place_of_the_one_that_its_component_brings(run: Ru
         ),
         (
             "instance body.x filter",
-            "`filter` does not say for which one type `filter<T>` stands; write `filter<T>` with types of the project",
+            "`filter` does not say for which type `filter<T>` stands; write `filter<T>` with types of the project",
         ),
         (
             "instance body.x filter<Goal,Image>",
-            "`filter<Goal,Image>` does not say for which one type `filter<T>` stands; write `filter<T>` with types of the project",
+            "`filter<Goal,Image>` does not say for which type `filter<T>` stands; write `filter<T>` with types of the project",
         ),
         (
             "instance body.x motor<Goal>",

@@ -41,23 +41,21 @@ def places(tmp_path: Path) -> WatchedPlaces:
     root = tmp_path / "robot"
     for name in ("a.yaml", "c.yaml", "chapter.txt", "../outside.txt"):
         write(root / name)
-    return WatchedPlaces(root, join_paths(root, ("chapter.txt", "../outside.txt", "missing.yaml")))
+    return WatchedPlaces((root,), join_paths(root, ("chapter.txt", "../outside.txt", "missing.yaml")))
 
 
 @pytest.mark.parametrize("name", [*CHANGES, *NO_CHANGES])
 def test_a_look_sees_changes_of_the_project(name: str, places: WatchedPlaces) -> None:
     before = take_snapshot(places)
-    assert places.folder is not None
-    (CHANGES | NO_CHANGES)[name](places.folder)
+    (CHANGES | NO_CHANGES)[name](places.folders[0])
     assert (take_snapshot(places) != before) == (name in CHANGES)
 
 
 def test_a_folder_that_links_to_itself_or_cannot_be_read_is_no_trouble(places: WatchedPlaces) -> None:
-    assert places.folder is not None
-    (places.folder / "loop").symlink_to(places.folder)
-    (places.folder / "broken.yaml").symlink_to("nowhere")
+    (places.folders[0] / "loop").symlink_to(places.folders[0])
+    (places.folders[0] / "broken.yaml").symlink_to("nowhere")
     assert len(take_snapshot(places)) == 4
-    assert take_snapshot(WatchedPlaces(places.folder / "missing")) == {}
+    assert take_snapshot(WatchedPlaces((places.folders[0] / "missing",))) == {}
 
 
 def test_one_change_is_told_once_and_only_when_it_is_saved(places: WatchedPlaces) -> None:
@@ -65,16 +63,14 @@ def test_one_change_is_told_once_and_only_when_it_is_saved(places: WatchedPlaces
     stopped, seen = threading.Event(), threading.Event()
 
     def see() -> None:
-        assert places.folder is not None
-        told.append((places.folder / "a.yaml").stat().st_size)
+        told.append((places.folders[0] / "a.yaml").stat().st_size)
         seen.set()
 
     watching = threading.Thread(target=watch_files, args=(lambda: places, see, stopped))
     watching.start()
     try:
         assert not seen.wait(0.3)
-        assert places.folder is not None
-        write(places.folder / "a.yaml", "longer")
+        write(places.folders[0] / "a.yaml", "longer")
         assert seen.wait(10)
         stopped.wait(0.3)
         assert told == [6]

@@ -133,10 +133,21 @@ def test_a_project_of_one_file_is_served(robot: Path) -> None:
     live.start()
     try:
         assert "Alone" in read_text(live, "groups/g.html")
-        assert live.list_watched_places().folder is None
+        assert live.list_watched_places().folders == ()
         assert live.list_watched_places().files == (file,)
     finally:
         live.stop()
+
+
+def test_a_library_is_watched_too(robot: Path) -> None:
+    library = robot / "lib" / "a.yaml"
+    library.parent.mkdir()
+    library.write_text("component_types: {lamp: {}}\n")
+    (robot / "archgen.yaml").write_text(f"{ROBOT}libraries: {{common: lib}}\n")
+    live = LiveSite(robot, OutputOptions())
+    live.refresh()
+    assert live.list_watched_places().folders == (robot, robot / "lib")
+    assert library in live.list_watched_places().files
 
 
 def test_no_project_is_an_error(tmp_path: Path) -> None:

@@ -38,6 +38,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *_list_behaviours((component.timing,)),
                     *(("finding", rule) for rule in rules[component.id]),
                     *(("is", name) for name in architecture.list_types_of(component)),
+                    *(("library", name) for name in architecture.list_libraries_of(component)),
                     *(("parameter", name) for name in component.parameters),
                 )
             )

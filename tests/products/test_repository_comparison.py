@@ -1,0 +1,81 @@
+"""`archgen diff` at the top of a repository: which projects a change touches, and through which library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen import git
+from archgen.products.repository_comparison import compare_projects_below, list_projects_below
+from tests.repositories import commit, repository
+from tests.running import archgen
+
+LIBRARY = "component_types: {laser: {parameters: {range: 5.0}, outputs: {scan: sensor_msgs/msg/LaserScan}}}\n"
+USER = """archgen: 1
+libraries: {common: ../../common}
+partners: {lab: {title: Lab}, plant: {title: Plant}}
+groups:
+  sensing: {owner: lab, components: {front: {is: common.laser}}}
+  driving: {owner: plant, components: {drive: {inputs: {scan: front.scan}}}}
+"""
+PLAIN = "archgen: 1\ngroups: {g: {title: G}}\n"
+
+
+@pytest.fixture
+def top(tmp_path: Path) -> Path:
+    files = {"robots/one/archgen.yaml": USER, "robots/two/archgen.yaml": PLAIN, "common/a.yaml": LIBRARY}
+    return repository(tmp_path, dict(files))
+
+
+def compare(top: Path, first: str | None = "HEAD", second: str | None = None) -> list[tuple[str, str]]:
+    folders = list_projects_below(top, second)
+    return [(each.folder, each.summary) for each in compare_projects_below(top, folders, first, second)]
+
+
+def test_a_change_of_a_library_names_the_projects_that_use_it(top: Path) -> None:
+    (top / "common" / "a.yaml").write_text(LIBRARY.replace("5.0", "6.0"))
+    assert compare(top) == [
+        ("robots/one", "1 change (1 changed); the library `common` changed"),
+        ("robots/two", "nothing changed"),
+    ]
+
+
+def test_a_change_that_breaks_a_partner_says_so(top: Path) -> None:
+    (top / "common" / "a.yaml").write_text(LIBRARY.replace("LaserScan", "Image"))
+    ((_, summary), _) = compare(top)
+    assert summary.endswith("the library `common` changed; breaks Plant")
+
+
+def test_between_commits(top: Path) -> None:
+    commit(top, {"robots/three/archgen.yaml": PLAIN, "robots/two/archgen.yaml": PLAIN.replace("G}", "H}")})
+    assert compare(top, "HEAD~1", "HEAD") == [
+        ("robots/one", "nothing changed"),
+        ("robots/three", "not there before"),
+        ("robots/two", "1 change (1 changed)"),
+    ]
+
+
+def test_a_project_that_is_gone(top: Path) -> None:
+    (top / "robots" / "two" / "archgen.yaml").unlink()
+    assert compare(top)[1] == ("robots/two", "not there any more")
+
+
+def test_in_a_project_or_outside_of_a_repository_there_is_no_list(
+    top: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    assert list_projects_below(top / "robots" / "one", None) == ()
+    with pytest.raises(git.GitError):
+        list_projects_below(tmp_path_factory.mktemp("empty"), None)
+
+
+def test_the_verb_ends_as_it_does_for_one_project(top: Path) -> None:
+    archgen("diff", "HEAD", "--exit-code", cwd=top)
+    (top / "common" / "a.yaml").write_text(LIBRARY.replace("LaserScan", "Image"))
+    done = archgen("diff", "HEAD", "--exit-code", cwd=top, status=1)
+    assert done.stdout.decode().splitlines()[-1] == "`archgen diff -C FOLDER` says what changed in a project."
+    archgen("diff", "HEAD", "--breaking", cwd=top)
+    (top / "robots" / "one" / "archgen.yaml").write_text(USER + "review: {breaking: error}\n")
+    archgen("diff", "HEAD", "--breaking", cwd=top, status=1)
+    refused = archgen("diff", "HEAD", "--format", "json", cwd=top, status=2)
+    assert "there are 2 projects here: name one with -C" in refused.stderr.decode()
