@@ -289,7 +289,10 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
     )
     raw_diagnostics = instance_findings.gather_instance_findings(
-        all_diagnostics, architecture, _list_type_spans(merged_table)
+        all_diagnostics,
+        architecture,
+        _list_type_spans(merged_table),
+        frozenset(library.at for library in loaded_project.libraries if library.is_shipped),
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
     ignores += (*read_parameters.ignores, *loaded_project.library_ignores)

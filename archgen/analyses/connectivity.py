@@ -184,7 +184,8 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     """Nobody reads an output, inside the architecture or outside.
 
     Why: Either a reader is missing, or work is done for nobody. An output for the world outside says so in `external`; what
-    stands on a topic that all nodes share, such as `/tf`, is meant for everybody.
+    stands on a topic that all nodes share, such as `/tf`, is meant for everybody. A component type of a library gives what
+    some project needs: of its instances not every output has to be read.
 
     Bad:
         groups:
@@ -219,9 +220,12 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
     for output in architecture.outputs.values():
-        group = architecture.components[output.component].group
+        component = architecture.components[output.component]
+        group = component.group
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
         if output.id in read_outputs or output.external or output.id in shared_outputs or is_suspected:
+            continue
+        if any(architecture.list_libraries_of(component)):
             continue
         yield Diagnostic(
             "unread-output",
