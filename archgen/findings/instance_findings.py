@@ -46,7 +46,7 @@ def gather_instance_findings(
     `shipped_spans`: what is found there is moved to the component that has it.
     """
     if shipped_spans:
-        diagnostics = [_move_to_component(each, architecture, shipped_spans) for each in diagnostics]
+        diagnostics = [_leave_shipped_place(each, architecture, shipped_spans) for each in diagnostics]
         type_spans = [span for span in type_spans if span not in shipped_spans]
     if not type_spans:
         return list(diagnostics)
@@ -61,13 +61,16 @@ def gather_instance_findings(
     return [*others, *(_join_findings(same, architecture, type_places) for same in gathered.values())]
 
 
-def _move_to_component(
+def _leave_shipped_place(
     diagnostic: Diagnostic, architecture: Architecture, shipped_spans: frozenset[Span]
 ) -> Diagnostic:
+    """Return a finding at the component that it is about, without labels at what nobody can change."""
+    labels = tuple(label for label in diagnostic.labels if label.span not in shipped_spans)
     component = _find_component(architecture, diagnostic.element) if diagnostic.span in shipped_spans else None
-    if component is None or component.at in shipped_spans:
+    span = component.at if component else diagnostic.span
+    if span == diagnostic.span and len(labels) == len(diagnostic.labels):
         return diagnostic
-    return replace(diagnostic, span=component.at, labels=(*diagnostic.labels, Label(diagnostic.span, "of this library")))
+    return replace(diagnostic, span=span, labels=labels)
 
 
 def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_places: _TypePlaces) -> Diagnostic:
