@@ -129,9 +129,7 @@ class _ProjectExpander:
     ) -> None:
         self._root = root
         self._diagnostics: list[Diagnostic] = []
-        self._types = TypeTable(
-            list_type_entries(root), self._diagnostics, incomplete_libraries, describe_missing_type
-        )
+        self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries, describe_missing_type)
         self._overlay = InstanceOverlay(self._diagnostics, self._types.may_replace)
         # By the identity of the written node, which the merged tree or a type's body keeps alive.
         self._expansions: dict[int, _Expansion] = {}

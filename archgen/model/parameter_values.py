@@ -81,7 +81,9 @@ EVERY_PARAMETER = "*"
 def is_open(name: str, components: tuple[Component, ...]) -> bool:
     """Whether a parameter is below an open set of one of the components; all are where `*` is open."""
     return any(
-        opened in {name, EVERY_PARAMETER} or name.startswith(f"{opened}.") for each in components for opened in each.open
+        opened in {name, EVERY_PARAMETER} or name.startswith(f"{opened}.")
+        for each in components
+        for opened in each.open
     )
 
 

@@ -110,7 +110,9 @@ def _find_distro_refusal(distro: str | None) -> FileRefusal | None:
     distros = list_shipping_distros()
     if choose_distro(distro) in distros:
         return None
-    return FileRefusal(f"nothing ships for the distribution `{distro}`", f"component types ship for {join_words(distros)}")
+    return FileRefusal(
+        f"nothing ships for the distribution `{distro}`", f"component types ship for {join_words(distros)}"
+    )
 
 
 def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files: LibraryFiles) -> LoadedLibrary:

@@ -24,7 +24,9 @@ _FOLDER = "ros_library"
 _TABLE_FILE = "distributions.yaml"
 
 
-class _DistributionTable(NamedTuple):
+class DistributionTable(NamedTuple):
+    """For which distributions the shipped types are."""
+
     files: Mapping[str, tuple[str, ...]]
     """The distributions that each file is for."""
     packages: Mapping[str, tuple[str, ...]]
@@ -42,11 +44,11 @@ def load_shipped_types(distro: str | None) -> Mapping[str, MappingEntry]:
 
     They are shared: nobody may change their trees.
     """
-    table = _read_table()
+    table = read_distribution_table()
     entries: dict[str, MappingEntry] = {}
     for file, distros in table.files.items():
         if distro in distros:
-            for entry in _parse_types(file):
+            for entry in parse_shipped_file(file):
                 if distro in table.packages[_package_of(entry.value)]:
                     entries[entry.key] = entry
     return MappingProxyType(dict(sorted(entries.items())))
@@ -78,25 +80,26 @@ def describe_missing_type(name: str, distro: str | None) -> str | None:
 
 def list_shipping_distros() -> tuple[str, ...]:
     """Return the distributions for which types ship."""
-    distros = {distro for file_distros in _read_table().files.values() for distro in file_distros}
+    distros = {distro for file_distros in read_distribution_table().files.values() for distro in file_distros}
     return tuple(distro for distro in KNOWN_DISTROS if distro in distros)
 
 
 @cache
-def _read_table() -> _DistributionTable:
+def read_distribution_table() -> DistributionTable:
+    """Return for which distributions files and packages are; read once."""
     import yaml
 
     # Not archgen's own parser: the file ships with archgen, and no position in it is ever reported.
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     data = yaml.load(resources.resource_path(_FOLDER, _TABLE_FILE).read_text("utf-8"), loader)  # noqa: S506 - safe ones
-    return _DistributionTable(
+    return DistributionTable(
         {name: tuple(distros) for name, distros in data["files"].items()},
         {name: tuple(distros) for name, distros in data["packages"].items()},
     )
 
 
 @cache
-def _parse_types(file: str) -> MappingNode:
+def parse_shipped_file(file: str) -> MappingNode:
     """Return the component types of a shipped file. Raises `ValueError` where it is wrong, which a test rules out."""
     parsed_slice = parse_slice(file, resources.resource_path(_FOLDER, file).read_text("utf-8"))
     diagnostics = parsed_slice.validate_once().diagnostics
