@@ -65,9 +65,22 @@ def project(text: str) -> dict[str, Any]:
         "use_cases": {"UC-1": {}},
         "requirements": {"R-1": {"use_cases": ["UC-1"]}},
         "component_types": {"t": {"inputs": {"in": {"type": kind}}, "outputs": {"made": {"type": kind}}}},
+        "libraries": {
+            "lib": {
+                "component_types": {"u": {"is": "v"}, "v": {"outputs": {"made": {"type": "Borrowed"}}}},
+                "types": {"Borrowed": {"comment": text}},
+            },
+        },
         "groups": {
             "a": {"owner": "p", "urls": {text[:60]: "https://example.org/"}, "components": {"x": _component({}, kind)}},
-            "b": {"components": {"y": _component({"in": {"from": "a.x.out"}}, kind), "z": {}, "s": _compose()}},
+            "b": {
+                "components": {
+                    "y": _component({"in": {"from": "a.x.out"}}, kind),
+                    "z": {},
+                    "s": _compose(),
+                    "w": {"is": "lib.u"},
+                }
+            },
         },
         "nodes": {
             "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
@@ -92,6 +105,8 @@ def project(text: str) -> dict[str, Any]:
     for section in ELEMENTS.keys() & data.keys():
         for element in data[section].values():
             _fill(element, ELEMENTS[section], text)
+    for element in data["libraries"]["lib"]["component_types"].values():
+        _fill(element, "component_type", text)
     return data
 
 

@@ -14,7 +14,7 @@ from archgen.findings.rule_pages import parse_rule_page
 from archgen.pipeline import ALL_RULES, CheckedProject
 from archgen.products import schema_renewal
 from archgen.products.product_writing import write_product_file
-from archgen.views.offered_names import OfferedNames, list_offered_names
+from archgen.views.offered_names import OfferedNames
 
 _LANGUAGE_ID = '"$id": "urn:archgen:schema:1"'
 """Near the beginning of the schema without names, which older versions of `archgen init` wrote."""
@@ -22,7 +22,9 @@ _LANGUAGE_ID = '"$id": "urn:archgen:schema:1"'
 
 def render_schema(checked_project: CheckedProject) -> bytes:
     """Return the schema of a project, as one line of JSON."""
-    return render_names(list_offered_names(checked_project.architecture), schema_renewal.digest_texts(checked_project))
+    return render_names(
+        schema_renewal.list_project_names(checked_project), schema_renewal.digest_texts(checked_project)
+    )
 
 
 def render_names(names: OfferedNames, text_digest: str) -> bytes:

@@ -39,10 +39,22 @@ def renew_schema(checked_project: CheckedProject) -> bool:
     text_digest = digest_texts(checked_project)
     if not head.startswith(MARK) or head.startswith(format_mark(text_digest)):
         return False
+    names = list_project_names(checked_project)
+    return digest_names(names) not in head and _write_names(checked_project.root, names, text_digest)
+
+
+def list_project_names(checked_project: CheckedProject) -> OfferedNames:
+    """Return the names that editors offer, all component types of the project's libraries included."""
+    from archgen.compose.library_types import library_of_type, list_type_entries
+    from archgen.link import mapping_values
     from archgen.views.offered_names import list_offered_names
 
-    names = list_offered_names(checked_project.architecture)
-    return digest_names(names) not in head and _write_names(checked_project.root, names, text_digest)
+    library_types = {
+        name: mapping_values.get_title(mapping_values.get_body(entry), name.rpartition(".")[2])
+        for name, entry in list_type_entries(checked_project.merged_table).items()
+        if library_of_type(name)
+    }
+    return list_offered_names(checked_project.architecture, library_types)
 
 
 def _write_names(root: Path, names: OfferedNames, text_digest: str) -> bool:
@@ -63,9 +75,9 @@ def format_mark(text_digest: str, name_digest: str = "") -> str:
 
 
 def digest_texts(checked_project: CheckedProject) -> str:
-    """Return a digest of the project's YAML files and of what makes schemas of them."""
+    """Return a digest of the YAML files of the project and its libraries, and of what makes schemas of them."""
     checksum = _start_digest()
-    for file in checked_project.yaml_files:
+    for file in (*checked_project.yaml_files, *checked_project.loaded_project.library_files):
         text = checked_project.sources.text_of(file) or ""
         checksum.update(f"{file} {len(text)}\n{text}".encode(errors="surrogatepass"))
     return checksum.hexdigest()[:16]

@@ -38,8 +38,11 @@ OfferedNames = Mapping[str, tuple[OfferedName, ...]]
 """Names by the kind of place where they fit: sections by their own name, references by what they may lead to."""
 
 
-def list_offered_names(architecture: Architecture) -> OfferedNames:
-    """Return all names of a project by where they fit, in the order of the files."""
+def list_offered_names(architecture: Architecture, library_types: Mapping[str, str] = {}) -> OfferedNames:
+    """Return all names of a project by where they fit, in the order of the files.
+
+    `library_types` are the titles of the component types of libraries, used or not, by name.
+    """
     groups = tuple(_list_titles(architecture.groups))
     components = tuple(OfferedName(each.id, _shorten_text(each.title)) for each in architecture.components.values())
     composed = tuple(OfferedName(each.id, _shorten_text(each.title)) for each in architecture.shells.values())
@@ -52,7 +55,6 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             "partners",
             "use_cases",
             "requirements",
-            "component_types",
             "hosts",
             "containers",
             "resources",
@@ -63,7 +65,13 @@ def list_offered_names(architecture: Architecture) -> OfferedNames:
             "policies",
         )
     }
+    own_types = {id_: each for id_, each in architecture.component_types.items() if each.library is None}
     return sections | {
+        "component_types": tuple(_list_titles(own_types)),
+        "component_type_names": (
+            *_list_titles(own_types),
+            *(OfferedName(name, _shorten_text(title)) for name, title in library_types.items()),
+        ),
         "groups": groups,
         "nodes": nodes,
         "types": tuple(

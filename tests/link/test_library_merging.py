@@ -60,6 +60,7 @@ def list_errors(checked: CheckedProject) -> list[str]:
 def test_only_what_is_used_is_in_the_model(robot: Path) -> None:
     architecture = check_project(robot).architecture
     assert list(architecture.component_types) == ["common.driver", "common.filter", "common.head", "common.laser"]
+    assert architecture.component_types["common.head"].title == "Head"
     libraries = {each.name: each.library for each in architecture.types.values() if not each.generic}
     assert libraries == {"Pose": None, "Spot": "common", "Spots": "common"}
     assert architecture.types["Pose"].message == "geometry_msgs/msg/PoseStamped"

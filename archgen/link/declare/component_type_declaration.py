@@ -17,7 +17,7 @@ def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentTy
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
         types[name] = ComponentType(
             id=name,
-            title=mapping_values.get_title(body, name),
+            title=mapping_values.get_title(body, name.rpartition(".")[2]),
             functionality=mapping_values.get_text(whole_body, "functionality"),
             description=mapping_values.get_text(whole_body, "description"),
             owner=mapping_values.get_text(body, "owner"),
