@@ -225,7 +225,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
         if output.id in read_outputs or output.external or output.id in shared_outputs or is_suspected:
             continue
-        if any(architecture.list_libraries_of(component)):
+        if _is_offered_by_library(architecture, component, output):
             continue
         yield Diagnostic(
             "unread-output",
@@ -234,6 +234,13 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
             help=_suggest_reader(architecture, output, is_taken_whole=bool({output.component, group} & whole_targets)),
             element=output.component,
         )
+
+
+def _is_offered_by_library(architecture: Architecture, component: Component, output: Output) -> bool:
+    """Whether a component type of a library has an output: what the project adds to it is the project's."""
+    names = (text.partition("<")[0] for text in architecture.list_types_of(component))
+    types = (architecture.component_types.get(name) for name in names)
+    return any(each is not None and each.library is not None and output.name in each.outputs for each in types)
 
 
 def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:
