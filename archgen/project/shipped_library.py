@@ -7,7 +7,7 @@ distributions of ROS, and in which of them a package is released.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -54,6 +54,8 @@ def load_shipped_types(distro: str | None) -> Mapping[str, MappingEntry]:
     return MappingProxyType(dict(sorted(entries.items())))
 
 
+# The trees of documents are never changed, and the history of a project reads hundreds of commits with the same line.
+@lru_cache(8)
 def read_shipped_document(distro: str | None, span: Span) -> YamlDocument:
     """Return the types that ship for a project's distribution as if all of them were written at a span.
 
