@@ -17,7 +17,7 @@ help:
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
 	@echo "make bench     measure speed and scale"
 	@echo "make golden    renew the expected outputs of example_ramcip"
-	@echo "make pages     renew what is generated from the code: rule pages, interface data"
+	@echo "make pages     renew what is generated: rule pages, interface data, the page of the ROS library"
 
 demo: .make/run
 	$(BIN)/archgen build example_ramcip -o archgen-out/example_ramcip
@@ -61,6 +61,7 @@ golden: .make/test
 pages: .make/test
 	$(BIN)/python tools/make_rule_pages.py
 	$(BIN)/python tools/make_ros_interfaces.py
+	$(BIN)/python tools/make_ros_library_page.py
 
 clean:
 	rm -rf .venv .make archgen-out dist tests/judges/node_modules

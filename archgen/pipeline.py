@@ -234,7 +234,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     )
     merged_table, library_findings = library_merging.merge_libraries(merged_table, loaded_project.libraries)
     merge_findings += library_findings
-    expansion = compose.expand_project(merged_table, loaded_project.incomplete_libraries)
+    expansion = compose.expand_project(
+        merged_table, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
+    )
     outline = element_outline.build_outline(expansion)
     declared_types = declare_project_types(loaded_project, merged_table, expansion, outline, damaged_elements)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
@@ -287,7 +289,10 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), _RULES_BY_NAME),
     )
     raw_diagnostics = instance_findings.gather_instance_findings(
-        all_diagnostics, architecture, _list_type_spans(merged_table)
+        all_diagnostics,
+        architecture,
+        _list_type_spans(merged_table),
+        frozenset(library.at for library in loaded_project.libraries if library.is_shipped),
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
     ignores += (*read_parameters.ignores, *loaded_project.library_ignores)

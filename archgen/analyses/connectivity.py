@@ -184,7 +184,8 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     """Nobody reads an output, inside the architecture or outside.
 
     Why: Either a reader is missing, or work is done for nobody. An output for the world outside says so in `external`; what
-    stands on a topic that all nodes share, such as `/tf`, is meant for everybody.
+    stands on a topic that all nodes share, such as `/tf`, is meant for everybody. A component type of a library gives what
+    some project needs: of its instances not every output has to be read.
 
     Bad:
         groups:
@@ -219,9 +220,12 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
     for output in architecture.outputs.values():
-        group = architecture.components[output.component].group
+        component = architecture.components[output.component]
+        group = component.group
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
         if output.id in read_outputs or output.external or output.id in shared_outputs or is_suspected:
+            continue
+        if _is_offered_by_library(architecture, component, output):
             continue
         yield Diagnostic(
             "unread-output",
@@ -230,6 +234,13 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
             help=_suggest_reader(architecture, output, is_taken_whole=bool({output.component, group} & whole_targets)),
             element=output.component,
         )
+
+
+def _is_offered_by_library(architecture: Architecture, component: Component, output: Output) -> bool:
+    """Whether a component type of a library has an output: what the project adds to it is the project's."""
+    names = (text.partition("<")[0] for text in architecture.list_types_of(component))
+    types = (architecture.component_types.get(name) for name in names)
+    return any(each is not None and each.library is not None and output.name in each.outputs for each in types)
 
 
 def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:

@@ -1,4 +1,4 @@
-"""`archgen list`: list what a selector names, all elements of a kind, or the backends."""
+"""`archgen list`: list what a selector names, all elements of a kind, component types, or the backends."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ LISTABLE_KINDS = (
     "operations",
     "hosts",
     "frames",
+    "component_types",
     "backends",
 )
 
@@ -39,25 +40,36 @@ LISTABLE_KINDS = (
 @click.option(
     "--of", "sort", type=click.Choice(LISTABLE_KINDS), default="components", show_default=True, help="What to list."
 )
+@click.option(
+    "--library",
+    metavar="ID",
+    help="With `--of component_types`: only those of this library; `builtin` are those that ship with archgen.",
+)
 @click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
 @shared_options.project_option
-def command(selector: tuple[str, ...], sort: str, form: str, project: Path | None) -> None:
+def command(selector: tuple[str, ...], sort: str, library: str | None, form: str, project: Path | None) -> None:
     """List what SELECTOR names; without one, everything.
 
     Put a selector that begins with `-` behind `--`. `archgen list --of connections --format csv` is the table of all
     connections, safe to open in a spreadsheet. `--of backends` lists what can be made: by archgen, and by the project's own
-    backends.
+    backends. `--of component_types` lists what `is` may name, of libraries also what nobody uses yet.
     """
+    from archgen.cli import component_type_listing
     from archgen.emit.terminal import list_formats
 
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selector_text = " ".join(selector)
+    if sort in {"backends", "component_types"} and selector_text:
+        msg = f"a selector names elements: `--of {sort}` takes none"
+        raise click.UsageError(msg)
+    if library is not None and sort != "component_types":
+        msg = "`--library` goes with `--of component_types`"
+        raise click.UsageError(msg)
     if sort == "backends":
-        if selector_text:
-            msg = "a selector names elements: `--of backends` takes none"
-            raise click.UsageError(msg)
         columns, rows = _list_backends(checked_project)
+    elif sort == "component_types":
+        columns, rows = component_type_listing.list_component_types(checked_project, library)
     else:
         columns, rows = _list_elements(checked_project, selector_text, sort)
     if form == "text":

@@ -62,10 +62,21 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
     )
 
 
+def _complete_types(context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a component type that the project may name, of a library too."""
+    from archgen.cli import component_type_listing
+
+    return [
+        name
+        for name in component_type_listing.list_type_names(context.params.get("project"))
+        if name.startswith(incomplete)
+    ]
+
+
 @click.command("instance")
 @click.option("--group", "group_", metavar="GROUP", help="Its group.  [default: the only one]")
 @element_adding.add_shared_options
-@click.argument("type_text", metavar="TYPE")
+@click.argument("type_text", metavar="TYPE", shell_complete=_complete_types)
 def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
     name: str,
     type_text: str,
@@ -115,7 +126,11 @@ def _find_type_body(
     from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
     diagnostics: list[Diagnostic] = []
-    table = TypeTable(list_type_entries(checked_project.merged_table), diagnostics)
+    table = TypeTable(
+        list_type_entries(checked_project.merged_table),
+        diagnostics,
+        describe_missing_type=checked_project.loaded_project.describe_missing_type,
+    )
     expression = table.find_type(ScalarNode(type_text, type_text, NO_SPAN), element_id, is_base=is_base)
     if expression is None:
         msg = "; ".join(make_visible(text) for text in (diagnostics[0].message, diagnostics[0].help) if text)

@@ -15,7 +15,7 @@ from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.reference_limits import find_changes_of_reference
 from archgen.compose.type_expressions import TypeExpression
-from archgen.compose.type_table import TypeTable, diagnose_circle, list_generic_names
+from archgen.compose.type_table import MissingTypeDescriber, TypeTable, diagnose_circle, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
@@ -74,16 +74,21 @@ class ExpandedProject:
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
-def expand_project(root: MappingNode, incomplete_libraries: frozenset[str] = frozenset()) -> ExpandedProject:
+def expand_project(
+    root: MappingNode,
+    incomplete_libraries: frozenset[str] = frozenset(),
+    describe_missing_type: MissingTypeDescriber | None = None,
+) -> ExpandedProject:
     """Return a merged project with types written out and composed components taken apart. The tree is not changed.
 
-    Types that `incomplete_libraries` lack are not reported: something in them could not be read.
+    Types that `incomplete_libraries` lack are not reported: something in them could not be read. Others are, with what
+    `describe_missing_type` says of them.
     """
     groups = root.get("groups")
     groups = groups if isinstance(groups, MappingNode) else MappingNode({}, root.span)
     if "component_types" not in root.entries and not _uses_composition(groups):
         return ExpandedProject(root, is_plain=True)
-    return _ProjectExpander(root, incomplete_libraries).expand_groups(groups)
+    return _ProjectExpander(root, incomplete_libraries, describe_missing_type).expand_groups(groups)
 
 
 def _uses_composition(groups: MappingNode) -> bool:
@@ -118,10 +123,15 @@ class _Expansion:
 class _ProjectExpander:
     """Expands the components of a project; equal parts of one type are expanded once and shared."""
 
-    def __init__(self, root: MappingNode, incomplete_libraries: frozenset[str]) -> None:
+    def __init__(
+        self,
+        root: MappingNode,
+        incomplete_libraries: frozenset[str],
+        describe_missing_type: MissingTypeDescriber | None,
+    ) -> None:
         self._root = root
         self._diagnostics: list[Diagnostic] = []
-        self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries)
+        self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries, describe_missing_type)
         self._overlay = InstanceOverlay(self._diagnostics, self._types.may_replace)
         # By the identity of the written node, which the merged tree or a type's body keeps alive.
         self._expansions: dict[int, _Expansion] = {}

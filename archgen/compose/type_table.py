@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from archgen.compose.instance_overlay import InstanceOverlay
@@ -20,6 +20,9 @@ _TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner"})
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""
 
+MissingTypeDescriber = Callable[[str], str | None]
+"""Returns what is to be known of a type that a library lacks, by its name; None for nothing."""
+
 
 @dataclass(slots=True)
 class TypeTable:
@@ -31,6 +34,7 @@ class TypeTable:
     entries: Mapping[str, MappingEntry]
     diagnostics: list[Diagnostic]
     incomplete_libraries: frozenset[str] = frozenset()
+    describe_missing_type: MissingTypeDescriber | None = None
     library_names: dict[str, None] = field(default_factory=dict)
     """The types of libraries that were asked for, in that order."""
     _bodies: dict[TypeExpression, MappingNode | None] = field(default_factory=dict)
@@ -143,7 +147,8 @@ class TypeTable:
         if library and any(self.entries[name].key_span.file == reference.span.file for name in own_names):
             return _diagnose_in_library(reference, library, own_names, element_id)
         ending = next((name for name in names if name.rpartition(".")[2] == expression.name), None)
-        guess = f"did you mean `{ending}`?" if ending else did_you_mean(expression.name, names)
+        guess = self.describe_missing_type(expression.name) if self.describe_missing_type else None
+        guess = guess or (f"did you mean `{ending}`?" if ending else did_you_mean(expression.name, names))
         return Diagnostic(
             "unknown-reference",
             f"no component type named `{expression.name}`",

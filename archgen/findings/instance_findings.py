@@ -1,4 +1,4 @@
-"""Say once what is wrong in a component type, and which of its instances have it."""
+"""Say once what is wrong in a component type, and which of its instances have it; of a shipped type say it at them."""
 
 from __future__ import annotations
 
@@ -35,12 +35,19 @@ def _start_of(span: Span) -> tuple[int, int]:
 
 
 def gather_instance_findings(
-    diagnostics: Iterable[Diagnostic], architecture: Architecture, type_spans: Sequence[Span]
+    diagnostics: Iterable[Diagnostic],
+    architecture: Architecture,
+    type_spans: Sequence[Span],
+    shipped_spans: frozenset[Span] = frozenset(),
 ) -> list[Diagnostic]:
     """Return the findings with those that stand in a component type joined, each with the places of its instances.
 
-    `type_spans` are where component types are written.
+    `type_spans` are where component types are written. All that ships with archgen counts as written in
+    `shipped_spans`: what is found there is moved to the component that has it.
     """
+    if shipped_spans:
+        diagnostics = [_leave_shipped_place(each, architecture, shipped_spans) for each in diagnostics]
+        type_spans = [span for span in type_spans if span not in shipped_spans]
     if not type_spans:
         return list(diagnostics)
     type_places = _TypePlaces(type_spans)
@@ -52,6 +59,18 @@ def gather_instance_findings(
         else:
             others.append(_drop_repeated_labels(diagnostic))
     return [*others, *(_join_findings(same, architecture, type_places) for same in gathered.values())]
+
+
+def _leave_shipped_place(
+    diagnostic: Diagnostic, architecture: Architecture, shipped_spans: frozenset[Span]
+) -> Diagnostic:
+    """Return a finding at the component that it is about, without labels at what nobody can change."""
+    labels = tuple(label for label in diagnostic.labels if label.span not in shipped_spans)
+    component = _find_component(architecture, diagnostic.element) if diagnostic.span in shipped_spans else None
+    span = component.at if component else diagnostic.span
+    if span == diagnostic.span and len(labels) == len(diagnostic.labels):
+        return diagnostic
+    return replace(diagnostic, span=span, labels=labels)
 
 
 def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_places: _TypePlaces) -> Diagnostic:

@@ -29,6 +29,8 @@ class CommitContents:
         libraries = tuple(
             (library.id, self._digest(document, loaded_project))
             for library in loaded_project.libraries
+            # What ships follows from the path and the distribution, which the project's own documents say.
+            if not library.is_shipped
             for document in library.documents
         )
         messages = tuple((diagnostic.rule, diagnostic.message) for diagnostic in loaded_project.diagnostics)

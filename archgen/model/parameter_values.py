@@ -74,9 +74,17 @@ def is_ros_parameter(name: str, *, ros_1: bool) -> bool:
     return (_ROS_1_NAMES if ros_1 else _ROS_2_NAMES).match(name) is not None
 
 
+EVERY_PARAMETER = "*"
+"""The name in `open` below which everything stands."""
+
+
 def is_open(name: str, components: tuple[Component, ...]) -> bool:
-    """Whether a parameter is below an open set of one of the components."""
-    return any(name == opened or name.startswith(f"{opened}.") for each in components for opened in each.open)
+    """Whether a parameter is below an open set of one of the components; all are where `*` is open."""
+    return any(
+        opened in {name, EVERY_PARAMETER} or name.startswith(f"{opened}.")
+        for each in components
+        for opened in each.open
+    )
 
 
 def list_components(architecture: Architecture, node: Node) -> tuple[Component, ...]:

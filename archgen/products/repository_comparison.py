@@ -86,4 +86,5 @@ def _read_library_texts(checked_project: CheckedProject) -> dict[str, list[tuple
     return {
         library.id: [(document.file, checked_project.sources.text_of(document.file)) for document in library.documents]
         for library in checked_project.loaded_project.libraries
+        if not library.is_shipped
     }

@@ -1,4 +1,4 @@
-"""Read the libraries of a project: folders of component types and types that several projects share."""
+"""Read the libraries of a project: folders of component types and types that several projects share, and what ships."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import posixpath
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.project.project_search import PROJECT_FILE
+from archgen.project.shipped_library import SHIPPED_PATH, choose_distro, list_shipping_distros, read_shipped_document
 from archgen.project.source_reading import ReadingState, read_library_slices
 from archgen.syntax.library_files import LibraryFiles
 from archgen.syntax.project_files import FileRefusal, ProjectFiles
@@ -24,7 +26,8 @@ class LoadedLibrary:
     """A library of which the files have been read: its documents in normal form, in the order in which they are merged.
 
     They hold component types and types only. `folder` starts at the project's folder, "" for a library that could not be
-    read. `is_complete` is whether all of its files could be read.
+    read, and for the one that ships with archgen (`is_shipped`): all that it holds counts as written at `at`.
+    `is_complete` is whether all of its files could be read.
     """
 
     id: str
@@ -32,10 +35,15 @@ class LoadedLibrary:
     folder: str = ""
     documents: tuple[YamlDocument, ...] = ()
     is_complete: bool = True
+    is_shipped: bool = False
 
 
 def list_library_paths(root: MappingNode) -> dict[str, ScalarNode]:
-    """Return where the libraries that a file names lie, by their ids; those that it holds itself have no path."""
+    """Return where the libraries that a file names lie, by their ids; what it holds itself and what ships lies nowhere."""
+    return {library_id: path for library_id, path in _list_written_paths(root).items() if path.text != SHIPPED_PATH}
+
+
+def _list_written_paths(root: MappingNode) -> dict[str, ScalarNode]:
     libraries = root.get("libraries")
     return {
         entry.key: path
@@ -76,9 +84,35 @@ def _open_library(state: ReadingState, first_file: str, path: ScalarNode) -> Pro
             "a project of one file holds what it uses of its libraries",
             "`archgen pack` of the whole project puts it there",
         )
-    if path.span.file != first_file:
-        return FileRefusal(f"only {PROJECT_FILE} names libraries", "write it there, below `libraries`")
-    return state.files.open_folder(path.text)
+    return _find_file_refusal(path, first_file) or state.files.open_folder(path.text)
+
+
+def _find_file_refusal(path: ScalarNode, first_file: str) -> FileRefusal | None:
+    if path.span.file == first_file:
+        return None
+    return FileRefusal(f"only {PROJECT_FILE} names libraries", "write it there, below `libraries`")
+
+
+def read_shipped_libraries(state: ReadingState, first_file: str, distro: str | None) -> Iterator[LoadedLibrary]:
+    """Read what ships with archgen for a distribution, for each library that is `builtin`."""
+    for document in state.documents:
+        for library_id, path in _list_written_paths(document.root).items():
+            if path.text == SHIPPED_PATH:
+                refusal = _find_file_refusal(path, first_file) or _find_distro_refusal(distro)
+                if refusal:
+                    state.diagnostics.append(_diagnose_missing_library(library_id, path, refusal))
+                    state.partial = True
+                documents = () if refusal else (read_shipped_document(distro, path.span),)
+                yield LoadedLibrary(library_id, path.span, "", documents, not refusal, is_shipped=True)
+
+
+def _find_distro_refusal(distro: str | None) -> FileRefusal | None:
+    distros = list_shipping_distros()
+    if choose_distro(distro) in distros:
+        return None
+    return FileRefusal(
+        f"nothing ships for the distribution `{distro}`", f"component types ship for {join_words(distros)}"
+    )
 
 
 def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files: LibraryFiles) -> LoadedLibrary:

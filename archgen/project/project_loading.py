@@ -11,8 +11,14 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
-from archgen.project.library_reading import LoadedLibrary, list_inner_folders, read_libraries
+from archgen.project.library_reading import (
+    LoadedLibrary,
+    list_inner_folders,
+    read_libraries,
+    read_shipped_libraries,
+)
 from archgen.project.project_search import PROJECT_FILE, find_project
+from archgen.project.shipped_library import describe_missing_type
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles
@@ -68,6 +74,12 @@ class LoadedProject:
         """The libraries of which something could not be read."""
         return frozenset(library.id for library in self.libraries if not library.is_complete)
 
+    def describe_missing_type(self, name: str) -> str | None:
+        """Return what is to be known of a type that a library lacks, by its name with the library's id; None for nothing."""
+        library_id, _, type_id = name.partition(".")
+        is_shipped = any(library.id == library_id and library.is_shipped for library in self.libraries)
+        return describe_missing_type(type_id, self.distro) if is_shipped else None
+
 
 def load_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> LoadedProject:
     """Read the project in a folder, in a file, or (None) around the current folder."""
@@ -106,6 +118,7 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
     distro = next(
         (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
     )
+    libraries = (*libraries, *read_shipped_libraries(state, first_file, distro))
     return LoadedProject(
         files=state.files,
         first_file=first_file,

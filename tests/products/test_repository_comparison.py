@@ -79,3 +79,10 @@ def test_the_verb_ends_as_it_does_for_one_project(top: Path) -> None:
     archgen("diff", "HEAD", "--breaking", cwd=top, status=1)
     refused = archgen("diff", "HEAD", "--format", "json", cwd=top, status=2)
     assert "there are 2 projects here: name one with -C" in refused.stderr.decode()
+
+
+def test_what_ships_with_archgen_is_no_library_that_changed(tmp_path: Path) -> None:
+    text = "archgen: 1\nros: {distro: jazzy}\nlibraries: {ros: builtin}\ngroups: {g: {components: {a: {is: ros.rplidar}}}}\n"
+    top = repository(tmp_path, {"robot/archgen.yaml": text})
+    (top / "robot" / "archgen.yaml").write_text(text + "hosts: {pc: {}}\n")
+    assert compare(top) == [("robot", "1 change (1 added)")]

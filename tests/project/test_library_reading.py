@@ -138,7 +138,7 @@ def test_of_ros_only_the_distribution_is_for_a_library_that_is_checked_by_itself
 
 def test_what_a_library_holds_besides_types_is_not_used(tmp_path: Path) -> None:
     library = {
-        "archgen.yaml": "archgen: 1\nproject: {title: Common}\nrules: {unread-output: error}\nros: {distro: jazzy}\n",
+        "archgen.yaml": "archgen: 1\nproject: {title: Common}\nrules: {unmapped-component: error}\nros: {distro: jazzy}\n",
         "drivers.yaml": DRIVERS + "groups: {a: {title: A}}\nhosts: {pc: {}}\n",
         "values.yaml": "image: {tag: 1}\n",
         "template.yaml": "{{ x }}\n",
@@ -151,7 +151,7 @@ def test_what_a_library_holds_besides_types_is_not_used(tmp_path: Path) -> None:
         "lib/drivers.yaml:3:1 note of the library `common` only `component_types` and `types` are used, not `groups`, `hosts`"
     ]
     assert list(checked.architecture.groups) == ["sensing"]
-    assert [d.severity for d in checked.findings if d.rule == "unread-output"] == ["warning"]
+    assert [d.severity for d in checked.findings if d.rule == "unmapped-component"] == ["warning"]
 
 
 def test_a_library_has_no_libraries_of_its_own(tmp_path: Path) -> None:

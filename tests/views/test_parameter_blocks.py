@@ -136,3 +136,12 @@ def test_lists_have_a_row_for_each_parameter_of_a_node_and_each_operation(tmp_pa
         ("get", "g.c", "", "Pose", "", "", "archgen.yaml:15:22"),
         ("set", "g.c", "gain: float64", "", "asynchronous", "", "archgen.yaml:15:33"),
     ]
+
+
+def test_where_every_parameter_is_accepted_a_star_says_so(tmp_path: Path) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text('groups: {g: {components: {c: {parameters: {x: 1}, open: ["*"]}}}}\n', encoding="utf-8")
+    lookup = make_lookup(pipeline.check_project(file).architecture)
+    (rows,) = tables(make_parameter_blocks(lookup.architecture.components["g.c"]), "table:set/")
+    assert [row[0] for row in rows] == ["Parameter", "x", "*"]
+    assert "*: anything" in format_card(make_card(lookup, "component", "g.c"))

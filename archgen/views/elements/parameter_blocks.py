@@ -7,7 +7,12 @@ from collections.abc import Iterator, Mapping
 from archgen.model.component import Component, ComponentType
 from archgen.model.node import Node
 from archgen.model.parameter import Operation, Parameter, format_parameter
-from archgen.model.parameter_values import EffectiveParameter, describe_origin, find_effective_parameters
+from archgen.model.parameter_values import (
+    EVERY_PARAMETER,
+    EffectiveParameter,
+    describe_origin,
+    find_effective_parameters,
+)
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns
@@ -40,7 +45,9 @@ def _make_parameter_table(component: Component | ComponentType) -> Table | None:
         )
         for each in component.parameters.values()
     )
-    rows += tuple((_to_code(f"{name}.*"), (), (), (), _to_text("any"), _to_text("open set")) for name in component.open)
+    rows += tuple(
+        (_to_code(_format_open_set(name)), (), (), (), _to_text("any"), _to_text("open set")) for name in component.open
+    )
     columns = (
         Column("Parameter", 1.3),
         Column("Type", 0.7),
@@ -161,7 +168,11 @@ def list_parameter_lines(component: Component | ComponentType) -> Iterator[str]:
         value = format_parameter(each.value) if each.value is not None else f"? ({describe_missing(each)})"
         details = ", ".join(filter(None, (each.type, describe_limits(each), "read-only" if each.read_only else "")))
         yield " ".join(filter(None, (f"{each.name} = {value}", each.unit, f"({details})" if details else "")))
-    yield from (f"{name}.*: anything" for name in component.open)
+    yield from (f"{_format_open_set(name)}: anything" for name in component.open)
+
+
+def _format_open_set(name: str) -> str:
+    return name if name == EVERY_PARAMETER else f"{name}.*"
 
 
 def list_operation_lines(component: Component | ComponentType) -> Iterator[str]:
