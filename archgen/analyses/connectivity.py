@@ -185,7 +185,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
 
     Why: Either a reader is missing, or work is done for nobody. An output for the world outside says so in `external`; what
     stands on a topic that all nodes share, such as `/tf`, is meant for everybody. A component type of a library gives what
-    some project needs: of its instances not every output has to be read.
+    some project needs: of an instance whose other outputs are read, not every one has to be.
 
     Bad:
         groups:
@@ -219,13 +219,16 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     shared_outputs = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
+    taken_outputs = read_outputs | shared_outputs | {each.id for each in architecture.outputs.values() if each.external}
     for output in architecture.outputs.values():
         component = architecture.components[output.component]
         group = component.group
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
-        if output.id in read_outputs or output.external or output.id in shared_outputs or is_suspected:
+        if output.id in taken_outputs or is_suspected:
             continue
-        if _is_offered_by_library(architecture, component, output):
+        if _is_of_library(architecture, component, output) and any(
+            each.id in taken_outputs for each in component.outputs.values()
+        ):
             continue
         yield Diagnostic(
             "unread-output",
@@ -236,11 +239,12 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         )
 
 
-def _is_offered_by_library(architecture: Architecture, component: Component, output: Output) -> bool:
-    """Whether a component type of a library has an output: what the project adds to it is the project's."""
-    names = (text.partition("<")[0] for text in architecture.list_types_of(component))
-    types = (architecture.component_types.get(name) for name in names)
-    return any(each is not None and each.library is not None and output.name in each.outputs for each in types)
+def _is_of_library(architecture: Architecture, component: Component, output: Output) -> bool:
+    """Whether an output comes from a component type of a library, and not from what the project adds to it."""
+    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
+    while component_type is not None and component_type.library is None:
+        component_type = architecture.component_types.get((component_type.base or "").partition("<")[0])
+    return component_type is not None and output.name in component_type.outputs
 
 
 def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:
