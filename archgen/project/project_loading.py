@@ -58,6 +58,7 @@ class LoadedProject:
     rule_spans: Mapping[str, Span] = field(default_factory=dict)
     distro: str | None = None
     interface_files: tuple[str, ...] = ()
+    broken_files: frozenset[str] = frozenset()
     lost_keys: frozenset[str] = frozenset()
     partial: bool = False
     libraries: tuple[LoadedLibrary, ...] = ()
@@ -138,6 +139,7 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         rule_spans={entry.key: entry.key_span for entry in rule_entries},
         distro=distro,
         interface_files=tuple(dict.fromkeys(interface_files)),
+        broken_files=frozenset(state.broken_files),
         lost_keys=frozenset(state.lost_keys),
         partial=state.partial,
         libraries=libraries,

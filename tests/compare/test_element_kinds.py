@@ -131,6 +131,8 @@ MODEL_ONLY = {
     "component is_reference": "the key `is`",
     "output is_made": "what it gives on, as `autoconnect` follows from all that is written",
     "component_type base": "the key `is`",
+    "component_type library": "the beginning of the id",
+    "type library": "where it is declared",
     "component_type is_abstract": "the key `abstract`",
     "component_type frames": "those of its instances",
     "node wholes": "its components are in the key `implements`",
