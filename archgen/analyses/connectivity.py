@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.library_ports import is_offered_by_library, waits_for_calls
 from archgen.model.message_types import flow_of
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     """A component exchanges nothing with any other component, nor with the world outside.
 
     Why: Such a part was forgotten when the interfaces were agreed, or is not needed. While nothing is known of its inputs
-    and outputs, this is a note, and only once other components are connected.
+    and outputs, this is a note, and only once other components are connected. What is on a topic that all nodes share, such
+    as `/tf`, is connected to everybody; a library's type with nothing but services and actions may wait for calls from tools.
 
     Bad:
         groups:
@@ -67,8 +69,11 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     if len(architecture.components) == 1 or architecture.partial:
         return
     linked = find_linked_components(architecture)
+    shared_outputs = _list_shared_outputs(architecture)
     for component in architecture.components.values():
-        if component.id in linked or _has_external_port(component) or _has_open_reference(component):
+        if component.id in linked or _has_open_reference(component) or waits_for_calls(architecture, component):
+            continue
+        if _has_external_port(component, shared_outputs):
             continue
         if not architecture.suspected_ids.isdisjoint(
             (component.group, component.id, *(o.id for o in component.outputs.values()))
@@ -216,7 +221,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     if architecture.partial:
         return
     read_outputs = {edge.output for edge in architecture.edges}
-    shared_outputs = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
+    shared_outputs = _list_shared_outputs(architecture)
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
     for output in architecture.outputs.values():
@@ -225,7 +230,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
         if output.id in read_outputs or output.external or output.id in shared_outputs or is_suspected:
             continue
-        if _is_offered_by_library(architecture, component, output):
+        if is_offered_by_library(architecture, output):
             continue
         yield Diagnostic(
             "unread-output",
@@ -234,13 +239,6 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
             help=_suggest_reader(architecture, output, is_taken_whole=bool({output.component, group} & whole_targets)),
             element=output.component,
         )
-
-
-def _is_offered_by_library(architecture: Architecture, component: Component, output: Output) -> bool:
-    """Whether a component type of a library has an output: what the project adds to it is the project's."""
-    names = (text.partition("<")[0] for text in architecture.list_types_of(component))
-    types = (architecture.component_types.get(name) for name in names)
-    return any(each is not None and each.library is not None and output.name in each.outputs for each in types)
 
 
 def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:
@@ -270,8 +268,15 @@ def _target_components(architecture: Architecture, connection: Connection) -> It
     return ()
 
 
-def _has_external_port(component: Component) -> bool:
-    return any(i.external for i in component.inputs.values()) or any(o.external for o in component.outputs.values())
+def _has_external_port(component: Component, shared_outputs: set[str]) -> bool:
+    return any(i.external for i in component.inputs.values()) or any(
+        o.external or o.id in shared_outputs for o in component.outputs.values()
+    )
+
+
+def _list_shared_outputs(architecture: Architecture) -> set[str]:
+    """Return the outputs on topics that all nodes share."""
+    return {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers if e.port}
 
 
 def _has_open_reference(component: Component) -> bool:

@@ -172,6 +172,14 @@ def test_a_type_that_ships_for_other_distributions_is_named_with_them(tmp_path: 
     ]
 
 
+def test_a_project_that_has_not_named_the_library_hears_of_it(tmp_path: Path) -> None:
+    text = "ros: {{distro: jazzy}}\ngroups: {{g: {{components: {{it: {{is: {name}}}}}}}}}\n"
+    help_line = "it ships with archgen: write `libraries: {ros: builtin}` in archgen.yaml"
+    assert help_line in check(tmp_path, text.format(name="ros.slam_toolbox"))[0]
+    assert help_line not in check(tmp_path, text.format(name="ros.gmapping"))[0]
+    assert help_line not in check(tmp_path, text.format(name="other.slam_toolbox"))[0]
+
+
 def test_a_distribution_for_which_nothing_ships(tmp_path: Path) -> None:
     findings = check(tmp_path, SMALL.replace("jazzy", "foxy"))
     assert next(finding for finding in findings if finding.startswith("missing-library")) == (
