@@ -33,4 +33,6 @@ def test_what_is_offered_and_what_waits(tmp_path: Path) -> None:
     architecture = pipeline.check_project(file).architecture
     offered = [each.id for each in architecture.outputs.values() if is_offered_by_library(architecture, each)]
     assert offered == ["g.lidar.scan", "g.front.scan", "g.manager.start", "g.asked.start"]
-    assert [each.id for each in architecture.components.values() if waits_for_calls(architecture, each)] == ["g.manager"]
+    assert [each.id for each in architecture.components.values() if waits_for_calls(architecture, each)] == [
+        "g.manager"
+    ]

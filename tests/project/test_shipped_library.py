@@ -293,3 +293,18 @@ def test_the_page_of_the_library_is_fresh() -> None:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     assert module.PAGE.read_text(encoding="utf-8") == module.format_page(), "run tools/make_ros_library_page.py"
+
+
+def test_it_may_have_any_name_and_more_than_one(tmp_path: Path) -> None:
+    text = (
+        "ros: {distro: jazzy}\nlibraries: {a: builtin, b: {path: builtin}}\ngroups:\n  g:\n    components:\n"
+        "      one: {is: a.rplidar}\n      two: {is: b.amcl, inputs: {scan: one.scan, map: three.map}}\n"
+        "      three: {is: b.map_server, parameters: {yaml_filename: m.yaml}}\n"
+    )
+    assert {finding.partition(" ")[0] for finding in check(tmp_path, text)} == {"missing-detail"}
+
+
+def test_what_is_no_path_is_refused_as_any_other(tmp_path: Path) -> None:
+    for path in ("Builtin", "builtin/", "' builtin'", "[builtin]", "null", "1"):
+        text = f"libraries: {{ros: {path}}}\ngroups: {{g: {{components: {{it: {{is: ros.amcl}}}}}}}}\n"
+        assert check(tmp_path, text), path
