@@ -274,7 +274,7 @@ def _write_widths(columns: tuple[Column, ...]) -> str:
 
     A browser takes them as hints.
     """
-    if all([column.weight == columns[0].weight for column in columns]):
+    if len({column.weight for column in columns}) < 2:  # noqa: PLR2004 - one share for all
         return ""
     total = math.fsum([column.weight for column in columns])
     if not total:
