@@ -10,9 +10,10 @@ from archgen.model.message_types import flow_of
 def is_offered_by_library(architecture: Architecture, output: Output) -> bool:
     """Whether a component type of a library has an output: what the project adds to a type is the project's."""
     component = architecture.components[output.component]
-    names = (text.partition("<")[0] for text in architecture.list_types_of(component))
-    types = (architecture.component_types.get(name) for name in names)
-    return any(each is not None and each.library is not None and output.name in each.outputs for each in types)
+    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
+    while component_type is not None and component_type.library is None:
+        component_type = architecture.component_types.get((component_type.base or "").partition("<")[0])
+    return component_type is not None and output.name in component_type.outputs
 
 
 def waits_for_calls(architecture: Architecture, component: Component) -> bool:

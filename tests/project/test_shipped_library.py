@@ -31,12 +31,16 @@ def check(tmp_path: Path, text: str) -> list[str]:
 
 
 def write_instance(distro: str, name: str, body: MappingNode) -> str:
-    """Write a project of one instance, with all that it needs coming from outside."""
+    """Write a project of one instance, with all that it needs coming from outside, and one output read there."""
     ports = [key for key, _, port in mapping_values.iterate_elements(body, "inputs") if "external" not in port.entries]
     inputs = "".join(f"          {port}: {{external: Somebody}}\n" for port in ports)
+    outputs = "".join(
+        f"        outputs: {{{key}: {{external: Somebody}}}}\n"
+        for key, _, _ in [*mapping_values.iterate_elements(body, "outputs")][:1]
+    )
     return (
         f"ros: {{distro: {distro}}}\nlibraries: {{ros: builtin}}\ngroups:\n  g:\n    components:\n"
-        f"      it:\n        is: ros.{name}\n" + (f"        inputs:\n{inputs}" if inputs else "")
+        f"      it:\n        is: ros.{name}\n" + (f"        inputs:\n{inputs}" if inputs else "") + outputs
     )
 
 
