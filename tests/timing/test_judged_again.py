@@ -12,6 +12,7 @@ from archgen.products import compared_versions
 from archgen.timing import run_analysis as module
 from archgen.timing.analysis import Analysis, Reason
 from archgen.timing.system.timing_system import TimingSystem
+from tests.running import ROOT
 
 PROJECT = """\
 archgen: 1
@@ -82,3 +83,12 @@ def test_a_comparison_takes_the_analyses_of_the_checks(tmp_path: Path, monkeypat
         versions.append(compared_versions.read_version(str(tmp_path / name)))
     monkeypatch.setattr(module, "analyse_system", lambda *_, **__: pytest.fail("it is known already"))
     assert compared_versions.compare_named_versions(*versions).changes
+
+
+@pytest.mark.parametrize(
+    "name", ["example_ramcip", *sorted(f"examples/{each.name}" for each in (ROOT / "examples").iterdir())]
+)
+def test_what_was_judged_is_completed_to_what_is_analysed_at_once(name: str) -> None:
+    architecture = pipeline.check_project(ROOT / name).architecture
+    judged_analysis = module.analyse_architecture(architecture, judging=True)
+    assert module.complete_analysis(judged_analysis) == module.analyse_architecture(architecture)
