@@ -520,6 +520,7 @@ def test_by_what_elements_are_recognised_under_another_id() -> None:
         "partner: name 2, title 2, owns 4",
         "use_case: name 1, title 4, text 2, users 3",
         "requirement: name 1, title 4, text 2, users 3",
+        "component_type: name 2, title 2, ports 4, components 4, parameters 2, text 3",
         "group: name 2, title 2, components 8!, text 2, owner 0.5",
         "composed: name 2, title 2, components 6, ports 2, text 3",
         "component: name 2, title 2, ports 4, text 3, near 3, nodes 3, group 0.5, owner 0.5, requirements 1, performance 1, timing 1, tags 0.5",

@@ -243,7 +243,7 @@ EXPECTED: dict[str, tuple[list[str], list[str] | None]] = {
             "component g.a below group g of certh via g.a: mapped=True, outputs=some, owner=certh, timing.core=3, timing.rate=10 Hz, timing.uses.gpu=2 ms, timing.uses.gpu.min=1 ms, timing.wcet=8 ms, timing.wcet.measured=True, timing.wcet.p50=2 ms, title=A*",
             "component g.b below group g of certh via g.b: inputs=some, mapped=True, owner=certh, timing.cores=[1, 2], timing.deadline=9 ms, timing.dropped=forgotten, timing.every=2, timing.inputs.i.stored=at_once, timing.inputs.k.bcet=0 ms, timing.inputs.k.wcet=1 ms, timing.trigger=match, timing.trigger.inputs=['g.b.i', 'g.b.j'], timing.trigger.within=1 ms, title=B*",
             "component g.whole.part below group g of certh via g.whole.part: description=D, functionality=F, inputs=some, is=drum, mapped=True, outputs=some, owner=certh, tags=['t'], timing.wcet=1 ms, title=Part*",
-            "component g.copy below group g of sssa via g.copy: description=D, functionality=F, inputs=some, is=same as drum, mapped=True, outputs=some, owner=sssa, tags=['t'], timing.wcet=1 ms, title=Copy*",
+            "component g.copy below group g of sssa via g.copy: description=D, functionality=F, inputs=some, is=exactly drum, mapped=True, outputs=some, owner=sssa, tags=['t'], timing.wcet=1 ms, title=Copy*",
             "output g.a.o below component g.a of certh via g.a: frame=eye, type=T",
             "output g.whole.part.o below component g.whole.part of certh via g.whole.part: external=the world, type=T",
             "output g.copy.o below component g.copy of sssa via g.copy: type=T",

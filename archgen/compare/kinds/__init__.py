@@ -20,6 +20,7 @@ KIND_ORDER = {name: position for position, name in enumerate(ELEMENT_KINDS)}
 MATCHING_ORDER = (
     *(
         "partner",
+        "component_type",
         "group",
         "composed",
         "component",

@@ -172,9 +172,18 @@ def _mark_timing(_relations: ElementRelations, component: Component) -> frozense
     return mark_values(timing.behaviour, timing.rate, timing.wcet) if timing else frozenset()
 
 
-def _read_component_type(component: Component, _context: ReadContext) -> str | None:
+def name_common_type(type_text: str | None, context: ReadContext) -> str | None:
+    """Return the name of a component type with the common id in it, `lib.filter<Pose>`; None for none."""
+    if type_text is None:
+        return None
+    name, bracket, arguments = type_text.partition("<")
+    return f"{context.common_id('component_type', name.strip())}{bracket}{arguments}"
+
+
+def _read_component_type(component: Component, context: ReadContext) -> str | None:
     """Return the component type that a component is made from; one that is exactly it says so."""
-    return f"same as {component.component_type}" if component.is_reference else component.component_type
+    type_name = name_common_type(component.component_type, context)
+    return f"exactly {type_name}" if component.is_reference else type_name
 
 
 def _read_claimed_timing(shell: Component, context: ReadContext) -> Mapping[str, object]:
