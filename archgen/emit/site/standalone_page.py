@@ -86,14 +86,6 @@ def _page_style(folder: Path) -> str:
 
 @cache
 def _standalone_template(folder: Path) -> Template:
-    """Compile the template of standalone pages: all that is not marked safe is escaped."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from archgen.emit.site import page_environment
 
-    environment = Environment(
-        loader=FileSystemLoader(folder / "templates"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("alone.html.j2")
+    return page_environment(folder).get_template("alone.html.j2")
