@@ -9,16 +9,23 @@ from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
 from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import ComponentType
 from archgen.model.coordinate_frames import Frame
 from archgen.syntax.yaml_tree import MappingNode
 
 
-def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentType]:
-    """Return the component types of a project, by id."""
+def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResolver) -> dict[str, ComponentType]:
+    """Return the component types of a project, by id. Owners of its own types that are no partners are reported.
+
+    Whose a library's types are, those know who check the library by itself.
+    """
     types: dict[str, ComponentType] = {}
     for name, entry in expansion.type_entries.items():
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
+        library = library_of_type(name)
+        if library is None:
+            resolver.resolve_owners(body, name, ())
         types[name] = ComponentType(
             id=name,
             title=mapping_values.get_title(body, name.rpartition(".")[2]),
@@ -26,7 +33,7 @@ def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentTy
             description=mapping_values.get_text(whole_body, "description"),
             owner=mapping_values.get_text(body, "owner"),
             base=mapping_values.get_text(body, "is"),
-            library=library_of_type(name),
+            library=library,
             generic=list_generic_names(entry),
             is_abstract=is_abstract(entry),
             inputs=_read_port_types(whole_body, "inputs"),
