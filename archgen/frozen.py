@@ -115,7 +115,7 @@ _COPIERS: dict[type, tuple[Callable[[Any], Any] | None, Mapping[str, Callable[[A
 def _make_copier(cls: type) -> tuple[Callable[[Any], Any] | None, dict[str, Callable[[Any, Any], None]]]:
     """Make what `replace` needs of a class; nothing where a new object is more than its fields."""
     fields = dataclasses.fields(cls)
-    is_plain = "__slots__" in cls.__dict__ and cls.__setattr__ is _refuse_assignment
+    is_plain = "__slots__" in cls.__dict__ and cls.__dict__.get("__setattr__") is _refuse_assignment
     open_class = _make_open_class(cls) if is_plain else None
     if open_class is None or hasattr(cls, "__post_init__") or not all(field.init for field in fields):
         return None, {}

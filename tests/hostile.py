@@ -46,7 +46,10 @@ ELEMENTS = {
     "views": "view",
     "policies": "policy",
 }
-NAMES = {("node", "name"), ("node", "namespace"), ("view", "show"), ("forbid", "from"), ("forbid", "to")}
+NAMES = {
+    *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
+    *(("view", "show"), ("forbid", "from"), ("forbid", "to")),
+}
 """Text by the schema, but with a grammar of their own."""
 
 
@@ -94,7 +97,7 @@ def project(text: str) -> dict[str, Any]:
             },
         },
         "hosts": {"h": {}, "i": {}},
-        "containers": {"c": {"host": "i", "name": text[:60], "package": text, "parameters": {text[:60]: text}}},
+        "containers": {"c": {"host": "i", "parameters": {text[:60]: [text, {text[:60]: text}]}}},
         "links": {"l": {"connects": ["h", "i"]}},
         "frames": {"map": {}, "".join(text.replace("\ufeff", "").split())[:150]: {"parent": "map", "by": "a.x"}},
         "chains": {"k": {"through": ["a.x", "b.y"]}},

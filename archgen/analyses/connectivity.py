@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.library_ports import is_offered_by_library, waits_for_calls
 from archgen.model.message_types import flow_of
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     """A component exchanges nothing with any other component, nor with the world outside.
 
     Why: Such a part was forgotten when the interfaces were agreed, or is not needed. While nothing is known of its inputs
-    and outputs, this is a note, and only once other components are connected.
+    and outputs, this is a note, and only once other components are connected. What is on a topic that all nodes share, such
+    as `/tf`, is connected to everybody; a library's type with nothing but services and actions may wait for calls from tools.
 
     Bad:
         groups:
@@ -67,8 +69,11 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     if len(architecture.components) == 1 or architecture.partial:
         return
     linked = find_linked_components(architecture)
+    shared_outputs = _list_shared_outputs(architecture)
     for component in architecture.components.values():
-        if component.id in linked or _has_external_port(component) or _has_open_reference(component):
+        if component.id in linked or _has_open_reference(component) or waits_for_calls(architecture, component):
+            continue
+        if _has_external_port(component, shared_outputs):
             continue
         if not architecture.suspected_ids.isdisjoint(
             (component.group, component.id, *(o.id for o in component.outputs.values()))
@@ -216,7 +221,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     if architecture.partial:
         return
     read_outputs = {edge.output for edge in architecture.edges}
-    shared_outputs = {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers}
+    shared_outputs = _list_shared_outputs(architecture)
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
     taken_outputs = read_outputs | shared_outputs | {each.id for each in architecture.outputs.values() if each.external}
@@ -226,9 +231,11 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
         if output.id in taken_outputs or is_suspected:
             continue
-        if _is_of_library(architecture, component, output) and any(
+        # What a library offers for calls waits for whoever needs it; of what it sends, something should be read.
+        is_spare = _kind_of_output(architecture, output) in _CALLED_KINDS or any(
             each.id in taken_outputs for each in component.outputs.values()
-        ):
+        )
+        if is_spare and is_offered_by_library(architecture, output):
             continue
         yield Diagnostic(
             "unread-output",
@@ -239,14 +246,6 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         )
 
 
-def _is_of_library(architecture: Architecture, component: Component, output: Output) -> bool:
-    """Whether an output comes from a component type of a library, and not from what the project adds to it."""
-    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
-    while component_type is not None and component_type.library is None:
-        component_type = architecture.component_types.get((component_type.base or "").partition("<")[0])
-    return component_type is not None and output.name in component_type.outputs
-
-
 def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:
     kind = _kind_of_output(architecture, output)
     if is_taken_whole and kind != "topic":
@@ -254,6 +253,7 @@ def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whol
     return "let an input name it in `from`, or say who reads it outside in `external`"
 
 
+_CALLED_KINDS = frozenset({"service", "action"})
 _KIND_PHRASES = {"service": "a service", "action": "an action", "physical": "physical"}
 
 
@@ -262,7 +262,7 @@ def _kind_of_output(architecture: Architecture, output: Output) -> str:
 
 
 def _reading_verb(architecture: Architecture, output: Output) -> str:
-    return "calls" if _kind_of_output(architecture, output) in {"service", "action"} else "reads"
+    return "calls" if _kind_of_output(architecture, output) in _CALLED_KINDS else "reads"
 
 
 def _target_components(architecture: Architecture, connection: Connection) -> Iterable[Component]:
@@ -274,8 +274,15 @@ def _target_components(architecture: Architecture, connection: Connection) -> It
     return ()
 
 
-def _has_external_port(component: Component) -> bool:
-    return any(i.external for i in component.inputs.values()) or any(o.external for o in component.outputs.values())
+def _has_external_port(component: Component, shared_outputs: set[str]) -> bool:
+    return any(i.external for i in component.inputs.values()) or any(
+        o.external or o.id in shared_outputs for o in component.outputs.values()
+    )
+
+
+def _list_shared_outputs(architecture: Architecture) -> set[str]:
+    """Return the outputs on topics that all nodes share."""
+    return {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers if e.port}
 
 
 def _has_open_reference(component: Component) -> bool:

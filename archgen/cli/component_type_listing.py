@@ -56,11 +56,12 @@ def list_type_names(project_path: Path | None) -> tuple[str, ...]:
 
 def _list_shipped_entries(checked_project: CheckedProject) -> dict[str, MappingEntry]:
     """Return what ships for the project's distribution, as one calls it that writes `libraries: {ros: builtin}`."""
-    from archgen.project.shipped_library import choose_distro, load_shipped_types
+    from archgen.project.shipped_library import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_types
 
     types = load_shipped_types(choose_distro(checked_project.loaded_project.distro))
-    click.echo("With `libraries: {ros: builtin}` in archgen.yaml the project may name these.", err=True)
-    return {f"ros.{name}": entry for name, entry in types.items()}
+    hint = f"With `libraries: {{{SHIPPED_ID}: {SHIPPED_PATH}}}` in archgen.yaml the project may name these."
+    click.echo(hint, err=True)
+    return {f"{SHIPPED_ID}.{name}": entry for name, entry in types.items()}
 
 
 def _require_library(library: str, library_ids: set[str]) -> None:

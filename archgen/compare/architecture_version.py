@@ -35,6 +35,8 @@ class ArchitectureVersion:
     """The files that were read without an error."""
     unread_files: tuple[str, ...] = ()
     """The files that could not be read, or not as a whole."""
+    broken_files: frozenset[str] = frozenset()
+    """Those of them of which nothing could be read."""
     waiting_rules: frozenset[str] = frozenset()
     """The rules that errors of reading and linking kept from being judged."""
     type_patterns: TypePatterns = field(default_factory=TypePatterns)

@@ -49,6 +49,8 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         lost_keys,
         _find_unnamed_outputs(after.architecture),
         (before.sound_files, after.sound_files),
+        (before.broken_files, after.broken_files),
+        (before.architecture.untyped_components, after.architecture.untyped_components),
         partner_names=title_partners(before.architecture, after.architecture),
     )
     changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)

@@ -200,6 +200,9 @@ class DifferenceFinder:
     def _may_be_unread(self, rewired_input: RewiredInput) -> bool:
         """Whether a connection only seems to have changed because one of its ends could not be read."""
         lost_before, lost_after = self.versions.lost_keys
+        for side, sources in ((0, rewired_input.gained_sources), (1, rewired_input.lost_sources)):
+            if any(self.versions.is_of_untyped(name, side) for name in (*sources, rewired_input.input_id) if sources):
+                return True
         if not (lost_before or lost_after):
             return False
         lost_words = {

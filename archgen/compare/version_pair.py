@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.connection_maps import ConnectionMap
 
+_COMPONENT_KINDS = frozenset({"component", "composed", "input", "output"})
+
 
 @dataclass(frozen=True, slots=True)
 class VersionPair:
@@ -29,6 +31,12 @@ class VersionPair:
     sound_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The files that were read without an error, before and after."""
 
+    broken_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    """The files of which nothing could be read, before and after."""
+
+    untyped_components: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    """The components whose type is not known, before and after: what they have from it may be there all the same."""
+
     link_users: Mapping[str, frozenset[str]] | None = None
     """The partners whose data crosses each link in either version; None where timing does not know."""
 
@@ -41,6 +49,8 @@ class VersionPair:
         side, element = (
             (0, self.elements_after[key]) if key in self.elements_after else (1, self.elements_before.get(key))
         )
+        if element and (element.file in self.broken_files[side] or self._is_untyped(element, side)):
+            return True
         lost_words = self.lost_keys[side]
         # What its own file, which was read well, does not hold is not there.
         if element and element.file in self.sound_files[side]:
@@ -69,11 +79,27 @@ class VersionPair:
     def key_may_be_unread(self, key: ElementKey, value_key: str, side: int) -> bool:
         """Whether a key of an element was taken out of one version, since its value could not be read."""
         element = (self.elements_before, self.elements_after)[side].get(key)
+        if element and self._is_untyped(element, side):
+            return True
         if element and element.file and element.file in self.sound_files[side]:
             return False
         name = value_key.rpartition(".")[2]
         # A period is compared as a rate.
         return not self.lost_keys[side].isdisjoint({name, "period"} if name == "rate" else {name})
+
+    def is_of_untyped(self, element_id: str, side: int) -> bool:
+        """Whether a component, or something in one, belongs to a component whose type is not known in a version."""
+        untyped_components = self.untyped_components[side]
+        if not untyped_components:
+            return False
+        parts = element_id.split(".")
+        return any(".".join(parts[:end]) in untyped_components for end in range(1, len(parts) + 1))
+
+    def _is_untyped(self, element: ComparedElement, side: int) -> bool:
+        if element.kind in _COMPONENT_KINDS:
+            return self.is_of_untyped(element.id, side)
+        # A node, or a port of one, that its component brings along.
+        return bool(element.component_refs) and all(self.is_of_untyped(each, side) for each in element.component_refs)
 
     def _only_unread_references(self, before: object, after: object) -> bool:
         """Whether all that a list gained and lost are references to what could not be read."""

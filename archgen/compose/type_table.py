@@ -10,6 +10,7 @@ from archgen.compose.library_types import library_of_type
 from archgen.compose.type_expressions import MAX_TYPE_LENGTH, TypeExpression, bind_type_name, parse_type_expression
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
@@ -144,7 +145,7 @@ class TypeTable:
         names = tuple(self.entries)
         library = library_of_type(expression.name)
         own_names = [name for name in names if library_of_type(name) == library]
-        if library and any(self.entries[name].key_span.file == reference.span.file for name in own_names):
+        if library and any(_is_inside(reference.span, self.entries[name].value.span) for name in own_names):
             return _diagnose_in_library(reference, library, own_names, element_id)
         ending = next((name for name in names if name.rpartition(".")[2] == expression.name), None)
         guess = self.describe_missing_type(expression.name) if self.describe_missing_type else None
@@ -156,6 +157,11 @@ class TypeTable:
             help=guess or "write it below `component_types`, or describe the component itself",
             element=element_id,
         )
+
+
+def _is_inside(inner: Span, outer: Span) -> bool:
+    starts_inside = (outer.line, outer.column) <= (inner.line, inner.column)
+    return inner.file == outer.file and starts_inside and inner[3:] <= outer[3:]
 
 
 def _diagnose_in_library(reference: ScalarNode, library: str, library_names: list[str], element_id: str) -> Diagnostic:

@@ -25,6 +25,8 @@ from archgen.emit.written_formats import explain_refusal
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
 _MAX_FILE_BYTES = 1_000_000_000
+_MAX_READ_BYTES = 16_000_000
+"""A larger file is not read at once."""
 _MAX_MANIFEST_BYTES = 64_000_000
 """More than the manifest of 500,000 files has."""
 _FILE_MANAGER_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
@@ -142,10 +144,17 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
 
 def digest_file(path: Path) -> str | None:
     """Digest a file; None for one that is larger than any of archgen's, which a branch may put in their place."""
-    if path.stat().st_size > _MAX_FILE_BYTES:
+    # By names, here and in what walks a folder: of 5,000 files, paths as objects took half of the time.
+    return _digest_named_file(os.fspath(path), path.stat().st_size)
+
+
+def _digest_named_file(name: str, size: int) -> str | None:
+    if size > _MAX_FILE_BYTES:
         return None
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    with open(name, "rb", buffering=0) as stream:  # noqa: PTH123 - see above
+        if size > _MAX_READ_BYTES:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+        return hashlib.sha256(stream.read()).hexdigest()
 
 
 def _replace_files(
@@ -163,8 +172,11 @@ def _replace_files(
     staging_folder = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     final_manifest = {(digest, path) for path, digest in new_digests.items()}
     try:
+        changed_folders = sorted({path.rpartition("/")[0] for path in changed})
+        for name in changed_folders:
+            (staging_folder / name).mkdir(parents=True, exist_ok=True)
         for path, data in changed.items():
-            _write_bytes(staging_folder / path, data)
+            _write_named_file(f"{staging_folder}/{path}", data)
         # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
         # known.
         _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest | old_manifest))
@@ -172,9 +184,10 @@ def _replace_files(
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
         for path in stale:
             _remove_file(folder, path)
+        for name in changed_folders:
+            (folder / name).mkdir(parents=True, exist_ok=True)
         for path in changed:
-            (folder / path).parent.mkdir(parents=True, exist_ok=True)
-            os.replace(staging_folder / path, folder / path)  # noqa: PTH105
+            os.replace(f"{staging_folder}/{path}", f"{folder}/{path}")  # noqa: PTH105
         _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest))
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
     finally:
@@ -183,7 +196,12 @@ def _replace_files(
 
 def _write_bytes(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(data)
+    _write_named_file(os.fspath(path), data)
+
+
+def _write_named_file(name: str, data: bytes) -> None:
+    with open(name, "wb") as file:  # noqa: PTH123 - as in `digest_file`
+        file.write(data)
 
 
 def _remove_file(folder: Path, path: str) -> None:
@@ -217,15 +235,17 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
     `own_digests` is complete only when the generator is exhausted. Links are never followed.
     """
     manifest_paths = {path for _, path in manifest}
+    folder_name = os.fspath(folder)
     for path in list_files_below(folder):
-        full_path = folder / path
-        # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
-        if path in manifest_paths and stat.S_ISREG(full_path.lstat().st_mode):
-            digest = digest_file(full_path)
+        if path in manifest_paths:
+            name = f"{folder_name}/{path}"
+            # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
+            status = os.lstat(name)
+            digest = _digest_named_file(name, status.st_size) if stat.S_ISREG(status.st_mode) else None
             if digest and (digest, path) in manifest:
                 own_digests[path] = digest
                 continue
-        if path != TREE_MANIFEST and full_path.name not in _FILE_MANAGER_DEBRIS:
+        if path != TREE_MANIFEST and path.rpartition("/")[2] not in _FILE_MANAGER_DEBRIS:
             yield path
 
 
@@ -238,7 +258,7 @@ def list_files_below(folder: Path) -> Iterator[str]:
         if path and not path.endswith("/"):
             yield path
             continue
-        with os.scandir(folder / path) as entries:
+        with os.scandir(f"{os.fspath(folder)}/{path}") as entries:
             sorted_entries = sorted(entries, key=lambda entry: entry.name, reverse=True)
         pending_paths += [
             f"{path}{entry.name}{'/' if entry.is_dir(follow_symlinks=False) else ''}" for entry in sorted_entries

@@ -64,6 +64,14 @@ def add_library_types(root: MappingNode, expansion: ExpandedProject, outline: El
     return LibraryDataTypes(MappingNode({**root.entries, "types": section}, root.span), library_ids, tuple(diagnostics))
 
 
+def list_message_packages(root: MappingNode) -> dict[str, str]:
+    """Return the packages of the messages that the types of libraries define, by library."""
+    return {
+        library.key: mapping_values.get_text(mapping_values.get_body(library), "package") or f"{library.key}_msgs"
+        for library in list_libraries(root)
+    }
+
+
 def _list_library_types(root: MappingNode) -> dict[str, list[_LibraryType]]:
     library_types: dict[str, list[_LibraryType]] = {}
     for library in list_libraries(root):

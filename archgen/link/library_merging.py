@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import posixpath
+import re
+
 from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import mapping_values
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.project.library_reading import LIBRARY_SECTIONS, LoadedLibrary
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlDocument
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
+
+_WORD = re.compile(r"[a-z0-9]+")
 
 
 def merge_libraries(
@@ -24,11 +29,21 @@ def merge_libraries(
         if entry is not None and isinstance(entry.value, MappingNode):
             content, findings = _merge_content(entry.value, library)
             diagnostics += findings
-            body = MappingNode({**entry.value.entries, **content.entries}, entry.value.span)
+            package = _name_package(library)
+            body = MappingNode({**package, **entry.value.entries, **content.entries}, entry.value.span)
             bodies[library.id] = MappingEntry(entry.key, entry.key_span, body)
     section = root.entries["libraries"]
     filled_section = MappingEntry(section.key, section.key_span, MappingNode(bodies, section.value.span))
     return MappingNode({**root.entries, "libraries": filled_section}, root.span), tuple(diagnostics)
+
+
+def _name_package(library: LoadedLibrary) -> dict[str, MappingEntry]:
+    """Return the entry of the package of a library's messages, named after its folder: all of its users know that one."""
+    name = "_".join(_WORD.findall(posixpath.basename(library.folder).lower()))
+    if not name or not name[0].isalpha():
+        return {}
+    text = name if name.endswith("_msgs") else f"{name}_msgs"
+    return {"package": MappingEntry("package", library.at, ScalarNode(text, text, library.at))}
 
 
 def _merge_content(written: MappingNode, library: LoadedLibrary) -> tuple[MappingNode, tuple[Diagnostic, ...]]:
@@ -73,4 +88,6 @@ def _keep_used_types(library: MappingEntry, architecture: Architecture) -> Mappi
         for name, entries in (("component_types", component_types), ("types", types))
         if entries
     }
+    if types and "package" in body.entries:
+        used_entries = {"package": body.entries["package"], **used_entries}
     return MappingNode(used_entries, body.span)

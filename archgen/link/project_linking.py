@@ -105,6 +105,7 @@ def link_project(  # noqa: PLR0913 - all by name
         partial=is_partial,
         unread_keys=lost_keys,
         suspected_ids=suspected_ids,
+        untyped_components=expansion.damaged_elements,
     )
     return architecture, tuple(diagnostics)
 

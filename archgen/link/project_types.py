@@ -9,7 +9,7 @@ from archgen.link.data_types.field_types import TypeSources
 from archgen.link.declare.section_declaration import declare_project
 from archgen.link.declare.type_declaration import DeclaredTypes, declare_types
 from archgen.link.element_outline import ElementOutline
-from archgen.link.library_data_types import add_library_types
+from archgen.link.library_data_types import add_library_types, list_message_packages
 from archgen.link.shipped_types import load_shipped_types
 from archgen.model.known_interfaces import guess_distro
 from archgen.project import LoadedProject
@@ -26,6 +26,7 @@ def declare_project_types(
     """Return the project's types: in `damaged_elements` something could not be read, which may seem to be missing."""
     distro = guess_distro(loaded_project.distro)
     project_id = declare_project(merged_table, loaded_project.id, loaded_project.title).id
+    library_types = add_library_types(merged_table, expansion, outline)
     sources = TypeSources(
         project_id,
         load_shipped_types(distro),
@@ -33,11 +34,8 @@ def declare_project_types(
         loaded_project.lost_keys,
         damaged_elements,
         loaded_project.partial,
+        library_types.library_ids,
+        list_message_packages(merged_table),
     )
-    library_types = add_library_types(merged_table, expansion, outline)
     declared = declare_types(library_types.root, outline, sources)
-    types = {
-        name: replace(each, library=library_types.library_ids.get(name)) if name in library_types.library_ids else each
-        for name, each in declared.types.items()
-    }
-    return replace(declared, types=types, diagnostics=(*declared.diagnostics, *library_types.diagnostics))
+    return replace(declared, diagnostics=(*declared.diagnostics, *library_types.diagnostics))

@@ -210,6 +210,9 @@ class Architecture:
     """The complete ids of the elements that unresolved references most likely mean (the guess, or the candidates). No
     rule reports these as unused: the reference is reported already."""
 
+    untyped_components: frozenset[str] = frozenset()
+    """The complete ids of the components of which the type is not known: nor is what they would have from it."""
+
     def message_of(self, port: Input | Output) -> str | None:
         """Return the message that a port's type is mapped to; None if unknown, or if the port is physical."""
         if port.type is None or port.physical:

@@ -72,6 +72,7 @@ def _compare_project(folder: str, old_version: ProjectVersion, new_version: Proj
         document.counts,
         f"the {noun} {join_words(libraries)} changed" if libraries else "",
         f"breaks {join_words(document.broken_partners)}" if document.broken_partners else "",
+        document.obstacle,
     ]
     return ProjectComparison(folder, "; ".join(filter(None, parts)), has_changes=True, is_refused=comparison.is_refused)
 

@@ -76,10 +76,15 @@ def format_mark(text_digest: str, name_digest: str = "") -> str:
 
 def digest_texts(checked_project: CheckedProject) -> str:
     """Return a digest of the YAML files of the project and its libraries, and of what makes schemas of them."""
+    from archgen.compose import list_type_entries
+
     checksum = _start_digest()
     for file in (*checked_project.yaml_files, *checked_project.loaded_project.library_files):
         text = checked_project.sources.text_of(file) or ""
         checksum.update(f"{file} {len(text)}\n{text}".encode(errors="surrogatepass"))
+    if any(library.is_shipped for library in checked_project.loaded_project.libraries):
+        # Another archgen may ship other component types.
+        checksum.update(repr(sorted(list_type_entries(checked_project.merged_table))).encode())
     return checksum.hexdigest()[:16]
 
 

@@ -151,6 +151,7 @@ def _read_library(state: ReadingState, library_id: str, path: ScalarNode, files:
     read_library_slices(library_state, files.folder)
     state.diagnostics += library_state.diagnostics
     state.lost_keys |= library_state.lost_keys
+    state.broken_files += library_state.broken_files
     state.partial |= library_state.partial
     state.library_files += sorted(library_state.seen_files)
     documents = []

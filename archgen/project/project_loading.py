@@ -18,7 +18,7 @@ from archgen.project.library_reading import (
     read_shipped_libraries,
 )
 from archgen.project.project_search import PROJECT_FILE, find_project
-from archgen.project.shipped_library import describe_missing_type
+from archgen.project.shipped_library import SHIPPED_ID, SHIPPED_PATH, describe_missing_type, is_shipped_type
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles
@@ -58,6 +58,7 @@ class LoadedProject:
     rule_spans: Mapping[str, Span] = field(default_factory=dict)
     distro: str | None = None
     interface_files: tuple[str, ...] = ()
+    broken_files: frozenset[str] = frozenset()
     lost_keys: frozenset[str] = frozenset()
     partial: bool = False
     libraries: tuple[LoadedLibrary, ...] = ()
@@ -77,8 +78,10 @@ class LoadedProject:
     def describe_missing_type(self, name: str) -> str | None:
         """Return what is to be known of a type that a library lacks, by its name with the library's id; None for nothing."""
         library_id, _, type_id = name.partition(".")
-        is_shipped = any(library.id == library_id and library.is_shipped for library in self.libraries)
-        return describe_missing_type(type_id, self.distro) if is_shipped else None
+        library = next((library for library in self.libraries if library.id == library_id), None)
+        if library is None and library_id == SHIPPED_ID and is_shipped_type(type_id, self.distro):
+            return f"it ships with archgen: write `libraries: {{{SHIPPED_ID}: {SHIPPED_PATH}}}` in {PROJECT_FILE}"
+        return describe_missing_type(type_id, self.distro) if library is not None and library.is_shipped else None
 
 
 def load_project(path: Path | None = None, parsed_slices: ParsedSlices | None = None) -> LoadedProject:
@@ -138,6 +141,7 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         rule_spans={entry.key: entry.key_span for entry in rule_entries},
         distro=distro,
         interface_files=tuple(dict.fromkeys(interface_files)),
+        broken_files=frozenset(state.broken_files),
         lost_keys=frozenset(state.lost_keys),
         partial=state.partial,
         libraries=libraries,

@@ -20,6 +20,8 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 
 SHIPPED_PATH = "builtin"
 """What stands in the place of a library's path. A folder of this name is `./builtin`."""
+SHIPPED_ID = "ros"
+"""What the documentation calls the library; a project may call it otherwise."""
 _FOLDER = "ros_library"
 _TABLE_FILE = "distributions.yaml"
 
@@ -67,6 +69,11 @@ def read_shipped_document(distro: str | None, span: Span) -> YamlDocument:
     }
     section = MappingEntry("component_types", span, MappingNode(types, span))
     return YamlDocument(span.file, MappingNode({section.key: section}, span))
+
+
+def is_shipped_type(name: str, distro: str | None) -> bool:
+    """Whether a type ships for a project's distribution."""
+    return name in load_shipped_types(choose_distro(distro))
 
 
 def describe_missing_type(name: str, distro: str | None) -> str | None:

@@ -17,6 +17,8 @@ _DOTTED_PATH = re.compile(r"[a-z][a-z0-9_]*(?:\.[a-z][a-z0-9_]*)+\Z")
 _TYPE_SIGN = re.compile(r"[A-Z /]")
 """What a reference never holds and nearly every type does: a capital, a blank, the slash of a message."""
 
+_HOLDING_KEYS = frozenset({"components", "is", "same_as"})
+
 
 def mend_exchanged_ports(document: YamlDocument) -> Iterator[Diagnostic]:
     """Report components whose outputs are references and whose inputs are types, and exchange the two in the tree."""
@@ -24,7 +26,9 @@ def mend_exchanged_ports(document: YamlDocument) -> Iterator[Diagnostic]:
         for component in _list_entries(_get_child(group.value, "components")):
             body = component.value
             inputs, outputs = _get_child(body, "inputs"), _get_child(body, "outputs")
-            if isinstance(body, MappingNode) and _are_references(outputs) and _are_types(inputs):
+            # What holds components gives on what they send: its outputs are references, and its inputs may be types.
+            is_leaf = isinstance(body, MappingNode) and _HOLDING_KEYS.isdisjoint(body.entries)
+            if isinstance(body, MappingNode) and is_leaf and _are_references(outputs) and _are_types(inputs):
                 yield _diagnose_exchange(body, f"{group.key}.{component.key}")
                 input_entry, output_entry = body.entries["inputs"], body.entries["outputs"]
                 input_entry.value, output_entry.value = output_entry.value, input_entry.value

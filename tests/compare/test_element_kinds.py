@@ -131,6 +131,8 @@ MODEL_ONLY = {
     "component is_reference": "the key `is`",
     "output is_made": "what it gives on, as `autoconnect` follows from all that is written",
     "component_type base": "the key `is`",
+    "component_type library": "the beginning of the id",
+    "type library": "where it is declared",
     "component_type is_abstract": "the key `abstract`",
     "component_type frames": "those of its instances",
     "node wholes": "its components are in the key `implements`",
@@ -505,3 +507,33 @@ def test_a_key_that_no_kind_has_may_affect_everything() -> None:
     assert find_key("component", "timing.outputs.x").name == "outputs."
     assert find_key("component", "timing.colour").name == "timing."
     assert find_key("port", "qos") is find_key("port", "qos.depth")
+
+
+def test_by_what_elements_are_recognised_under_another_id() -> None:
+    """Features with their weights, those that decide alone with `!`; without any, an element is never recognised."""
+    lines = [
+        f"{name}: " + ", ".join(f"{each.name} {each.weight}{'!' if each.is_decisive else ''}" for each in kind.features)
+        for name, kind in ELEMENT_KINDS.items()
+        if kind.features
+    ]
+    assert lines == [
+        "partner: name 2, title 2, owns 4",
+        "use_case: name 1, title 4, text 2, users 3",
+        "requirement: name 1, title 4, text 2, users 3",
+        "group: name 2, title 2, components 8!, text 2, owner 0.5",
+        "composed: name 2, title 2, components 6, ports 2, text 3",
+        "component: name 2, title 2, ports 4, text 3, near 3, nodes 3, group 0.5, owner 0.5, requirements 1, performance 1, timing 1, tags 0.5",
+        "output: name 2, type 4, topics 3, text 1, readers 5",
+        "input: name 2, type 4, topics 3, text 1, sources 5",
+        "type: name 2, message 3, users 5, text 1, size 1, inside 2, fields 3",
+        "message: name 2, package 1, fields 5, users 4",
+        "node: name 2, title 2, implements 4, package 2, program 2, ports 2, topics 1, place 1, parameters 1, text 1",
+        "host: name 2, title 2, nodes 8, containers 2, cores 1, text 1",
+        "container: name 2, title 2, nodes 5, host 1, threads 1",
+        "resource: name 2, title 2, users 5, host 1",
+        "link: name 2, title 2, connects 4, figures 2",
+        "frame: name 2, title 2, ports 4, children 3, parent 2, by 2",
+        "chain: name 2, title 2, through 6, deadline 1",
+        "policy: name 2, title 2, forbids 5",
+        "view: name 2, title 2, show 5",
+    ]

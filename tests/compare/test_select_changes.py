@@ -104,6 +104,9 @@ def test_chains_owners_and_findings_are_narrowed_too(compared: Compared) -> None
         side = selected(name, f"n{name[-1]}")
         narrowed = select_changes(found, side, side)
         assert [chain.id for chain in narrowed.chains] == chains, name
+        # The rate of `a` is the cause: of what touches `b` alone there is none.
+        causes = [cause.element_id for chain in narrowed.chains for cause in chain.causes]
+        assert causes == (["g.a"] if name == "g.a" else []), name
         assert bool([each for each in narrowed.new_findings if each.element == "g.a"]) is findings, name
         assert narrowed.concerned_owners == owners, name
     back = compared(changed, timed)

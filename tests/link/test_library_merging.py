@@ -64,7 +64,7 @@ def test_only_what_is_used_is_in_the_model(robot: Path) -> None:
     libraries = {each.name: each.library for each in architecture.types.values() if not each.generic}
     assert libraries == {"Pose": None, "Spot": "common", "Spots": "common"}
     assert architecture.types["Pose"].message == "geometry_msgs/msg/PoseStamped"
-    assert architecture.interfaces.names >= {"robot_msgs/msg/Spots", "robot_msgs/msg/Spot"}
+    assert architecture.interfaces.names >= {"lib_msgs/msg/Spots", "lib_msgs/msg/Spot"}
     assert architecture.outputs["sensing.head.inner.clean"].type == "Spots"
 
 
@@ -145,3 +145,20 @@ def test_a_selector_finds_what_comes_from_a_library(robot: Path) -> None:
         "sensing.head.inner",
         "sensing.smooth",
     ]
+
+
+def test_the_messages_of_a_library_are_the_same_for_all_of_its_projects(robot: Path) -> None:
+    generic = "  Envelope: {generic: [T], fields: {payload: T}}\n"
+    (robot / "lib" / "a.yaml").write_text(LIBRARY + generic)
+    own = "types: {Own: {fields: {x: bool}}}\ngroups: {g: {title: G, components: {a: {outputs: {a: Envelope<Own>, b: Envelope<Spot>}}}}}\n"
+    (robot / "b.yaml").write_text(own)
+    types = check_project(robot).architecture.types
+    assert {name: types[name].message for name in ("Own", "Spot", "Envelope<Own>", "Envelope<Spot>")} == {
+        "Own": "robot_msgs/msg/Own",
+        "Spot": "lib_msgs/msg/Spot",
+        # The library does not know what the project puts into it.
+        "Envelope<Own>": "robot_msgs/msg/EnvelopeOwn",
+        "Envelope<Spot>": "lib_msgs/msg/EnvelopeSpot",
+    }
+    (robot / "archgen.yaml").write_text(PROJECT.replace("common: lib,", "common: {path: lib, package: shared_msgs},"))
+    assert check_project(robot).architecture.types["Spot"].message == "shared_msgs/msg/Spot"

@@ -86,3 +86,14 @@ def test_what_ships_with_archgen_is_no_library_that_changed(tmp_path: Path) -> N
     top = repository(tmp_path, {"robot/archgen.yaml": text})
     (top / "robot" / "archgen.yaml").write_text(text + "hosts: {pc: {}}\n")
     assert compare(top) == [("robot", "1 change (1 added)")]
+
+
+def test_what_cannot_be_read_is_not_removed(top: Path) -> None:
+    fields = LIBRARY + "types: {Spot: {fields: {x: float64}}}\n"
+    commit(top, {"common/a.yaml": fields.replace("outputs: {", "outputs: {spot: Spot, ")})
+    (top / "common" / "a.yaml").write_text(fields + "  x: [\n")
+    unreadable = "cannot be judged: `../../common/a.yaml` cannot be read"
+    assert compare(top)[0] == ("robots/one", f"0 changes; the library `common` changed; {unreadable}")
+    # What another file removes is removed all the same.
+    (top / "robots" / "one" / "archgen.yaml").write_text(USER.replace("drive: {inputs: {scan: front.scan}}", ""))
+    assert compare(top)[0][1].startswith("1 change (1 removed); ")

@@ -31,12 +31,16 @@ def check(tmp_path: Path, text: str) -> list[str]:
 
 
 def write_instance(distro: str, name: str, body: MappingNode) -> str:
-    """Write a project of one instance, with all that it needs coming from outside."""
+    """Write a project of one instance, with all that it needs coming from outside, and one output read there."""
     ports = [key for key, _, port in mapping_values.iterate_elements(body, "inputs") if "external" not in port.entries]
     inputs = "".join(f"          {port}: {{external: Somebody}}\n" for port in ports)
+    outputs = "".join(
+        f"        outputs: {{{key}: {{external: Somebody}}}}\n"
+        for key, _, _ in [*mapping_values.iterate_elements(body, "outputs")][:1]
+    )
     return (
         f"ros: {{distro: {distro}}}\nlibraries: {{ros: builtin}}\ngroups:\n  g:\n    components:\n"
-        f"      it:\n        is: ros.{name}\n" + (f"        inputs:\n{inputs}" if inputs else "")
+        f"      it:\n        is: ros.{name}\n" + (f"        inputs:\n{inputs}" if inputs else "") + outputs
     )
 
 
@@ -172,6 +176,14 @@ def test_a_type_that_ships_for_other_distributions_is_named_with_them(tmp_path: 
     ]
 
 
+def test_a_project_that_has_not_named_the_library_hears_of_it(tmp_path: Path) -> None:
+    text = "ros: {{distro: jazzy}}\ngroups: {{g: {{components: {{it: {{is: {name}}}}}}}}}\n"
+    help_line = "it ships with archgen: write `libraries: {ros: builtin}` in archgen.yaml"
+    assert help_line in check(tmp_path, text.format(name="ros.slam_toolbox"))[0]
+    assert help_line not in check(tmp_path, text.format(name="ros.gmapping"))[0]
+    assert help_line not in check(tmp_path, text.format(name="other.slam_toolbox"))[0]
+
+
 def test_a_distribution_for_which_nothing_ships(tmp_path: Path) -> None:
     findings = check(tmp_path, SMALL.replace("jazzy", "foxy"))
     assert next(finding for finding in findings if finding.startswith("missing-library")) == (
@@ -285,3 +297,18 @@ def test_the_page_of_the_library_is_fresh() -> None:
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     assert module.PAGE.read_text(encoding="utf-8") == module.format_page(), "run tools/make_ros_library_page.py"
+
+
+def test_it_may_have_any_name_and_more_than_one(tmp_path: Path) -> None:
+    text = (
+        "ros: {distro: jazzy}\nlibraries: {a: builtin, b: {path: builtin}}\ngroups:\n  g:\n    components:\n"
+        "      one: {is: a.rplidar}\n      two: {is: b.amcl, inputs: {scan: one.scan, map: three.map}}\n"
+        "      three: {is: b.map_server, parameters: {yaml_filename: m.yaml}}\n"
+    )
+    assert {finding.partition(" ")[0] for finding in check(tmp_path, text)} == {"missing-detail"}
+
+
+def test_what_is_no_path_is_refused_as_any_other(tmp_path: Path) -> None:
+    for path in ("Builtin", "builtin/", "' builtin'", "[builtin]", "null", "1"):
+        text = f"libraries: {{ros: {path}}}\ngroups: {{g: {{components: {{it: {{is: ros.amcl}}}}}}}}\n"
+        assert check(tmp_path, text), path

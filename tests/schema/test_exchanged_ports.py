@@ -47,6 +47,9 @@ def test_exchanged_ports_are_one_finding(ports: str) -> None:
         "inputs: {light: {external: Light, medium: physical}}, outputs: {velocity: velocity.command}",
         "inputs: {}, outputs: {scan: lidar.scan}",
         "inputs: {scan: lidar}, outputs: {velocity: velocity}",
+        # What is composed says types of its inputs, and gives on what its components send.
+        "inputs: {i: {external: World, type: A type}}, outputs: {o: {from: a.o}}, components: {a: {}}",
+        "is: whole, inputs: {i: {external: World, type: A type}}, outputs: {o: {from: a.o}}",
     ],
 )
 def test_what_may_be_right_is_left_alone(ports: str) -> None:

@@ -25,7 +25,7 @@ from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Paragraph, Section, Table, Text
 from archgen.views.tables import element_rows, statistics_tables
 
-WITHOUT_PAGE = {"link", "chain", "view", "policy"}
+WITHOUT_PAGE = {"frame", "link", "chain", "view", "policy"}
 """Sorts of element that stand in a table or a chapter of their own and have no page."""
 
 

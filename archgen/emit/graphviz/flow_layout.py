@@ -129,8 +129,10 @@ def _lay_out_inner_frames(styled_graph: StyledGraph) -> Scene:
     statements += [styled_graph.write_node(box) for box in graph.boxes if box.cluster not in inner_ids]
     statements += [*_rank_statements(styled_graph), *_hold_ports(styled_graph)]
     statements += [styled_graph.write_edge(at, arrow, with_text=False) for at, arrow in enumerate(graph.arrows)]
-    direction, ranksep = ("TB", 0.7) if graph.direction == "top-bottom" else ("LR", find_rank_distance(graph))
-    settings = f'rankdir="{direction}" nodesep="0.2" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'
+    # Labels take width: between ranks where the flow runs to the right, between boxes where it runs down.
+    gaps = (0.6, 0.7) if graph.direction == "top-bottom" else (0.2, find_rank_distance(graph))
+    direction = "TB" if graph.direction == "top-bottom" else "LR"
+    settings = f'rankdir="{direction}" nodesep="{gaps[0]}" ranksep="{gaps[1]:.2f}" remincross="true" mclimit="3"'
     layout = layout_engine.lay_out_dot(write_dot(settings, statements))
     scene = read_scene(layout, styled_graph.box_attributes, styled_graph.arrow_attributes)
     return scene.joined(read_frames(styled_graph, layout, inner_frames))

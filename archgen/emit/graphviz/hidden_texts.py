@@ -7,7 +7,7 @@ read: a changed description of a component draws nothing anew.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from html import escape
@@ -126,7 +126,12 @@ def hide_texts(drawing: Drawing, links: Mapping[str, str]) -> HiddenTexts:
         return HiddenTexts(drawing, links)
     tips: dict[str, str] = {}
     addresses: dict[str, str] = {}
-    for letter, items in (("b", drawing.boxes), ("a", drawing.arrows), ("c", drawing.clusters)):
+    marked_items: tuple[tuple[str, Sequence[Box | Arrow | Cluster]], ...] = (
+        ("b", drawing.boxes),
+        ("a", drawing.arrows),
+        ("c", drawing.clusters),
+    )
+    for letter, items in marked_items:
         for at, item in enumerate(items):
             mark = f"{letter}{at}"
             tips[mark] = _tip_of(item)

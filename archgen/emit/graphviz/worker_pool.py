@@ -105,7 +105,7 @@ def draw_tasks(  # noqa: PLR0913 - what to draw, and how, each by its name
     """
     # Threads, since each only waits for its process; `ready` workers beyond the number of tasks are stopped by who made
     # them.
-    enough = 1 + sum(map(_task_size, tasks)) // _BOXES_FOR_WORKER
+    enough = 1 + sum(_count_boxes(task) for task in tasks) // _BOXES_FOR_WORKER
     count = max(1, min(workers, len(tasks), max(enough, len(ready_workers))))
     drawing_workers = [
         *ready_workers[:count],
@@ -133,8 +133,8 @@ def create_worker(folder: Path, command_line: CommandLine | None = None) -> Draw
     return DrawingWorker(command_line or worker_command(), environment)
 
 
-def _task_size(task: DrawingTask) -> int:
-    """Estimate how long a drawing takes, by its boxes; charts have nothing to lay out."""
+def _count_boxes(task: DrawingTask) -> int:
+    """Count the boxes of a drawing, which tell how long it takes; charts have nothing to lay out."""
     return 0 if isinstance(task.drawing, Chart) else len(task.drawing.boxes)
 
 
@@ -149,7 +149,7 @@ class _DrawingRun:
         self._total = len(tasks)
         self._waiting: queue.SimpleQueue[tuple[int, DrawingTask]] = queue.SimpleQueue()
         # The largest first: started last, one large picture would keep all others waiting at the end.
-        for at, task in sorted(enumerate(tasks), key=lambda each: -_task_size(each[1])):
+        for at, task in sorted(enumerate(tasks), key=lambda each: -_count_boxes(each[1])):
             self._waiting.put((at, task))
 
     def draw_waiting(self, worker: DrawingWorker) -> None:

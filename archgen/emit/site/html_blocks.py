@@ -6,7 +6,7 @@ These are functions, not template macros: measured on 350 pages they take a quar
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from archgen.emit.picture import Picture
@@ -139,22 +139,28 @@ class PageWriter:
     def _write_run(self, run: Text) -> str:
         if run.meter:
             return status_marks.write_meter(run.meter)
-        html = self._write_text(run)
         if run.code:
-            html = f'<code class="place">{html}</code>' if run.is_place else f"<code>{html}</code>"
+            html = f'<code class="place">{self._write_text(run)}</code>' if run.is_place else self._write_code(run)
+        elif run.status or run.change or self.standalone:
+            html = self._write_text(run)
+        else:
+            html = write_figures(run.text)  # most runs: a call of `_write_text` costs as much
         if run.strong and not run.status:
             html = f"<strong>{html}</strong>"
         if run.emphasis:
             html = f"<em>{html}</em>"
-        href = (self.current_page.href(run.ref) if run.ref else None) or web_address(run.url)
-        if href:
-            html = f'<a href="{href}">{html}</a>'
+        if run.ref or run.url:
+            href = (self.current_page.href(run.ref) if run.ref else None) or web_address(run.url)
+            html = f'<a href="{href}">{html}</a>' if href else html
         if run.change:
             # Outside of the link, so that what was added or removed is marked as a whole.
             html = f'<span class="{run.change}">{html}</span>'
         if run.muted:
             html = f'<span class="muted">{html}</span>'
         return "<br>" + html if run.line_break else html
+
+    def _write_code(self, run: Text) -> str:
+        return f"<code>{self._write_text(run)}</code>"
 
     def _write_text(self, run: Text) -> str:
         # A page that is all there is has no other with the exact figure, and what has changed may be their last digits.
@@ -170,7 +176,10 @@ class PageWriter:
         caption = escape_html(table.caption)
         # A table without anchors has an empty tuple, and `zip` is strict.
         anchors = table.row_anchors or (None,) * len(table.rows)
-        body = "\n".join([self._write_row(row, anchor, table) for row, anchor in zip(table.rows, anchors, strict=True)])
+        openings = [f"<td{_ALIGNMENT_CLASS[column.align]}" for column in table.columns]
+        body = "\n".join(
+            [self._write_row(row, anchor, openings) for row, anchor in zip(table.rows, anchors, strict=True)]
+        )
         return (
             f'<div class="table{" narrow" if len(table.columns) < _MIN_WIDE_COLUMNS else ""}"{self._id_attribute(table.anchor)}>\n'
             f'<div class="scroll" role="group" tabindex="0" aria-label="{caption}">\n<table>\n'
@@ -179,11 +188,13 @@ class PageWriter:
             f"<thead><tr>{_write_heads(table.columns)}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"
         )
 
-    def _write_row(self, row: tuple[Inlines, ...], anchor: str | None, table: Table) -> str:
+    def _write_row(self, row: tuple[Inlines, ...], anchor: str | None, openings: Sequence[str]) -> str:
+        write_run = self._write_run
         cells = "".join(
             [
-                f"<td{_ALIGNMENT_CLASS[column.align]}{_write_sort_number(cell)}>{self.write_inlines(cell)}</td>"
-                for column, cell in zip(table.columns, row, strict=True)
+                # Most cells have one run.
+                f"{opening}{_write_sort_number(cell)}>{write_run(cell[0]) if len(cell) == 1 else self.write_inlines(cell)}</td>"
+                for opening, cell in zip(openings, row, strict=True)
             ]
         )
         return f"<tr{self._id_attribute(anchor) if anchor else ''}>{cells}</tr>"
@@ -263,8 +274,10 @@ def _write_widths(columns: tuple[Column, ...]) -> str:
 
     A browser takes them as hints.
     """
-    total = math.fsum(column.weight for column in columns)
-    if len({column.weight for column in columns}) == 1 or not total:
+    if len({column.weight for column in columns}) < 2:  # noqa: PLR2004 - one share for all
+        return ""
+    total = math.fsum([column.weight for column in columns])
+    if not total:
         return ""
     cols = "".join([f'<col class="p{column.weight / total * 100:.0f}">' for column in columns])
     return f"<colgroup>{cols}</colgroup>\n"

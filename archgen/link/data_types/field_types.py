@@ -33,6 +33,10 @@ class TypeSources(NamedTuple):
     lost_keys: frozenset[str] = frozenset()
     damaged_elements: frozenset[str] = frozenset()
     is_partial: bool = False
+    library_ids: Mapping[str, str] = {}
+    """The libraries that types come from, by their names."""
+    library_packages: Mapping[str, str] = {}
+    """The packages of the messages that types of libraries define, by library."""
 
 
 class FieldTypeReader:

@@ -1,4 +1,7 @@
-"""Name the messages that types define by their fields: `<project>_msgs/msg/<Name>`, unless `message` says otherwise."""
+"""Name the messages that types define by their fields: `<project>_msgs/msg/<Name>`, unless `message` says otherwise.
+
+Types of a library are messages of the library's package, the same for all projects that use it.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span, first_written_span
+from archgen.link.data_types.field_types import TypeSources
 from archgen.link.data_types.generic_types import is_bound_name
 from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import PART_KEYS, ConceptualType
@@ -18,7 +22,7 @@ _MESSAGE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z", re.ASCII)
 
 
 def name_messages(
-    types: dict[str, ConceptualType], project_id: str, spans: Mapping[str, Span], diagnostics: list[Diagnostic]
+    types: dict[str, ConceptualType], sources: TypeSources, spans: Mapping[str, Span], diagnostics: list[Diagnostic]
 ) -> list[str]:
     """Give the types that define a message its name, and return these types; what keeps one from it is reported.
 
@@ -32,7 +36,8 @@ def name_messages(
         if not defines_message(conceptual_type, types):
             continue
         kind = find_message_kind(conceptual_type)
-        message = conceptual_type.message or _make_message_name(types, name, f"{project_id}_msgs/{kind}")
+        package = _find_package(types, name, sources)
+        message = conceptual_type.message or _make_message_name(types, name, f"{package}/{kind}")
         span = first_written_span(conceptual_type.message_at, conceptual_type.at, spans.get(name, conceptual_type.at))
         named_type = types[name] = replace(conceptual_type, message=message)
         conflict = _find_conflict(named_type, kind, span, first_types)
@@ -63,6 +68,23 @@ def find_message_kind(conceptual_type: ConceptualType) -> str:
     """Return the kind of what a type defines: `msg`, `srv` or `action`."""
     parts = {key for key in PART_KEYS if getattr(conceptual_type, key) or key in conceptual_type.part_fields}
     return "action" if "feedback" in parts else "srv" if parts else "msg"
+
+
+def _find_package(types: Mapping[str, ConceptualType], type_name: str, sources: TypeSources) -> str:
+    """Return the package of a type's message: a library's where all that its name is made of comes from there.
+
+    A library's generic type that holds a type of the project is a message of the project: the library does not know it.
+    """
+    libraries, pending_names = set[str | None](), [type_name]
+    while pending_names:
+        name = pending_names.pop().partition("[")[0]
+        base, arguments = read_generic_name(name) if is_bound_name(name, types) else (name, ())
+        declared_type = types.get(base)
+        if declared_type is not None and declared_type.origin == "project":
+            libraries.add(declared_type.library)
+        pending_names += arguments
+    library = libraries.pop() if len(libraries) == 1 else None
+    return sources.library_packages.get(library or "", f"{sources.project_id}_msgs")
 
 
 def _make_message_name(types: Mapping[str, ConceptualType], type_name: str, path: str) -> str | None:

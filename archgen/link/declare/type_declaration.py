@@ -63,7 +63,7 @@ def _declare_own_types(
     for _, entry, body in mapping_values.iterate_elements(root, "types"):
         name = mapping_values.normalise_type_name(entry.key)
         reading = TypeReading(name, ros1, diagnostics, is_damaged=entry.key in sources.damaged_elements)
-        declared_type = _declare_type(entry, body, reading)
+        declared_type = _declare_type(entry, body, reading, sources.library_ids.get(name))
         earlier_type = types.setdefault(declared_type.name, declared_type)
         if earlier_type is not declared_type:
             diagnostics.append(_diagnose_duplicate_type(declared_type, earlier_type))
@@ -111,7 +111,7 @@ def _define_messages(
     diagnostics: list[Diagnostic],
 ) -> tuple[TypeDefinition, ...]:
     spans = {mention.name: mention.span for mention in reversed(list(mentions))}
-    defining_types = name_messages(types, sources.project_id, spans, diagnostics)
+    defining_types = name_messages(types, sources, spans, diagnostics)
     type_reader = FieldTypeReader(types, sources)
     maker = DefinitionMaker(types, type_reader, diagnostics)
     definitions = tuple(
@@ -143,7 +143,7 @@ def _sort_types(types: dict[str, ConceptualType]) -> dict[str, ConceptualType]:
     return {listed_type.name: listed_type for listed_type in (*project_types, *other_types)}
 
 
-def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading) -> ConceptualType:
+def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading, library: str | None) -> ConceptualType:
     status = mapping_values.get_text(body, "status")
     content = read_content(body, reading)
     return ConceptualType(
@@ -157,6 +157,7 @@ def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading) 
         feedback=_read_type_name(body, "feedback"),
         **content,
         frame=mapping_values.get_text(body, "frame"),
+        library=library,
         at=entry.key_span,
         message_at=mapping_values.get_span(body, "message"),
         frame_at=mapping_values.get_span(body, "frame"),

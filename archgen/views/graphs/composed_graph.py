@@ -55,7 +55,7 @@ class _ComposedDrawing:
     def level(self) -> DrawnLevel:
         """What is drawn inside: this component and all around it are open."""
         around = list_surrounding(self.lookup.architecture, self.shell.id)
-        return DrawnLevel(self.lookup, frozenset((*around, self.shell.id, *self.opened)))
+        return DrawnLevel(self.lookup, self.opened.union((*around, self.shell.id)))
 
     @property
     def own_ids(self) -> tuple[str, ...]:

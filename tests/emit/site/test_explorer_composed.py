@@ -284,3 +284,59 @@ def test_above_the_budget_what_is_composed_folds_and_what_is_chosen_is_shown(vis
     expect(page.locator(".stage .box:has(.open)").filter(has_text=name.split(" · ")[-1]).first).to_be_visible()
     page.get_by_role("button", name="Show all", exact=True).click()
     expect(page.locator(".stage .box")).to_have_count(4 + 20 + 60 + 240)
+
+
+ROUTE = """boxes => {
+  const [tail, head] = boxes;
+  const arrow = { id: "a", tail, head, meeting: { home: null, tail, head } };
+  const bounds = { left: 0, right: 400, top: 0, bottom: 440, columns: [boxes] };
+  archgenExplorer.routeArrows({ boxes, arrows: [arrow] }, bounds);
+  return [arrow.start[0], arrow.stop[0], arrow.direction, bounds.left < 0, bounds.right > 100];
+}"""
+
+
+def test_a_line_past_something_wide_in_its_column_runs_at_the_left(visit: OpenPage) -> None:
+    page = visit()
+
+    def route(width: int) -> object:
+        sizes = ((100, 0, 40), (100, 400, 40), (width, 100, 200))
+        boxes = [
+            {"id": str(at), "x": 0, "columnX": 0, "columnWidth": width, "width": wide, "y": y, "height": high}
+            for at, (wide, y, high) in enumerate(sizes)
+        ]
+        return page.evaluate(ROUTE, boxes)
+
+    assert route(400) == [0, 0, 1, True, True]
+    assert route(100) == [100, 100, -1, False, True]
+
+
+def test_no_arrow_turns_back_on_its_way_past_frames(visit: OpenPage, tmp_path: Path) -> None:
+    machine = (
+        "      m{at}:\n        inputs: {{i: {source}}}\n        outputs: {{o: {{from: z.o}}}}\n        components:\n"
+        "          x: {{is: module, inputs: {{i: self.i}}}}\n          y: {{is: module, inputs: {{i: x.o}}}}\n"
+        "          z: {{is: module, inputs: {{i: y.o}}}}\n"
+    )
+    groups = ""
+    for group in range(5):
+        sources = [f"g{group - 1}.m{at}.o" if group else "{external: World}" for at in range(3)]
+        groups += f"  g{group}:\n    components:\n" + "".join(
+            machine.format(at=at, source=source) for at, source in enumerate(sources)
+        )
+    (tmp_path / "robot.yaml").write_text(
+        "archgen: 1\nproject: {id: r, title: R}\ncomponent_types:\n  cell: {inputs: {i: T}, outputs: {o: T}}\n"
+        "  module:\n    inputs: {i: T}\n    outputs: {o: {from: b.o}}\n    components:\n"
+        f"      a: {{is: cell, inputs: {{i: self.i}}}}\n      b: {{is: cell, inputs: {{i: a.o}}}}\ngroups:\n{groups}",
+        "utf-8",
+    )
+    site = write_bare_site(tmp_path / "robot.yaml", tmp_path / "site")
+    page = visit("#open=**&full=1", root=site)
+    assert page.locator(".map .arrow").count() > 80
+    # A way round the outside has corners (Q); any other goes one way only.
+    turned = page.evaluate("""() => [...document.querySelectorAll(".map .arrow .way")].map((way) => way.getAttribute("d"))
+      .filter((path) => !path.includes("Q"))
+      .filter((path) => {
+        const ends = path.match(/[MCL][^MCL]+/g).map((piece) => Number(piece.slice(1).trim().split(" ").at(-2)));
+        const steps = ends.slice(1).map((x, at) => x - ends[at]).filter((step) => Math.abs(step) > 1);
+        return steps.some((step) => Math.sign(step) !== Math.sign(steps[0]));
+      })""")
+    assert turned == []

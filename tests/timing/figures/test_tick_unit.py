@@ -114,3 +114,20 @@ def test_rates_of_absurd_precision_have_no_common_unit() -> None:
         "the rates have no common measure of reasonable size: periods are rounded up"
     ]
     assert analyse_architecture(_with_rates(10, 20)).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("timing", "period"),
+    [
+        (Timing(period=Quantity(Fraction(1), "1 ns")), 1),
+        (Timing(period=Quantity(Fraction(0), "0 ns")), None),
+        (Timing(rate=Quantity(Fraction(1), "1 Hz")), 10**9),
+        (Timing(rate=Quantity(Fraction(1, 2), "0.5 Hz")), 2 * 10**9),
+        (Timing(rate=Quantity(Fraction(0), "0 Hz")), None),
+        (Timing(period=Quantity(Fraction(0), "0 ns"), rate=Quantity(Fraction(1), "1 Hz")), 10**9),
+        (Timing(period=Quantity(Fraction(5), "5 ns"), rate=Quantity(Fraction(1), "1 Hz")), 5),
+        (Timing(), None),
+    ],
+)
+def test_a_period_is_written_as_one_or_as_a_rate(timing: Timing, period: int | None) -> None:
+    assert written_period(timing) == period

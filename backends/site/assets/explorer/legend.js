@@ -64,7 +64,7 @@ archgenExplorer.makeLegend = function (actions) {
       if (folded.length) words.push(`${parts.join(" and ")} folded, ${count(hiddenCount, scene.boxes[0].members[0]?.kind ?? "element")}`);
       if (scene.rest.length) words.push(`${count(scene.rest.length, scene.rest[0].kind)} in one box`);
       if (scene.dropped.length) words.push(`${count(scene.dropped.length, "thin arrow")} left out`);
-      rows.push(element("p", {}, words.join(", ") + ". ", scene.folded.slice(0, composed ? 6 : 12).map(({ element: each }) => act(each.fullTitle ?? each.title, () => actions.openHome(each))),
+      rows.push(element("p", {}, words.join(", ") + ". ", scene.folded.slice(0, innerWidth < 720 ? 3 : composed ? 6 : 12).map(({ element: each }) => act(each.fullTitle ?? each.title, () => actions.openHome(each))),
         act("Show all", () => actions.showAll())));
     }
     notes.replaceChildren(...rows);

@@ -4,6 +4,7 @@
 archgenExplorer.routeArrows = (function () {
   const SPREAD = 9; // px between two ends on one side
   const MARGIN = 13; // px between a line and a box that it passes
+  const EDGE = 4; // px between a line and the rim of the map
   const LOOP = 46; // px that a line between boxes of one column swings out
   const OUTSIDE = { first: 30, lane: 9, channel: 5, corner: 14, inner: 16 }; // px below all boxes, between two lines there, and beside columns
   const TURN = [26, 80]; // px that a curve takes before it is level again: more, the higher it climbs
@@ -12,13 +13,29 @@ archgenExplorer.routeArrows = (function () {
   const right = (box) => box.x + box.width;
 
   // Which sides an arrow leaves and reaches: to the right where the other end is, else back to the left, else round.
-  function chooseSides(arrow) {
+  function chooseSides(arrow, boxes) {
     const { tail, head } = arrow;
     arrow.turn = right(tail) <= head.x ? "forward" : right(head) <= tail.x ? "back" : "loop";
-    arrow.tailSide = arrow.turn === "back" ? "left" : "right";
-    arrow.headSide = arrow.turn === "forward" ? "left" : "right";
+    // Columns are level at the left: where something wide stands between, the way round is there.
+    const isLeft = arrow.turn === "loop" && isBlocked(arrow, boxes);
+    arrow.tailSide = arrow.turn === "back" || isLeft ? "left" : "right";
+    arrow.headSide = arrow.turn === "forward" || isLeft ? "left" : "right";
     // Back past whole columns: round the outside of the map, or below what is in the same home, where it crosses no box.
     arrow.isOutside = arrow.turn === "back" && arrow.meeting.tail.column - arrow.meeting.head.column > 1;
+  }
+
+  // Whether a box stands in the way of a line that swings out to the right of two boxes, one above the other.
+  function isBlocked({ tail, head, meeting }, boxes) {
+    const [upper, lower] = tail.y < head.y ? [tail, head] : [head, tail];
+    const edge = Math.max(right(tail), right(head));
+    const around = new Set([...listFrames(tail, meeting.home), ...listFrames(head, meeting.home)]);
+    const isBetween = (box) => box.y + box.height > upper.y + upper.height && box.y < lower.y && box !== upper && box !== lower;
+    return boxes.some((box) => isBetween(box) && right(box) > edge + MARGIN && box.x < edge + LOOP && !around.has(box) && !holds(box, tail));
+  }
+
+  function holds(frame, box) {
+    for (let each = box.parent; each; each = each.parent) if (each === frame) return true;
+    return false;
   }
 
   // The open boxes around a box, the innermost first, up to the one that holds the whole arrow.
@@ -74,7 +91,18 @@ archgenExplorer.routeArrows = (function () {
     enters.forEach((frame, at) => {
       for (const column of frame.inner.columns) add(column, Math.max(start, frame.x), enters[at + 1]?.x ?? end);
     });
-    return strips;
+    return joinStrips(strips);
+  }
+
+  // Where frames stand one above the other their columns overlap: what is in the way of both is in the way of one.
+  function joinStrips(strips) {
+    const joined = [];
+    for (const strip of strips.sort((a, b) => a.from - b.from)) {
+      const last = joined.at(-1);
+      if (!last || strip.from >= last.to) joined.push(strip);
+      else Object.assign(last, { to: Math.max(last.to, strip.to), boxes: [...last.boxes, ...strip.boxes] });
+    }
+    return joined;
   }
 
   // The free height that is nearest to a wished one; lines that share a gap keep a little apart.
@@ -105,9 +133,13 @@ archgenExplorer.routeArrows = (function () {
   function drawPath(arrow, scene, bounds, used) {
     const { start, stop } = arrow;
     if (arrow.turn === "loop") {
-      const x = Math.max(start[0], stop[0]) + LOOP + Math.min(40, Math.abs(start[1] - stop[1]) / 12);
-      arrow.points = [start, [x - LOOP / 4, (start[1] + stop[1]) / 2], stop];
-      arrow.direction = -1;
+      const isLeft = arrow.tailSide === "left", out = LOOP + Math.min(40, Math.abs(start[1] - stop[1]) / 12);
+      const x = isLeft ? Math.min(start[0], stop[0]) - out : Math.max(start[0], stop[0]) + out;
+      arrow.points = [start, [x + (isLeft ? LOOP : -LOOP) / 4, (start[1] + stop[1]) / 2], stop];
+      arrow.direction = isLeft ? 1 : -1;
+      // The curve comes three quarters as far as the points that it bends to.
+      bounds.left = Math.min(bounds.left, x + out / 4 - EDGE);
+      bounds.right = Math.max(bounds.right, x - out / 4 + EDGE);
       return `M${num(start[0])} ${num(start[1])}C${num(x)} ${num(start[1])} ${num(x)} ${num(stop[1])} ${num(stop[0])} ${num(stop[1])}`;
     }
     arrow.direction = arrow.turn === "forward" ? 1 : -1;
@@ -196,7 +228,7 @@ archgenExplorer.routeArrows = (function () {
   return function routeArrows(scene, bounds) {
     const arrows = scene.arrows;
     const used = new Map();
-    arrows.forEach(chooseSides);
+    for (const arrow of arrows) chooseSides(arrow, scene.boxes);
     spreadEnds(arrows);
     routeOutside(arrows, bounds);
     for (const arrow of arrows) {
