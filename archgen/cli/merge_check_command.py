@@ -37,7 +37,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     if form == "json" and folders:
         msg = f"there are {len(folders)} projects here: name one with -C"
         raise click.UsageError(msg)
-    paths = [(project or Path()) / folder for folder in folders] or [project]
+    paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     try:
         merges_by_project = [list(preview_merges(path, main_line, branches)) for path in paths]
     except (GitError, ProjectNotFoundError) as error:
