@@ -43,6 +43,7 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
             open=mapping_values.get_texts(whole_body, "open"),
             operations=declare_operations(whole_body),
             frames=tuple(_read_frames(whole_body)),
+            inner_types=frozenset(_list_inner_types(whole_body)),
             at=entry.key_span,
         )
     return types
@@ -54,6 +55,20 @@ def _read_port_types(body: MappingNode, side: str) -> dict[str, str | None]:
         name: mapping_values.normalise_type_name(text) if (text := mapping_values.get_text(port, "type")) else None
         for name, _, port in mapping_values.iterate_elements(body, side)
     }
+
+
+def _list_inner_types(body: MappingNode) -> Iterator[str]:
+    """Yield the types that components inside name as they are written: instances of them are in no group."""
+    for _, _, part in mapping_values.iterate_elements(body, "components"):
+        for side in ("inputs", "outputs"):
+            yield from filter(None, _read_port_types(part, side).values())
+        for operation in declare_operations(part).values():
+            yield from operation.type_names
+        for key in ("is", "same_as"):
+            expression = mapping_values.get_text(part, key) or ""
+            if "<" in expression:  # what generic names stand for
+                yield mapping_values.normalise_type_name(expression)
+        yield from _list_inner_types(part)
 
 
 def _read_frames(body: MappingNode) -> Iterator[Frame]:
