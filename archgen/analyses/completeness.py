@@ -104,8 +104,20 @@ def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
                 "missing-detail",
                 f"`{component.id}` still lacks {join_words(missing_items)}",
                 component.at,
+                help=_suggest_place(component, missing_items),
                 element=component.id,
             )
+
+
+def _suggest_place(component: Component, missing_items: list[str]) -> str | None:
+    """Return where a reference to a component type gets what it lacks, None for any other component."""
+    if not component.is_reference or missing_items == ["owner"]:
+        return None
+    type_name = (component.component_type or "").partition("<")[0]
+    place = f"it at its component type `{type_name}`"
+    if "owner" in missing_items:
+        place = f"the owner here, the rest at its component type `{type_name}`"
+    return f"write {place}; or make it an instance (`is`) instead of a reference (`same_as`)"
 
 
 RULES = ((missing_detail, Severity.NOTE),)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture, Requirement
+    from archgen.model.component import Component
 
 
 def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -223,9 +224,21 @@ def unjustified_component(architecture: Architecture) -> Iterator[Diagnostic]:
                 "unjustified-component",
                 f"`{component.id}` serves no requirement",
                 component.at,
-                help="name in its `requirements` what it is there for, as an id or in a sentence",
+                help=_suggest_justification(architecture, component),
                 element=component.id,
             )
+
+
+def _suggest_justification(architecture: Architecture, component: Component) -> str:
+    type_name = (component.component_type or "").partition("<")[0]
+    if component.is_reference:
+        return (
+            f"name in `requirements` of its component type `{type_name}` what it is there for: a reference (`same_as`) has "
+            "none of its own, an instance (`is`) has"
+        )
+    component_type = architecture.component_types.get(type_name)
+    elsewhere = f", or in those of `{type_name}`," if component_type and component_type.library else ""
+    return f"name in its `requirements`{elsewhere} what it is there for, as an id or in a sentence"
 
 
 RULES = (

@@ -133,8 +133,9 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
         used_types.update(name for operation in component.operations.values() for name in operation.type_names)
     # A library that is checked by itself has no instances.
     for component_type in architecture.component_types.values():
-        port_types = {*component_type.inputs.values(), *component_type.outputs.values()}
-        used_types |= port_types.difference(component_type.generic)
+        named_types = {*component_type.inputs.values(), *component_type.outputs.values(), *component_type.inner_types}
+        named_types.update(name for operation in component_type.operations.values() for name in operation.type_names)
+        used_types |= named_types.difference(component_type.generic)
     for type_ in architecture.types.values():
         used_types |= {type_.request, type_.response, type_.feedback}
         used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)

@@ -113,6 +113,16 @@ COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {
 """The functions that write a comparison, by the name of the format."""
 
 
+def _find_meant_project(before: str | None, after: str | None) -> Path | None:
+    from archgen.git import GitError
+    from archgen.products.compared_versions import find_meant_project
+
+    try:
+        return find_meant_project(before, after)
+    except (GitError, OSError):  # said better by whoever reads the versions
+        return None
+
+
 def _list_projects_below(after: str | None, project: Path | None) -> tuple[str, ...]:
     from archgen.git import GitError
     from archgen.products.repository_comparison import list_projects_below
@@ -193,6 +203,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     from archgen.compare.breaking_changes import keep_breaking_only
     from archgen.products import compared_versions
 
+    project = project or _find_meant_project(before, after)
     projects = _list_projects_below(after, project)
     if projects:
         if form != "text" or select is not None or output is not None:

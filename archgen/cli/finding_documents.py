@@ -34,7 +34,11 @@ def render_findings(
         )
     if format_name == "junit":
         lines = junit_results.format_junit(
-            reported_findings.findings, checked_project.sources, checked_project.input_files, strict=strict
+            reported_findings.findings,
+            checked_project.sources,
+            checked_project.input_files,
+            folder=folder,
+            strict=strict,
         )
         return "".join(f"{line}\n" for line in lines)
     file = checked_project.yaml_files[0] if checked_project.yaml_files else PROJECT_FILE

@@ -131,12 +131,13 @@ def _set_up_merge_driver(target: Path) -> None:
     from archgen.git import GitError, NoRepositoryError
     from archgen.start import merge_driver_setup
 
-    path = target / merge_driver_setup.ATTRIBUTES_FILE
     with command_support.explain_write_errors():
-        if merge_driver_setup.add_attribute(target):
-            command_support.print_written(path, "merge driver; commit it for everybody")
-        else:
-            click.echo(f"kept {command_support.shorten_path(path)}: it names the merge driver already")
+        for folder in (target, *merge_driver_setup.list_outer_libraries(target)):
+            path = folder / merge_driver_setup.ATTRIBUTES_FILE
+            if merge_driver_setup.add_attribute(folder):
+                command_support.print_written(path, "merge driver; commit it for everybody")
+            else:
+                click.echo(f"kept {command_support.shorten_path(path)}: it names the merge driver already")
     commands = [
         merge_driver_setup.format_setting(*setting) for setting in merge_driver_setup.list_driver_settings().items()
     ]

@@ -25,37 +25,59 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     """Say what would be wrong if open branches were merged: each OTHER into MAIN, then all of them.
 
     Git's objects are read and nothing is checked out. Findings are shown that neither MAIN nor the branch has, and
-    conflicts: of the models, and of git alone. The exit status is 1 for new errors (with --strict also new
-    warnings), for conflicts of the models, and where the project is gone.
+    conflicts: of the models, and of git alone. In a folder that only holds projects, such as the top of a repository,
+    each of them is merged. The exit status is 1 for new errors (with --strict also new warnings), for conflicts of the
+    models, and where the project is gone.
     """
     from archgen.git import GitError
     from archgen.merge.branch_merge import preview_merges
     from archgen.project import ProjectNotFoundError
 
+    folders = _list_folders(project, (main_line, *branches))
+    if form == "json" and folders:
+        msg = f"there are {len(folders)} projects here: name one with -C"
+        raise click.UsageError(msg)
+    paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     try:
-        branch_merges = list(preview_merges(project, main_line, branches))
+        merges_by_project = [list(preview_merges(path, main_line, branches)) for path in paths]
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(str(error))) from None
     if form == "json":
         from archgen.merge.branch_merge_json import format_merges_json
 
-        sys.stdout.write(format_merges_json(main_line, branch_merges))
+        sys.stdout.write(format_merges_json(main_line, merges_by_project[0]))
     else:
-        for branch_merge in branch_merges:
-            _print_merge(main_line, branch_merge)
+        for folder, branch_merges in zip(folders or [""], merges_by_project, strict=True):
+            for branch_merge in branch_merges:
+                _print_merge(main_line, branch_merge, folder)
     sys.exit(
         1
         if any(
             branch_merge.checked_project is None
             or command_support.exit_status(branch_merge.new_findings, strict=strict)
+            for branch_merges in merges_by_project
             for branch_merge in branch_merges
         )
         else 0
     )
 
 
-def _print_merge(main_line: str, branch_merge: BranchMerge) -> None:
-    click.echo(make_visible(f"{' + '.join((main_line, *branch_merge.branches))}: {_describe_merge(branch_merge)}"))
+def _list_folders(project: Path | None, revisions: tuple[str, ...]) -> list[str]:
+    """Return the folders of the projects that some revision holds below a folder that holds none in any of them."""
+    from archgen.git import GitError
+    from archgen.products.repository_comparison import list_projects_below
+
+    try:
+        folders = {folder for revision in revisions for folder in list_projects_below(project, revision)}
+    except (GitError, OSError):  # said better by what reads the revisions
+        return []
+    return [] if "" in folders else sorted(folders)
+
+
+def _print_merge(main_line: str, branch_merge: BranchMerge, folder: str) -> None:
+    merged_names = " + ".join((main_line, *branch_merge.branches))
+    prefix = f"{folder}: " if folder else ""
+    click.echo(make_visible(f"{prefix}{merged_names}: {_describe_merge(branch_merge)}"))
     for conflict in branch_merge.conflicts:
         outcome = conflict.problem or "git conflicts, what both sides say does not: `archgen merge-driver` merges it"
         click.echo(make_visible(f"  {conflict.file}: {outcome}"))

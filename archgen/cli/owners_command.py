@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -67,7 +67,11 @@ def _format_ownership(ownership: Ownership, width: int | None) -> str:
     headings = ("Partner", *(f"{sort}s" for sort in ownership.nobody.elements), "files", "reviewers")
     lines = list(format_table(headings, map(_make_owner_row, owned_parts), width, has_figures=True))
     for owned in owned_parts:
-        lines += ["", *_list_elements(owned, min(width or _TEXT_WIDTH, _TEXT_WIDTH))]
+        title = f"{owned.partner.title}:" if owned.partner else "Nobody owns:"
+        lists = {**{f"{sort}s": ids for sort, ids in owned.elements.items()}, "files": owned.files}
+        lines += ["", title, *_wrap_lists(lists, width)]
+    if ownership.shared_files:
+        lines += ["", "All partners share:", *_wrap_lists({"files": ownership.shared_files}, width)]
     return "".join(f"{defuse_command(make_visible(line))}\n" for line in lines)
 
 
@@ -77,14 +81,12 @@ def _make_owner_row(owned: OwnershipShare) -> tuple[str, ...]:
     return name, *(str(len(each)) for each in (*owned.elements.values(), owned.files)), reviewers
 
 
-def _list_elements(owned: OwnershipShare, width: int) -> Iterator[str]:
-    yield f"{owned.partner.title}:" if owned.partner else "Nobody owns:"
-    for name, items in (*((f"{sort}s", ids) for sort, ids in owned.elements.items()), ("files", owned.files)):
+def _wrap_lists(lists: Mapping[str, tuple[str, ...]], width: int | None) -> Iterator[str]:
+    for name, items in lists.items():
         if items:
-            joined_items = ", ".join(items)
             yield from textwrap.wrap(
-                joined_items,
-                width,
+                ", ".join(items),
+                min(width or _TEXT_WIDTH, _TEXT_WIDTH),
                 initial_indent=f"  {name + ':':12}",
                 subsequent_indent=" " * 14,
                 break_on_hyphens=False,

@@ -67,6 +67,7 @@ def link_project(  # noqa: PLR0913 - all by name
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
     frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
+    component_types = declare_component_types(expansion, resolver)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference
@@ -83,7 +84,7 @@ def link_project(  # noqa: PLR0913 - all by name
         components=components,
         shells=shells,
         shell_ports=declared_groups.shell_ports,
-        component_types=declare_component_types(expansion),
+        component_types=component_types,
         inputs={port.id: port for component in components.values() for port in component.inputs.values()},
         outputs={output.id: output for component in components.values() for output in component.outputs.values()},
         connections=declared_groups.connections,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from archgen.diagnostics.common_wording import join_words
@@ -114,17 +114,17 @@ class ReferenceResolver:
         if self.is_lost(reference.text) or PLAIN_SECTIONS[kind] in self.lost_keys:
             return None
         guess = self.guess_name(reference.text, known_spans)
-        self.diagnostics.append(
-            diagnose_unknown_reference(
-                reference,
-                kind,
-                guess,
-                known_spans.get(guess or "", NO_SPAN),
-                element_id,
-                known_names=tuple(known_spans),
-                asked_name=AskedName(kind),
-            )
+        diagnostic = diagnose_unknown_reference(
+            reference,
+            kind,
+            guess,
+            known_spans.get(guess or "", NO_SPAN),
+            element_id,
+            known_names=tuple(known_spans),
+            asked_name=AskedName(kind),
         )
+        help_line = diagnostic.help or f"declare it in the section `{PLAIN_SECTIONS[kind]}`"
+        self.diagnostics.append(replace(diagnostic, help=help_line))
         return None
 
     def resolve_plain_ids(self, references: Iterable[ScalarNode], kind: str, element_id: str) -> tuple[str, ...]:

@@ -207,4 +207,6 @@ class ComponentType:
     operations: Mapping[str, Operation] = field(default_factory=dict)
     frames: tuple[Frame, ...] = ()
     """The frames of its instances, with the names as written: `$(self.prefix)laser`."""
+    inner_types: frozenset[str] = field(default=frozenset(), compare=False)
+    """The types that the components inside name, to any depth: what is said of them is compared component by component."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -19,9 +19,12 @@ def find_ownership(checked_project: CheckedProject) -> Ownership:
     """Find out which partner owns which elements and files of a project."""
     # Files come from the merged tree: the architecture keeps one span for an element, but slices may add to it in
     # others.
-    return sorted_out(
+    ownership = sorted_out(
         checked_project.architecture, find_element_files(checked_project.merged_table), checked_project.yaml_files
     )
+    loaded_project = checked_project.loaded_project
+    shared_files = dict.fromkeys((*loaded_project.interface_files, *loaded_project.library_files))
+    return replace(ownership, shared_files=tuple(shared_files))
 
 
 def make_codeowners(checked_project: CheckedProject, prefix: str | None = None) -> CodeownersFile:
@@ -42,8 +45,7 @@ def _add_shared_files(ownership: Ownership, checked_project: CheckedProject) -> 
     borders.
     """
     partners = tuple(checked_project.architecture.partners.values())
-    loaded_project = checked_project.loaded_project
-    shared_files = dict.fromkeys((*loaded_project.interface_files, *loaded_project.library_files), partners)
+    shared_files = dict.fromkeys(ownership.shared_files, partners)
     owned_files = {file: owners or partners for file, owners in ownership.files.items()}
     agreement_files = {agreement_file(partner.id): (partner,) for partner in partners}
     policy_file = {checked_project.loaded_project.first_file: partners}

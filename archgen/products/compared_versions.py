@@ -12,6 +12,7 @@ from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.link.type_patterns import link_type_patterns
 from archgen.pipeline import CheckedProject, VersionCache
+from archgen.project.project_search import find_project
 from archgen.syntax.yaml_tree import MappingNode
 
 _PATH_PREFIXES = ("./", "../", "/", "~")
@@ -38,6 +39,43 @@ class ProjectVersion:
         # A hash that begins with what the user typed says nothing new.
         name_suffices = not self.commit or self.commit.startswith(self.name)
         return self.name if name_suffices else f"{self.name} ({shorten_hash(self.commit)})"
+
+
+def find_meant_project(first: str | None, second: str | None) -> Path | None:
+    """Return the project on disk that one of two versions names, where no project is around the current folder.
+
+    The other one is a revision of the same repository then: what is named says which project is meant at it. None where
+    that is not so. Raise `git.GitError`.
+    """
+    if first is None or second is None or _has_project_around():
+        return None
+    repository = git.find_repository(Path.cwd())
+    paths = [Path(text) for text in (first, second) if _names_project(text, repository)]
+    is_clear = len(paths) == 1 and git.find_repository(find_project(paths[0])[0]).top == repository.top
+    return paths[0] if is_clear else None
+
+
+def _names_project(version_text: str, repository: git.GitRepository) -> bool:
+    """Whether a version is a project on disk, a folder or its archgen.yaml, and no revision."""
+    path = Path(version_text)
+    file = path if path.name == project.PROJECT_FILE else path / project.PROJECT_FILE
+    if not os.path.lexists(file):
+        return False
+    if _is_path(version_text):
+        return True
+    try:
+        git.resolve_revision(repository, version_text)
+    except git.GitError:
+        return True
+    return False
+
+
+def _has_project_around() -> bool:
+    try:
+        find_project(None)
+    except project.ProjectNotFoundError:
+        return False
+    return True
 
 
 def read_versions(

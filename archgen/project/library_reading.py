@@ -67,6 +67,11 @@ def read_libraries(state: ReadingState, first_file: str) -> Iterator[LoadedLibra
     before its other files are read.
     """
     for document in state.documents:
+        for entry in _list_pathless_libraries(document.root):
+            if not _is_reported(state, entry):
+                state.diagnostics.append(_diagnose_missing_path(entry))
+            state.partial = True
+            yield LoadedLibrary(entry.key, entry.key_span, is_complete=False)
         for library_id, path in list_library_paths(document.root).items():
             folder_files = _open_library(state, first_file, path)
             if isinstance(folder_files, FileRefusal):
@@ -75,6 +80,32 @@ def read_libraries(state: ReadingState, first_file: str) -> Iterator[LoadedLibra
                 yield LoadedLibrary(library_id, path.span, is_complete=False)
             else:
                 yield _read_library(state, library_id, path, LibraryFiles(posixpath.normpath(path.text), folder_files))
+
+
+def _list_pathless_libraries(root: MappingNode) -> Iterator[MappingEntry]:
+    """Yield libraries of which neither a path nor, as in a packed file, the content is written."""
+    libraries = root.get("libraries")
+    paths = _list_written_paths(root)
+    for entry in libraries if isinstance(libraries, MappingNode) else ():
+        keys = entry.value.entries.keys() if isinstance(entry.value, MappingNode) else set()
+        if entry.key not in paths and keys.isdisjoint(LIBRARY_SECTIONS):
+            yield entry
+
+
+def _diagnose_missing_path(entry: MappingEntry) -> Diagnostic:
+    message = f"the library `{entry.key}` has no path"
+    help_line = f"write its folder, as in `{entry.key}: ../{entry.key}`, or `builtin` for what ships with archgen"
+    return Diagnostic("missing-library", message, entry.key_span, help=help_line)
+
+
+def _is_reported(state: ReadingState, entry: MappingEntry) -> bool:
+    """Whether something in an entry was not understood, and is reported already."""
+    start, end = entry.key_span, entry.value.span
+    return any(
+        each.span.file == start.file
+        and (start.line, start.column) <= (each.span.line, each.span.column) <= (end.end_line, end.end_column)
+        for each in state.diagnostics
+    )
 
 
 def _open_library(state: ReadingState, first_file: str, path: ScalarNode) -> ProjectFiles | FileRefusal:

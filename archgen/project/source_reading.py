@@ -161,7 +161,9 @@ def _read_all_slices(state: ReadingState) -> None:
         elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
             if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
                 _keep_slice(state, parsed_slice)
-        elif parsed_slice.sections and not _leave_out_frames(state, parsed_slice.document):
+        elif parsed_slice.sections and not (
+            _leave_out_frames(state, parsed_slice.document) or _leave_out_libraries(state, parsed_slice.document)
+        ):
             # With a guess from the first key that is nearly the name of a section, such as `group:`.
             ignored_files.append(
                 (file, next(filter(None, (find_closest(key, known_sections) for key in parsed_slice.sections)), None))
@@ -230,6 +232,20 @@ def _leave_out_frames(state: ReadingState, document: YamlDocument) -> bool:
     )
     # What stands there is not unknown, only not read.
     state.lost_keys.update(entry.value.entries)
+    return True
+
+
+def _leave_out_libraries(state: ReadingState, document: YamlDocument) -> bool:
+    """Report a file with nothing but libraries, if they are ours by their looks; whether they are."""
+    entry = document.root.entries.get("libraries")
+    if entry is None or len(document.root.entries) > 1 or not isinstance(entry.value, MappingNode):
+        return False
+    values = [part.value.get("path") if isinstance(part.value, MappingNode) else part.value for part in entry.value]
+    if not values or not all(isinstance(value, ScalarNode) and isinstance(value.value, str) for value in values):
+        return False
+    message = f"only {PROJECT_FILE} names libraries: this file is not read"
+    help_line = f"write them there, below `libraries`, or name the project's files in `sources` of {PROJECT_FILE}"
+    state.diagnostics.append(Diagnostic("ignored-file", message, entry.key_span, help=help_line))
     return True
 
 

@@ -38,7 +38,8 @@ Good:
 
 Why: a library is a folder in the same repository, so that each commit has the library that belongs to it, and a pull request
 from a stranger reads nothing else. It is reached without links, is not around the project's folder, and has no libraries of
-its own; without git it lies below the project's folder. A folder without component types and types is a warning.
+its own; without git it lies below the project's folder. A library without a path cannot be read either; a folder without component
+types and types is a warning.
 
 Bad:
 

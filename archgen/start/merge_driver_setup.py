@@ -10,6 +10,7 @@ from pathlib import Path
 from archgen import git
 from archgen.emit import file_tree
 from archgen.git.git_call import run_git
+from archgen.project.project_loading import load_project
 
 ATTRIBUTES_FILE = ".gitattributes"
 _PATTERN, _ATTRIBUTE = b"*.yaml", b"merge=archgen"
@@ -34,8 +35,14 @@ def format_setting(name: str, value: str) -> str:
     return f"git config --local {name} {shlex.quote(value)}"
 
 
+def list_outer_libraries(folder: Path) -> tuple[Path, ...]:
+    """Return the folders of a project's libraries that lie outside of its own: its .gitattributes do not reach them."""
+    libraries = load_project(folder).libraries
+    return tuple(dict.fromkeys(folder / library.folder for library in libraries if library.folder.startswith("../")))
+
+
 def add_attribute(folder: Path) -> bool:
-    """Add the line to a project's .gitattributes, behind what is there. Return whether it was missing.
+    """Add the line to the .gitattributes of a project or library, behind what is there. Return whether it was missing.
 
     Raise OutputError for a symbolic link, which git does not read, and OSError.
     """

@@ -26,11 +26,15 @@ class OwnershipShare:
 
 @dataclass(frozen=True, slots=True)
 class Ownership:
-    """What each partner owns, what nobody owns, and the owners of each file (empty for a file without owner)."""
+    """What each partner owns, what nobody owns, and the owners of each file (empty for a file without owner).
+
+    `shared_files` hold no elements, and all partners answer for them: messages and libraries.
+    """
 
     partners: tuple[OwnershipShare, ...]
     nobody: OwnershipShare
     files: Mapping[str, tuple[Partner, ...]]
+    shared_files: tuple[str, ...] = ()
 
 
 def assign_ownership(architecture: Architecture, element_files: ElementFiles, files: tuple[str, ...]) -> Ownership:

@@ -201,3 +201,24 @@ def test_a_branch_without_the_project_takes_it_away(run: Run, robot: Path) -> No
     repositories.git(robot, "checkout", "-q", "main")
     ran = run("merge-check", "-C", robot, "main", "gone")
     assert (ran.status, ran.out) == (1, "main + gone: merges, but holds no project any more\n")
+
+
+def test_at_the_top_of_a_repository_each_project_is_merged(run: Run, tmp_path: Path) -> None:
+    files = {f"robots/{name}/{file}": text for name in ("one", "two") for file, text in BASE.items()}
+    top = repositories.repository(tmp_path / "top", files)
+    branch(top, "rename", {f"robots/one/{file}": texts for file, texts in RENAMED.items()})
+    branch(top, "reader", {f"robots/one/{file}": texts for file, texts in READS_OLD_NAME.items()})
+    ran = run("merge-check", "-C", top, "main", "rename", "reader")
+    assert ran.status == 1
+    assert [line for line in ran.out.splitlines() if "main + " in line] == [
+        "robots/one: main + rename: merges",
+        "robots/one: main + reader: merges",
+        "robots/one: main + rename + reader: merges, and then there are new findings",
+        "robots/two: main + rename: merges",
+        "robots/two: main + reader: merges",
+        "robots/two: main + rename + reader: merges",
+    ]
+    assert run("merge-check", "-C", top, "main", "rename").status == 0
+    refused = run("merge-check", "-C", top, "main", "rename", "--format", "json")
+    assert refused.status == 2
+    assert "there are 2 projects here: name one with -C" in refused.err

@@ -52,6 +52,21 @@ def test_in_a_project_that_is_there_nothing_else_is_touched(run: Run, tmp_path: 
     assert (folder / ".gitattributes").read_bytes() == b"*.png binary\n*.yaml merge=archgen\n"
 
 
+def test_libraries_outside_of_the_projects_folder_get_the_line_too(run: Run, tmp_path: Path) -> None:
+    project = "archgen: 1\nlibraries: {outer: ../common, inner: lib, ros: builtin, gone: ../gone}\n"
+    files = {"robot/archgen.yaml": project, "robot/lib/a.yaml": "types: {A: {}}\n", "common/b.yaml": "types: {B: {}}\n"}
+    top = repositories.repository(tmp_path, files)
+    ran = run("init", top / "robot", "--merge-driver")
+    assert ran.status == 0
+    assert sorted(str(path.relative_to(top)) for path in top.rglob(".gitattributes")) == [
+        "common/.gitattributes",
+        "robot/.gitattributes",
+    ]
+    assert (top / "common" / ".gitattributes").read_bytes() == b"*.yaml merge=archgen\n"
+    ran = run("init", top / "robot", "--merge-driver")
+    assert ran.out.count("names the merge driver already") == 2
+
+
 def test_a_new_project_outside_of_a_repository_says_what_to_do(run: Run, tmp_path: Path) -> None:
     ran = run("init", tmp_path / "robot", "--yes", "--merge-driver")
     assert ran.status == 0

@@ -89,6 +89,29 @@ def test_owners(run: Run, duo: Path) -> None:
     assert "  components: seeing.camera, seeing.finder, moving.calibration, moving.watch" in lines
 
 
+def test_files_of_libraries_and_messages_are_everybodys(run: Run, tmp_path: Path) -> None:
+    project = (
+        "archgen: 1\npartners: {p: {}}\nlibraries: {common: common}\nros: {interfaces: [robot_msgs/msg/*.msg]}\n"
+        "groups: {a: {title: A, owner: p, components: {c: {is: common.eye}}}}\n"
+    )
+    library = "component_types: {eye: {functionality: Sees.}}\n"
+    for name, text in (
+        ("archgen.yaml", project),
+        ("common/eye.yaml", library),
+        ("robot_msgs/msg/Pose.msg", "float64 x\n"),
+    ):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    ran = run("owners", tmp_path)
+    assert ran.status == 0
+    assert ran.out.splitlines()[-3:] == [
+        "",
+        "All partners share:",
+        "  files:      robot_msgs/msg/Pose.msg, common/eye.yaml",
+    ]
+    assert "/common/eye.yaml" in run("owners", tmp_path, "--format", "codeowners").out
+
+
 def test_codeowners(run: Run, duo: Path) -> None:
     ran = run("owners", duo, "--format", "codeowners", "-o", duo / ".github" / "CODEOWNERS")
     assert ran.status == 0

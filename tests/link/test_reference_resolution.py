@@ -300,10 +300,16 @@ def test_a_chain_takes_no_group(told: Told) -> None:
             "hosts: {pc: }\nnodes: {n: {host: px}}",
             "2:19 unknown-reference: no host named `px` (1:9 declared here) | did you mean `pc`?",
         ),
-        ("nodes: {n: {container: c}}", "1:24 unknown-reference: no container named `c` | None"),
-        ("containers: {c: pc}", "1:17 unknown-reference: no host named `pc` | None"),
-        ("links: {l: [pc]}", "1:13 unknown-reference: no host named `pc` | None"),
-        ("requirements: {R-1: {use_cases: [UC-9]}}", "1:34 unknown-reference: no use case named `UC-9` | None"),
+        (
+            "nodes: {n: {container: c}}",
+            "1:24 unknown-reference: no container named `c` | declare it in the section `containers`",
+        ),
+        ("containers: {c: pc}", "1:17 unknown-reference: no host named `pc` | declare it in the section `hosts`"),
+        ("links: {l: [pc]}", "1:13 unknown-reference: no host named `pc` | declare it in the section `hosts`"),
+        (
+            "requirements: {R-1: {use_cases: [UC-9]}}",
+            "1:34 unknown-reference: no use case named `UC-9` | declare it in the section `use_cases`",
+        ),
     ],
 )
 def test_plain_ids(told: Told, text: str, message: str) -> None:

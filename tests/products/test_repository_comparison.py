@@ -9,6 +9,7 @@ import pytest
 from archgen import git
 from archgen.products.repository_comparison import compare_projects_below, list_projects_below
 from tests.repositories import commit, repository
+from tests.repositories import git as git_command
 from tests.running import archgen
 
 LIBRARY = "component_types: {laser: {parameters: {range: 5.0}, outputs: {scan: sensor_msgs/msg/LaserScan}}}\n"
@@ -97,3 +98,25 @@ def test_what_cannot_be_read_is_not_removed(top: Path) -> None:
     # What another file removes is removed all the same.
     (top / "robots" / "one" / "archgen.yaml").write_text(USER.replace("drive: {inputs: {scan: front.scan}}", ""))
     assert compare(top)[0][1].startswith("1 change (1 removed); ")
+
+
+@pytest.mark.parametrize("named", ["robots/two", "./robots/two", "robots/two/archgen.yaml"])
+def test_the_folder_that_is_named_says_which_project_is_meant_at_the_revision(top: Path, named: str) -> None:
+    (top / "robots" / "two" / "archgen.yaml").write_text(PLAIN.replace("G}", "H}"))
+    assert "title `G` → `H`" in archgen("diff", "HEAD", named, cwd=top).stdout.decode()
+    assert "title `H` → `G`" in archgen("diff", named, "HEAD", cwd=top).stdout.decode()
+
+
+def test_a_folder_of_another_repository_says_nothing_of_the_one_here(
+    top: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    other = repository(tmp_path_factory.mktemp("other"), {"archgen.yaml": PLAIN})
+    archgen("diff", "HEAD", str(other), cwd=top, status=2)
+
+
+def test_a_branch_that_is_called_as_a_folder_is_the_branch(top: Path) -> None:
+    (top / "two").mkdir()
+    (top / "two" / "archgen.yaml").write_text(PLAIN)
+    git_command(top, "branch", "two")
+    lines = archgen("diff", "HEAD", "two", cwd=top).stdout.decode().splitlines()
+    assert lines == ["robots/one  nothing changed", "robots/two  nothing changed"]

@@ -123,6 +123,36 @@ def test_only_archgen_yaml_names_libraries(tmp_path: Path) -> None:
     )
 
 
+def test_a_file_with_nothing_but_libraries_says_where_they_are_named(tmp_path: Path) -> None:
+    own = {"b.yaml": "libraries: {common: lib}\n", "c.yaml": "libraries: {common: {path: ../lib}}\n"}
+    others = {"d.yaml": "libraries: {zlib: 1.2}\n", "e.yaml": "libraries: {a: x}\nversion: 2\n"}
+    write(tmp_path, {"archgen.yaml": "archgen: 1\n", **own, **others})
+    notes = [f"{d.span}: {d.message}" for d in check_project(tmp_path).findings if d.rule == "ignored-file"]
+    assert sorted(notes) == [
+        "archgen.yaml:1:1: `d.yaml`, `e.yaml` hold no section of the language and are not read",
+        "b.yaml:1:1: only archgen.yaml names libraries: this file is not read",
+        "c.yaml:1:1: only archgen.yaml names libraries: this file is not read",
+    ]
+
+
+@pytest.mark.parametrize("written", ["e: ", "e: {}", "e: {path: }"])
+def test_a_library_without_a_path_is_reported(tmp_path: Path, written: str) -> None:
+    text = ROBOT.replace("common: PATH", written).replace("common.laser", "e.laser")
+    write(tmp_path, {"archgen.yaml": text})
+    (error,) = list_errors(check_project(tmp_path))
+    assert error == (
+        "archgen.yaml:2:13 missing-library: the library `e` has no path"
+        " | write its folder, as in `e: ../e`, or `builtin` for what ships with archgen"
+    )
+
+
+@pytest.mark.parametrize("written", ["e: {pth: lib}", "e: 5", "e: [lib]", "e: {path: [lib]}"])
+def test_a_library_that_was_not_understood_is_reported_once(tmp_path: Path, written: str) -> None:
+    write(tmp_path, {"archgen.yaml": ROBOT.replace("common: PATH", written).replace("common.laser", "e.laser")})
+    (error,) = list_errors(check_project(tmp_path))
+    assert "missing-library" not in error
+
+
 def test_a_project_of_one_file_reads_no_library(tmp_path: Path) -> None:
     write(tmp_path, {"one.yaml": robot("lib"), "lib/drivers.yaml": DRIVERS})
     (error,) = list_library_findings(check_project(tmp_path / "one.yaml"))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
+from archgen.emit.data.repository_path import path_in_repository
 from archgen.emit.terminal.findings_text import render_finding_text
 
 if TYPE_CHECKING:
@@ -30,9 +31,12 @@ _NONCHARACTERS = {0xFFFE: "\ufffd", 0xFFFF: "\ufffd"}
 
 
 def format_junit(
-    diagnostics: Iterable[Diagnostic], sources: SourceTexts, files: Iterable[str], *, strict: bool
+    diagnostics: Iterable[Diagnostic], sources: SourceTexts, files: Iterable[str], *, folder: str = "", strict: bool
 ) -> Iterator[str]:
-    """Yield the lines of the document: a suite for each file, in order; with `strict`, warnings fail too."""
+    """Yield the lines of the document: a suite for each file, in order; with `strict`, warnings fail too.
+
+    Suites are called by their files' paths from the repository's root. `folder` is the project's, from there.
+    """
     findings_by_file: dict[str, tuple[Diagnostic, ...]] = dict.fromkeys(files, ()) | {
         file: tuple(group)
         for file, group in groupby(
@@ -48,14 +52,15 @@ def format_junit(
     yield '<?xml version="1.0" encoding="UTF-8"?>'
     yield f'<testsuites name="archgen" tests="{total}" failures="{failed}" errors="0">'
     for file, group in sorted(findings_by_file.items()):
-        yield from _suite_lines(file, group, sources, failing_severities)
+        suite_name = path_in_repository(file, folder) or file or _NO_FILE_NAME
+        yield from _suite_lines(suite_name, group, sources, failing_severities)
     yield "</testsuites>"
 
 
 def _suite_lines(
-    file: str, group: Sequence[Diagnostic], sources: SourceTexts, failing_severities: set[Severity]
+    suite_name: str, group: Sequence[Diagnostic], sources: SourceTexts, failing_severities: set[Severity]
 ) -> Iterator[str]:
-    name = _escape_attribute(file or _NO_FILE_NAME)
+    name = _escape_attribute(suite_name)
     group_name = posixpath.splitext(name)[0]  # Jenkins takes what follows a dot for a class's name
     failed = sum(diagnostic.severity in failing_severities for diagnostic in group)
     yield f'  <testsuite name="{name}" tests="{max(1, len(group))}" failures="{failed}" errors="0" skipped="0">'

@@ -9,16 +9,23 @@ from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
 from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import ComponentType
 from archgen.model.coordinate_frames import Frame
 from archgen.syntax.yaml_tree import MappingNode
 
 
-def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentType]:
-    """Return the component types of a project, by id."""
+def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResolver) -> dict[str, ComponentType]:
+    """Return the component types of a project, by id. Owners of its own types that are no partners are reported.
+
+    Whose a library's types are, those know who check the library by itself.
+    """
     types: dict[str, ComponentType] = {}
     for name, entry in expansion.type_entries.items():
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
+        library = library_of_type(name)
+        if library is None:
+            resolver.resolve_owners(body, name, ())
         types[name] = ComponentType(
             id=name,
             title=mapping_values.get_title(body, name.rpartition(".")[2]),
@@ -26,7 +33,7 @@ def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentTy
             description=mapping_values.get_text(whole_body, "description"),
             owner=mapping_values.get_text(body, "owner"),
             base=mapping_values.get_text(body, "is"),
-            library=library_of_type(name),
+            library=library,
             generic=list_generic_names(entry),
             is_abstract=is_abstract(entry),
             inputs=_read_port_types(whole_body, "inputs"),
@@ -36,6 +43,7 @@ def declare_component_types(expansion: ExpandedProject) -> dict[str, ComponentTy
             open=mapping_values.get_texts(whole_body, "open"),
             operations=declare_operations(whole_body),
             frames=tuple(_read_frames(whole_body)),
+            inner_types=frozenset(_list_inner_types(whole_body)),
             at=entry.key_span,
         )
     return types
@@ -47,6 +55,20 @@ def _read_port_types(body: MappingNode, side: str) -> dict[str, str | None]:
         name: mapping_values.normalise_type_name(text) if (text := mapping_values.get_text(port, "type")) else None
         for name, _, port in mapping_values.iterate_elements(body, side)
     }
+
+
+def _list_inner_types(body: MappingNode) -> Iterator[str]:
+    """Yield the types that components inside name as they are written: instances of them are in no group."""
+    for _, _, part in mapping_values.iterate_elements(body, "components"):
+        for side in ("inputs", "outputs"):
+            yield from filter(None, _read_port_types(part, side).values())
+        for operation in declare_operations(part).values():
+            yield from operation.type_names
+        for key in ("is", "same_as"):
+            expression = mapping_values.get_text(part, key) or ""
+            if "<" in expression:  # what generic names stand for
+                yield mapping_values.normalise_type_name(expression)
+        yield from _list_inner_types(part)
 
 
 def _read_frames(body: MappingNode) -> Iterator[Frame]:

@@ -55,6 +55,15 @@ def test_a_suite_for_each_file_a_case_for_each_finding() -> None:
     )
 
 
+def test_files_have_their_paths_in_the_repository() -> None:
+    findings = [
+        replace(_FINDING, span=Span(file, 1, 1, 1, 2)) for file in ("../lib/parts.yaml", "../../out.yaml", "a.yaml")
+    ]
+    lines = junit_results.format_junit(findings, SourceTexts(), ("b.yaml",), folder="robot", strict=False)
+    names = [suite.get("name") for suite in etree.fromstring("\n".join(lines).encode()).iter("testsuite")]
+    assert names == ["../../out.yaml", "lib/parts.yaml", "robot/a.yaml", "robot/b.yaml"]
+
+
 def test_with_strict_warnings_fail_and_notes_do_not() -> None:
     found = [replace(_FINDING, severity=severity) for severity in (Severity.WARNING, Severity.NOTE)]
     root = etree.fromstring(_render(*found, strict=True).encode())
