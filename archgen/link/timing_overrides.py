@@ -18,6 +18,7 @@ from archgen.link.override_values import OverrideError
 from archgen.link.process_overrides import ProcessOverride
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 from archgen.model.declared_timing import (
     ActivityBehaviour,
     DroppedMessages,
@@ -217,8 +218,10 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
     components = [name for name in architecture.components if name == element or name.endswith(f".{element}")]
     if element in architecture.components:
         components = [element]
+    if not components and element in architecture.component_types:
+        return _list_instance_activities(architecture, element)
     if len(components) != 1:
-        names = [*architecture.nodes, *architecture.components]
+        names = [*architecture.nodes, *architecture.components, *architecture.component_types]
         guess = did_you_mean(element, [candidate for name in names for candidate in (name, name.rpartition(".")[2])])
         message = (
             f"`{element}` may mean {', '.join(components[:6])}" if components else f"nothing is called `{element}`"
@@ -233,6 +236,29 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
         msg = f"{len(nodes)} nodes implement `{components[0]}`: name one of them ({', '.join(names[:6])})"
         raise OverrideError(msg)
     return ((nodes[0].id, components[0]),)
+
+
+def _list_instance_activities(architecture: Architecture, type_name: str) -> tuple[tuple[str, str], ...]:
+    """Return the activities of all instances of a component type, and of types that are made from it."""
+    instances = [each for each in architecture.components.values() if _is_instance(architecture, each, type_name)]
+    activities = tuple((node.id, each.id) for each in instances for node in architecture.nodes_implementing(each.id))
+    if not activities:
+        reason = (
+            "no node implements one of its instances" if instances else "it has no instance without components inside"
+        )
+        msg = f"`{type_name}` is a component type, and {reason}: its timing counts nowhere"
+        raise OverrideError(msg)
+    return activities
+
+
+def _is_instance(architecture: Architecture, component: Component, type_name: str) -> bool:
+    names: list[str] = []
+    name = (component.component_type or "").partition("<")[0]
+    # Types that are made from themselves are reported elsewhere.
+    while name in architecture.component_types and name not in names:
+        names.append(name)
+        name = (architecture.component_types[name].base or "").partition("<")[0]
+    return type_name in names
 
 
 def _check_timing(architecture: Architecture) -> None:

@@ -216,3 +216,34 @@ def test_of_many_elements_that_may_be_meant_six_are_named() -> None:
         with pytest.raises(OverrideError) as caught:
             read_override(architecture, f"{element}.timing.wcet=1 ms")
         assert str(caught.value) == message
+
+
+TYPED = """
+libraries: {lib: {component_types: {laser: {outputs: {scan: sensor_msgs/msg/LaserScan}, timing: {rate: 10 Hz, wcet: 5 ms}}}}}
+component_types:
+  wide: {is: lib.laser, timing: {wcet: 7 ms}}
+  lonely: {outputs: {o: std_msgs/msg/Empty}}
+  pair: {components: {left: {is: lib.laser}, log: {inputs: {scan: left.scan}}}}
+groups:
+  see:
+    components:
+      front: {same_as: lib.laser}
+      rear: {is: wide}
+      pair: {is: pair}
+      screen: {inputs: {front: front.scan, rear: rear.scan}}
+nodes: {n: front, rear: rear, left: pair.left, log: pair.log, screen: screen}
+"""
+
+
+def test_of_a_component_type_all_instances_are_meant(tmp_path: Path) -> None:
+    file = tmp_path / "project.yaml"
+    file.write_text(TYPED)
+    architecture = check_project(file).architecture
+    nodes = apply_overrides(architecture, ["lib.laser.timing.wcet=9ms"]).nodes
+    set_nodes = {name for name, node in nodes.items() for each in node.timing.values() if str(each.wcet) == "9 ms"}
+    assert set_nodes == {"n", "rear", "left"}
+    for element, reason in (("lonely", "no instance"), ("pair", "no instance without components inside")):
+        with pytest.raises(OverrideError, match=f"`{element}` is a component type, and .*{reason}"):
+            apply_overrides(architecture, [f"{element}.timing.wcet=9ms"])
+    with pytest.raises(OverrideError, match=r"nothing is called `lib.lazer`; did you mean `lib.laser`?"):
+        apply_overrides(architecture, ["lib.lazer.timing.wcet=9ms"])
