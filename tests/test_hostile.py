@@ -198,6 +198,7 @@ def test_the_packed_file_holds_the_texts_as_they_were(kind: str, project: Path, 
     assert yaml.safe_load((tmp_path / "c.yaml").read_text("utf-8"))["project"]["description"] == hostile.TEXTS[kind]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["markup"], indirect=True)
 def test_no_script_runs_in_a_browser(project: Path) -> None:
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")

@@ -86,7 +86,11 @@ def test_a_comparison_takes_the_analyses_of_the_checks(tmp_path: Path, monkeypat
 
 
 @pytest.mark.parametrize(
-    "name", ["example_ramcip", *sorted(f"examples/{each.name}" for each in (ROOT / "examples").iterdir())]
+    "name",
+    [
+        "example_ramcip",
+        *sorted(each.parent.relative_to(ROOT).as_posix() for each in ROOT.glob("examples/**/archgen.yaml")),
+    ],
 )
 def test_what_was_judged_is_completed_to_what_is_analysed_at_once(name: str) -> None:
     architecture = pipeline.check_project(ROOT / name).architecture

@@ -129,6 +129,7 @@ def test_axe_finds_nothing(visit: OpenPage, scheme: str, width: int) -> None:
         assert judge_with_axe(visit(path, width, scheme)) == [], path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("width", "scheme"), [(1280, "dark"), (360, "light")])
 def test_the_case_study_in_chromium(visit: OpenPage, example: Path, width: int, scheme: str) -> None:
     for path in EXAMPLE:
