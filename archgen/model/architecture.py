@@ -247,10 +247,10 @@ class Architecture:
     def list_types_of(self, component: Component) -> Iterator[str]:
         """Yield the component types that a component is an instance of, or is part of: with bindings, without, and bases."""
         for each in (component, *self.list_around(component)):
-            type_text = each.component_type
-            while type_text is not None:
+            type_text, seen_names = each.component_type, set[str]()
+            while type_text is not None and (name := type_text.partition("<")[0]) not in seen_names:
+                seen_names.add(name)  # types that are made from themselves are reported elsewhere
                 yield type_text
-                name = type_text.partition("<")[0]
                 if name != type_text:
                     yield name
                 base = self.component_types.get(name)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from archgen import pipeline
 from archgen.model.library_ports import is_offered_by_library, waits_for_calls
 
@@ -36,3 +38,17 @@ def test_what_is_offered_and_what_waits(tmp_path: Path) -> None:
     assert [each.id for each in architecture.components.values() if waits_for_calls(architecture, each)] == [
         "g.manager"
     ]
+
+
+@pytest.mark.parametrize("outputs", ["", ", outputs: {o: std_msgs/msg/String}"])
+def test_types_that_are_made_from_themselves_come_to_an_end(tmp_path: Path, outputs: str) -> None:
+    types = f"component_types: {{round: {{is: back{outputs}}}, back: {{is: round{outputs}}}}}\n"
+    text = TEXT.partition("component_types:\n  front")[0] + types
+    file = tmp_path / "project.yaml"
+    file.write_text(text + "groups: {g: {components: {turned: {is: round}, lidar: {is: common.lidar}}}}\n")
+    checked = pipeline.check_project(file)
+    assert [each.rule for each in checked.findings if each.severity == "error"] == ["circular-types"]
+    architecture = checked.architecture
+    assert list(architecture.list_types_of(architecture.components["g.turned"])) == ["round", "back"]
+    offered = [each.id for each in architecture.outputs.values() if is_offered_by_library(architecture, each)]
+    assert offered == ["g.lidar.scan"]
