@@ -49,10 +49,11 @@ class LivePictures:
         self._changed = threading.Condition()
         self._stopped = False
         self._threads: list[threading.Thread] = []
-        self._fonts = tempfile.TemporaryDirectory(prefix="archgen-fonts-")
+        self._fonts: tempfile.TemporaryDirectory[str] | None = None
 
     def start(self) -> None:
         """Start the drawing processes: they take half a second until they can draw."""
+        self._fonts = tempfile.TemporaryDirectory(prefix="archgen-fonts-")
         folder = Path(self._fonts.name)
         for _ in range(_DRAWING_THREADS):
             worker = create_worker(folder)
@@ -69,7 +70,8 @@ class LivePictures:
         for thread in self._threads:
             # Daemons: a picture that takes half a minute does not keep Ctrl-C waiting.
             thread.join(timeout=1)
-        self._fonts.cleanup()
+        if self._fonts is not None:
+            self._fonts.cleanup()
 
     def find_pictures(self, drawings: Iterable[Drawing]) -> Mapping[str, Picture]:
         """Return pictures by id: as they are now if they are drawn soon, else as they were."""
