@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -80,11 +79,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     property_sizes.choose_profile(config)
-
-
-def pytest_xdist_auto_num_workers() -> int:
-    """Return one worker more than there are cores: tests wait for browsers and processes, which left a quarter of two cores idle."""
-    return (os.cpu_count() or 1) + 1
 
 
 @pytest.fixture(scope="session")
