@@ -16,7 +16,7 @@ from pathlib import Path
 from archgen import analyses, compose, findings, link, project, schema, transform
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.source_span import SourceTexts
 from archgen.findings import (
     error_aftermath,
     finding_limit,
@@ -291,7 +291,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     raw_diagnostics = instance_findings.gather_instance_findings(
         all_diagnostics,
         architecture,
-        _list_type_spans(merged_table),
+        [entry.value.span for entry in expansion.type_entries.values()],
         frozenset(library.at for library in loaded_project.libraries if library.is_shipped),
     )
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
@@ -333,11 +333,6 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
 
 def _list_structural_errors(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     return [d for d in diagnostics if _RULES_BY_NAME[d.rule].fixed and d.severity in {None, Severity.ERROR}]
-
-
-def _list_type_spans(merged_table: MappingNode) -> list[Span]:
-    """Return where component types are written."""
-    return [entry.value.span for entry in compose.list_type_entries(merged_table).values()]
 
 
 def _find_silenced(

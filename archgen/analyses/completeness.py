@@ -113,10 +113,9 @@ def _suggest_place(component: Component, missing_items: list[str]) -> str | None
     """Return where a reference to a component type gets what it lacks, None for any other component."""
     if not component.is_reference or missing_items == ["owner"]:
         return None
-    type_name = (component.component_type or "").partition("<")[0]
-    place = f"it at its component type `{type_name}`"
+    place = f"it at its component type `{component.type_name}`"
     if "owner" in missing_items:
-        place = f"the owner here, the rest at its component type `{type_name}`"
+        place = f"the owner here, the rest at its component type `{component.type_name}`"
     return f"write {place}; or make it an instance (`is`) instead of a reference (`same_as`)"
 
 

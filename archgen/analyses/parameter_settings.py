@@ -83,7 +83,7 @@ def unknown_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _find_unknown_settings(architecture: Architecture, component: Component) -> Iterator[Diagnostic]:
     """Yield the parameters that an instance sets and its type does not declare: it changes values only."""
-    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
+    component_type = architecture.component_types.get(component.type_name)
     if component_type is None or not component_type.parameters or component.parameters == component_type.parameters:
         return
     ros_1 = is_ros_1(architecture.distro)

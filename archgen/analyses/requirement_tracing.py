@@ -230,14 +230,13 @@ def unjustified_component(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _suggest_justification(architecture: Architecture, component: Component) -> str:
-    type_name = (component.component_type or "").partition("<")[0]
     if component.is_reference:
         return (
-            f"name in `requirements` of its component type `{type_name}` what it is there for: a reference (`same_as`) has "
+            f"name in `requirements` of its component type `{component.type_name}` what it is there for: a reference (`same_as`) has "
             "none of its own, an instance (`is`) has"
         )
-    component_type = architecture.component_types.get(type_name)
-    elsewhere = f", or in those of `{type_name}`," if component_type and component_type.library else ""
+    component_type = architecture.component_types.get(component.type_name)
+    elsewhere = f", or in those of `{component.type_name}`," if component_type and component_type.library else ""
     return f"name in its `requirements`{elsewhere} what it is there for, as an id or in a sentence"
 
 

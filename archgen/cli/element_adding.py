@@ -114,8 +114,7 @@ def _find_holder(checked_project: CheckedProject, holder_id: str | None) -> str:
 
 
 def _find_type_span(checked_project: CheckedProject, instance: Component) -> Span:
-    name = (instance.component_type or "").partition("<")[0]
-    component_type = checked_project.architecture.component_types.get(name)
+    component_type = checked_project.architecture.component_types.get(instance.type_name)
     return component_type.at if component_type else instance.at
 
 

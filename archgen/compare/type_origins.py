@@ -135,7 +135,8 @@ class OriginFinder:
         """Return a type with all that it is made from, the outermost base first."""
         name = expression.partition("<")[0]
         if name not in self._base_chains:
-            self._base_chains[name] = tuple(reversed(list(_follow_bases(name, self._comparison.after.architecture))))
+            bases = self._comparison.after.architecture.list_bases(name)
+            self._base_chains[name] = tuple(each.id for each in reversed(list(bases)))
         return self._base_chains[name]
 
 
@@ -143,15 +144,6 @@ def trace_origins(comparison: Comparison, changes: Sequence[Change]) -> Mapping[
     """Return where changes come from, by the identity of each change that comes from a type."""
     finder = OriginFinder(comparison)
     return {id(change): origin for change in changes if (origin := finder.find_origin(change))}
-
-
-def _follow_bases(name: str, architecture: Architecture) -> Iterator[str]:
-    names = dict[str, None]()
-    component_type = architecture.component_types.get(name)
-    while component_type and component_type.id not in names:
-        names[component_type.id] = None
-        component_type = architecture.component_types.get((component_type.base or "").partition("<")[0].strip())
-    return iter(names)
 
 
 def _find_component(architecture: Architecture, component_id: str | None) -> Component | None:

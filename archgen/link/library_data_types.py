@@ -83,8 +83,11 @@ def _list_library_types(root: MappingNode) -> dict[str, list[_LibraryType]]:
 
 def _list_project_names(root: MappingNode, expansion: ExpandedProject, outline: ElementOutline) -> Iterator[str]:
     """Yield what may be the name of a type in a project: of ports, operations, its own types, its component types."""
-    yield from _split_names(outline.list_used_types())
-    yield from _list_names_in(root.get("types"), is_field=False)
+    own_types = root.get("types")
+    own_names = own_types.entries if isinstance(own_types, MappingNode) else ()
+    # A name may bind a generic type of a library: `Envelope<Pose>: {message: ...}`.
+    yield from _split_names((*outline.list_used_types(), *own_names))
+    yield from _list_names_in(own_types, is_field=False)
     for body in expansion.type_bodies.values():
         yield from _list_names_in(body, is_field=False)
     for _, _, group in mapping_values.iterate_elements(expansion.root, "groups"):

@@ -128,9 +128,7 @@ def pack_project(
     types = _copy_dict(project_data.get("types"))
     # Of the shipped type mapper, what the project uses: another version of archgen may map these types differently.
     types |= {
-        t.name: _pack_type(t)
-        for t in architecture.types.values()
-        if t.origin == "shipped" and t.name not in types and t.library is None
+        t.name: _pack_type(t) for t in architecture.types.values() if t.origin == "shipped" and t.name not in types
     }
     optional_sections = {"ros": ros, "report": report, "types": types}
     project_data |= {key: value for key, value in optional_sections.items() if value}

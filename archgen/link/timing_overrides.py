@@ -18,7 +18,6 @@ from archgen.link.override_values import OverrideError
 from archgen.link.process_overrides import ProcessOverride
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component
 from archgen.model.declared_timing import (
     ActivityBehaviour,
     DroppedMessages,
@@ -240,7 +239,11 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
 
 def _list_instance_activities(architecture: Architecture, type_name: str) -> tuple[tuple[str, str], ...]:
     """Return the activities of all instances of a component type, and of types that are made from it."""
-    instances = [each for each in architecture.components.values() if _is_instance(architecture, each, type_name)]
+    instances = [
+        each
+        for each in architecture.components.values()
+        if any(base.id == type_name for base in architecture.list_bases(each.type_name))
+    ]
     activities = tuple((node.id, each.id) for each in instances for node in architecture.nodes_implementing(each.id))
     if not activities:
         reason = (
@@ -249,16 +252,6 @@ def _list_instance_activities(architecture: Architecture, type_name: str) -> tup
         msg = f"`{type_name}` is a component type, and {reason}: its timing counts nowhere"
         raise OverrideError(msg)
     return activities
-
-
-def _is_instance(architecture: Architecture, component: Component, type_name: str) -> bool:
-    names: list[str] = []
-    name = (component.component_type or "").partition("<")[0]
-    # Types that are made from themselves are reported elsewhere.
-    while name in architecture.component_types and name not in names:
-        names.append(name)
-        name = (architecture.component_types[name].base or "").partition("<")[0]
-    return type_name in names
 
 
 def _check_timing(architecture: Architecture) -> None:

@@ -244,22 +244,28 @@ class Architecture:
         """Return the ports of leaves behind an `input` or `output`; that of a leaf stands for itself."""
         return tuple(list_leaf_ports(self.shells, self.shell_ports, kind, port_id)) or (port_id,)
 
+    def list_bases(self, type_name: str) -> Iterator[ComponentType]:
+        """Yield a component type and those that it is made from, one of the other; nothing for a name that is not known."""
+        seen_names: set[str] = set()
+        # Types that are made from themselves are reported elsewhere.
+        while type_name in self.component_types and type_name not in seen_names:
+            seen_names.add(type_name)
+            yield self.component_types[type_name]
+            type_name = self.component_types[type_name].base_name
+
     def list_types_of(self, component: Component) -> Iterator[str]:
         """Yield the component types that a component is an instance of, or is part of: with bindings, without, and bases."""
         for each in (component, *self.list_around(component)):
-            type_text, seen_names = each.component_type, set[str]()
-            while type_text is not None and (name := type_text.partition("<")[0]) not in seen_names:
-                seen_names.add(name)  # types that are made from themselves are reported elsewhere
+            bases = (base.base for base in self.list_bases(each.type_name))
+            for type_text in dict.fromkeys(filter(None, (each.component_type, *bases))):
                 yield type_text
-                if name != type_text:
-                    yield name
-                base = self.component_types.get(name)
-                type_text = base.base if base else None
+                if "<" in type_text:
+                    yield type_text.partition("<")[0]
 
     def list_libraries_of(self, component: Component) -> Iterator[str]:
         """Yield the libraries of the component types that a component is an instance of, or is part of, each once."""
-        names = (self.component_types.get(text.partition("<")[0]) for text in self.list_types_of(component))
-        yield from dict.fromkeys(each.library for each in names if each is not None and each.library is not None)
+        types = (base for each in (component, *self.list_around(component)) for base in self.list_bases(each.type_name))
+        yield from dict.fromkeys(each.library for each in types if each.library is not None)
 
     def list_ports(self) -> Iterator[Input | Output]:
         """Yield all ports: outputs, then inputs."""

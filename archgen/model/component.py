@@ -158,6 +158,11 @@ class Component:
         """The ids of all owners, the main one first; empty if there is none."""
         return (self.owner, *self.co_owners) if self.owner else ()
 
+    @property
+    def type_name(self) -> str:
+        """The name of its component type alone: `filter` of `filter<Pose>`; empty where it is made from none."""
+        return (self.component_type or "").partition("<")[0]
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
@@ -210,3 +215,8 @@ class ComponentType:
     inner_types: frozenset[str] = field(default=frozenset(), compare=False)
     """The types that the components inside name, to any depth: what is said of them is compared component by component."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+    @property
+    def base_name(self) -> str:
+        """The name of what it is made from alone, without what generic names stand for; empty where that is nothing."""
+        return (self.base or "").partition("<")[0].strip()

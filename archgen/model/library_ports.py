@@ -10,13 +10,9 @@ from archgen.model.message_types import flow_of
 def is_offered_by_library(architecture: Architecture, output: Output) -> bool:
     """Whether a component type of a library has an output: what the project adds to a type is the project's."""
     component = architecture.components[output.component]
-    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
-    seen_types: set[str] = set()
-    # Types that are made from themselves are reported elsewhere.
-    while component_type is not None and component_type.library is None and component_type.id not in seen_types:
-        seen_types.add(component_type.id)
-        component_type = architecture.component_types.get((component_type.base or "").partition("<")[0])
-    return component_type is not None and component_type.library is not None and output.name in component_type.outputs
+    bases = architecture.list_bases(component.type_name)
+    library_type = next((each for each in bases if each.library is not None), None)
+    return library_type is not None and output.name in library_type.outputs
 
 
 def waits_for_calls(architecture: Architecture, component: Component) -> bool:

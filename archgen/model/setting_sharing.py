@@ -43,13 +43,13 @@ class SharedOperation:
 
 def list_declaring_owners(architecture: Architecture, component: Component) -> tuple[str, ...]:
     """Return the partners who answer for what a component can be set to: its type's owner, else its own owners."""
-    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
+    component_type = architecture.component_types.get(component.type_name)
     return (component_type.owner,) if component_type and component_type.owner else component.owners
 
 
 def is_set_by_instance(architecture: Architecture, component: Component, name: str) -> bool:
     """Whether an instance gives a parameter of its type a value of its own."""
-    component_type = architecture.component_types.get((component.component_type or "").partition("<")[0])
+    component_type = architecture.component_types.get(component.type_name)
     declared = component_type.parameters.get(name) if component_type else None
     parameter = component.parameters.get(name)
     if declared is None or parameter is None or parameter.value is None or parameter.handed_from:

@@ -41,8 +41,7 @@ class LoadedProject:
 
     Nothing is used of the files in `broken_files`. `lost_keys` are the keys in them, and in whatever else was not
     understood: what they may declare is never reported as missing. `partial` is whether that was a whole file or
-    section. `library_files` are the files of libraries, read or not, by their paths from the project's folder;
-    `library_ignores` are the comments in them: nobody says that this project needs them.
+    section. `library_files` are the files of libraries, read or not, by their paths from the project's folder.
     """
 
     files: ProjectFiles
@@ -63,12 +62,18 @@ class LoadedProject:
     partial: bool = False
     libraries: tuple[LoadedLibrary, ...] = ()
     library_files: tuple[str, ...] = ()
-    library_ignores: tuple[IgnoreComment, ...] = ()
 
     @property
     def root(self) -> Path:
         """The project's folder."""
         return self.files.root
+
+    @property
+    def library_ignores(self) -> tuple[IgnoreComment, ...]:
+        """The comments that silence findings in libraries: nobody says that this project needs them."""
+        return tuple(
+            ignore for library in self.libraries for document in library.documents for ignore in document.ignores
+        )
 
     @property
     def incomplete_libraries(self) -> frozenset[str]:
@@ -131,9 +136,6 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         sources=state.sources,
         diagnostics=tuple(state.diagnostics),
         ignores={document.file: document.ignores for document in state.documents if document.ignores},
-        library_ignores=tuple(
-            ignore for library in libraries for document in library.documents for ignore in document.ignores
-        ),
         rule_settings={
             entry.key: Severity(severity.text) for entry in rule_entries if (severity := _severity_of(entry.value))
         },

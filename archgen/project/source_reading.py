@@ -183,7 +183,9 @@ def read_library_slices(state: ReadingState, folder: str) -> None:
     for file in file_patterns.expand_pattern(state.files, f"{folder}/**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
         state.seen_files.add(file)
         parsed_slice = _parse_file(state, file)
-        if baseline_reading.is_baseline(parsed_slice.text):
+        # A library may have an archgen.yaml, so that it can be checked by itself; others are projects of their own.
+        is_other_project = file != f"{folder}/{PROJECT_FILE}" and "archgen" in parsed_slice.sections
+        if baseline_reading.is_baseline(parsed_slice.text) or is_other_project:
             continue
         if parsed_slice.document is None:
             if _looks_like_slice(parsed_slice, known_sections):

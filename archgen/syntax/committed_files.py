@@ -107,7 +107,7 @@ class CommittedFiles:
 
         git lists nothing below a link or a submodule: there is no such folder.
         """
-        own_folder = self.root.relative_to(self.objects.repository.top).as_posix().removeprefix(".")
+        own_folder = self.root.relative_to(self.objects.repository.top).as_posix()
         refusal = find_path_refusal(path) or find_place_refusal(own_folder, path)
         if refusal:
             return refusal

@@ -149,4 +149,8 @@ def find_place_refusal(own_folder: str, path: str, *, has_repository: bool = Tru
         return FileRefusal(f"this leads out of {top}", "name a folder in the same repository")
     if target == "." or f"{own_folder}/".startswith(f"{target}/"):
         return FileRefusal("this folder holds the project itself", "name a folder of its own")
+    # Written so, what is none of the project's sources would not be recognised in the project's folder.
+    if posixpath.normpath(path).startswith("../") and target.startswith(f"{own_folder}/"):
+        inner_path = target.removeprefix(f"{own_folder}/")
+        return FileRefusal("this leads out of the project's folder and back into it", f"write `{inner_path}`")
     return None

@@ -9,7 +9,7 @@ from archgen.views.shapes import Text
 
 def find_type(architecture: Architecture, component: Component) -> ComponentType | None:
     """Return the type that a component is made from; None where it is made from none, or from one that is not known."""
-    return architecture.component_types.get((component.component_type or "").partition("<")[0].strip())
+    return architecture.component_types.get(component.type_name)
 
 
 def name_type(architecture: Architecture, component: Component) -> str:
@@ -38,8 +38,8 @@ def list_instances(architecture: Architecture, type_id: str) -> list[Component]:
     while further := {
         each.id
         for each in architecture.component_types.values()
-        if each.id not in derived and (each.base or "").partition("<")[0].strip() in derived
+        if each.id not in derived and each.base_name in derived
     }:
         derived |= further
     everything = {**architecture.components, **architecture.shells}
-    return [each for each in everything.values() if (each.component_type or "").partition("<")[0].strip() in derived]
+    return [each for each in everything.values() if each.type_name in derived]

@@ -160,5 +160,7 @@ def test_the_messages_of_a_library_are_the_same_for_all_of_its_projects(robot: P
         "Envelope<Own>": "robot_msgs/msg/EnvelopeOwn",
         "Envelope<Spot>": "lib_msgs/msg/EnvelopeSpot",
     }
+    (robot / "b.yaml").write_text("types: {Envelope<Pose>: geometry_msgs/msg/PoseWithCovarianceStamped}\n")
+    assert check_project(robot).architecture.types["Envelope"].library == "common"
     (robot / "archgen.yaml").write_text(PROJECT.replace("common: lib,", "common: {path: lib, package: shared_msgs},"))
     assert check_project(robot).architecture.types["Spot"].message == "shared_msgs/msg/Spot"

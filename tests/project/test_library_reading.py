@@ -68,6 +68,7 @@ def test_a_commit_has_the_library_of_that_commit(tmp_path: Path) -> None:
         (".", "this folder holds the project itself"),
         ("../linked", "this folder is reached through a symbolic link"),
         ("../linked/deep", "this folder is reached through a symbolic link"),
+        ("../robot/lib", "this leads out of the project's folder and back into it"),
         ("../nowhere", "there is no such folder"),
         ("../common/drivers.yaml", "there is no such folder"),
         ("/etc", "this is no path"),
@@ -93,6 +94,23 @@ def test_no_other_folder_is_read(tmp_path: Path, path: str, reason: str, *, is_c
     # That its types are unknown follows from it.
     assert not [line for line in list_errors(checked) if "unknown-reference" in line]
     assert "common.laser" not in checked.architecture.component_types
+
+
+def test_a_project_in_a_hidden_folder_finds_its_library_in_a_commit(tmp_path: Path) -> None:
+    repository(tmp_path, {".robots/one/archgen.yaml": robot("../lib"), ".robots/lib/a.yaml": DRIVERS})
+    for checked in (
+        check_project(tmp_path / ".robots" / "one"),
+        check_at_revision(tmp_path / ".robots" / "one", "HEAD"),
+    ):
+        assert list(checked.architecture.component_types) == ["common.laser"]
+
+
+def test_a_project_of_one_file_in_a_library_is_none_of_it(tmp_path: Path) -> None:
+    packed = "archgen: 1\ncomponent_types: {laser: {title: Another}, lamp: {}}\n"
+    write(tmp_path, {"archgen.yaml": robot("lib"), "lib/drivers.yaml": DRIVERS, "lib/packed.yaml": packed})
+    checked = check_project(tmp_path)
+    assert checked.architecture.component_types["common.laser"].title == "Laser"
+    assert list_library_findings(checked) == []
 
 
 def test_without_a_repository_a_library_lies_below_the_project(tmp_path: Path) -> None:

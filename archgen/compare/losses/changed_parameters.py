@@ -50,7 +50,7 @@ def _find_lost_settings(context: ChangeContext, index: int, change: Change) -> I
     instances = [
         component
         for component in context.before.list_described_components()
-        if (component.component_type or "").partition("<")[0] == change.element_id
+        if context.matched_ids.common_id("component_type", component.type_name) == change.element_id
         and is_set_by_instance(context.before, component, name)
     ]
     component_type = context.after.component_types.get(change.element_id)

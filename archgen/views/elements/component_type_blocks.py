@@ -48,7 +48,7 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
 def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Block, ...]:
     """Describe a component type: facts, what it does, its ports, what it can be set to and asked for, and its instances."""
     blocks: list[Block] = [Facts(tuple(_list_facts(lookup, component_type)))]
-    base = lookup.architecture.component_types.get(_base_id(component_type))
+    base = lookup.architecture.component_types.get(component_type.base_name)
     # What a type has from another is said there.
     known_texts = {base.functionality, base.description} if base else set()
     texts = (component_type.functionality, component_type.description)
@@ -70,7 +70,7 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
         yield "Made from", _make_base_cell(lookup, component_type)
     if component_type.generic:
         yield "Generic names", inline_text.join_inlines((Text(name, code=True),) for name in component_type.generic)
-    derived = [each for each in architecture.component_types.values() if _base_id(each) == component_type.id]
+    derived = [each for each in architecture.component_types.values() if each.base_name == component_type.id]
     if derived:
         yield "Made from it", inline_text.join_inlines((type_page_link(each),) for each in derived)
     if component_type.components:
@@ -84,12 +84,8 @@ def _make_code_cell(text: str | None) -> Inlines:
     return (Text(text, code=True),) if text else ()
 
 
-def _base_id(component_type: ComponentType) -> str:
-    return (component_type.base or "").partition("<")[0].strip()
-
-
 def _make_base_cell(lookup: Lookup, component_type: ComponentType) -> Inlines:
-    base = lookup.architecture.component_types.get(_base_id(component_type))
+    base = lookup.architecture.component_types.get(component_type.base_name)
     if base is None:
         return inline_text.to_inlines(component_type.base) if component_type.base else ()
     return (type_page_link(base),)

@@ -228,7 +228,7 @@ def _component_type_card(lookup: Lookup, component_type: ComponentType) -> Eleme
     instances = tuple(
         each.id
         for each in (*architecture.shells.values(), *architecture.components.values())
-        if (each.component_type or "").partition("<")[0] == component_type.id
+        if each.type_name == component_type.id
     )
     lists = (
         ("inputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.inputs.items())),
