@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from archgen.compare import Comparison
     from archgen.products.compared_versions import ProjectVersion
     from archgen.products.output_options import OutputOptions
+    from archgen.products.repository_comparison import ComparedProject, ProjectComparison
 
 ComparisonWriter = Callable[["Comparison", "ProjectVersion", "ProjectVersion"], str | bytes]
 
@@ -123,38 +124,25 @@ def _find_meant_project(before: str | None, after: str | None) -> Path | None:
         return None
 
 
-def _list_projects_below(after: str | None, project: Path | None) -> tuple[str, ...]:
+def _list_compared_projects(before: str | None, after: str | None, project: Path | None) -> tuple[ComparedProject, ...]:
     from archgen.git import GitError
-    from archgen.products.repository_comparison import list_projects_below
+    from archgen.products.repository_comparison import list_compared_projects
 
     try:
-        return list_projects_below(project, after)
+        return list_compared_projects(project, before, after)
     except (GitError, OSError):  # said better by whoever reads the versions
         return ()
 
 
-def _compare_projects(  # noqa: PLR0913 - what the verb was asked
-    folders: tuple[str, ...],
-    before: str | None,
-    after: str | None,
-    project: Path | None,
-    *,
-    breaking: bool,
-    exit_code: bool,
-) -> None:
-    """Print a line for each project of a repository; end with 1 where the options ask for it."""
+def _print_comparisons(comparisons: Sequence[ProjectComparison]) -> None:
+    """Print a line for each project of a repository."""
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.products.repository_comparison import compare_projects_below
 
-    with command_support.explain_missing_versions():
-        comparisons = list(compare_projects_below(project, folders, before, after))
     width = max(len(each.folder) for each in comparisons)
     for each in comparisons:
         click.echo(make_visible(f"{each.folder:{width}}  {each.summary}"))
     if any(each.has_changes for each in comparisons):
         click.echo("\n`archgen diff -C FOLDER` says what changed in a project.")
-    is_refused = breaking and any(each.is_refused for each in comparisons)
-    sys.exit(1 if is_refused or (exit_code and any(each.has_changes for each in comparisons)) else 0)
 
 
 def _write_output(document: str | bytes, output: Path | None) -> None:
@@ -201,16 +189,19 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     top of a repository, each of them has a line: what changed, and in which library.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
-    from archgen.products import compared_versions
+    from archgen.products import compared_versions, repository_comparison
 
     project = project or _find_meant_project(before, after)
-    projects = _list_projects_below(after, project)
+    projects = _list_compared_projects(before, after, project)
     if projects:
         if form != "text" or select is not None or output is not None:
-            msg = f"there are {len(projects)} projects here: name one with -C"
+            msg = f"this folder only holds projects: name one with -C, such as `-C {projects[0].folder}`"
             raise click.UsageError(msg)
-        _compare_projects(projects, before, after, project, breaking=breaking, exit_code=exit_code)
-        return
+        with command_support.explain_missing_versions():
+            comparisons = list(repository_comparison.compare_projects_below(project, projects, before, after))
+        _print_comparisons(comparisons)
+        is_refused = breaking and any(each.is_refused for each in comparisons)
+        sys.exit(1 if is_refused or (exit_code and any(each.has_changes for each in comparisons)) else 0)
     old_version, new_version = _read_versions(before, after, project)
     comparison = _select_changes(
         compared_versions.compare_named_versions(old_version, new_version), old_version, new_version, select

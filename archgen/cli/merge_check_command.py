@@ -35,7 +35,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
 
     folders = _list_folders(project, (main_line, *branches))
     if form == "json" and folders:
-        msg = f"there are {len(folders)} projects here: name one with -C"
+        msg = f"this folder only holds projects: name one with -C, such as `-C {folders[0]}`"
         raise click.UsageError(msg)
     paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     try:

@@ -88,13 +88,12 @@ def read_versions(
     """
     # Shared: most files are the same in both versions, and so is timing where nothing of it changed.
     version_cache = VersionCache()
-    if first is not None and second is None and ".." in first and not _is_path(first):
-        # Three dots first, since they contain the two.
-        left, dots, right = first.partition("..." if "..." in first else "..")
-        after = read_version(right or "HEAD", path, version_cache)
+    left, dots, right = split_range(first) if first is not None and second is None else ("", "", "")
+    if dots:
+        after = read_version(right, path, version_cache)
         if dots == "...":
-            return read_at_base(_find_fork(left or "HEAD", right or "HEAD", path), path, version_cache, after), after
-        return read_earlier_version(left or "HEAD", path, version_cache, after), after
+            return read_at_base(_find_fork(left, right, path), path, version_cache, after), after
+        return read_earlier_version(left, path, version_cache, after), after
     if first is not None:
         after = read_version(second, path, version_cache)
         return read_earlier_version(first, path, version_cache, after), after
@@ -102,6 +101,16 @@ def read_versions(
     after = read_version(second, path, version_cache)
     main_line = after.checked_project.architecture.review.main
     return read_at_base(_find_base(path, main_line), path, version_cache, after), after
+
+
+def split_range(version_text: str) -> tuple[str, str, str]:
+    """Return the parts of `A..B` or `A...B`, with HEAD for one that is left out; any other version is A alone."""
+    # Three dots first, since they contain the two.
+    dots = next((dots for dots in ("...", "..") if dots in version_text), "")
+    if not dots or _is_path(version_text):
+        return version_text, "", ""
+    left, _, right = version_text.partition(dots)
+    return left or "HEAD", dots, right or "HEAD"
 
 
 def read_version(

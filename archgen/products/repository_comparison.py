@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from archgen import git
 from archgen.diagnostics.common_wording import join_words
 from archgen.pipeline import CheckedProject
-from archgen.products.compared_versions import ProjectVersion, compare_named_versions, read_versions
+from archgen.products.compared_versions import ProjectVersion, compare_named_versions, read_versions, split_range
 from archgen.products.comparison_documents import describe_versions
-from archgen.project import PROJECT_FILE, NotAtRevisionError, ProjectNotFoundError
+from archgen.project import PROJECT_FILE, ProjectNotFoundError
 from archgen.project.project_search import find_project
+from archgen.syntax.file_patterns import OUTPUT_FOLDER
+from archgen.syntax.folder_files import FolderFiles
 
 
 class ProjectComparison(NamedTuple):
@@ -25,8 +27,16 @@ class ProjectComparison(NamedTuple):
     is_refused: bool = False
 
 
+class ComparedProject(NamedTuple):
+    """A project of a repository, by its folder from where one asks, and in which of two versions it is."""
+
+    folder: str
+    is_before: bool
+    is_after: bool
+
+
 def list_projects_below(path: Path | None, revision: str | None) -> tuple[str, ...]:
-    """Return the folders of the projects that a revision (None: HEAD) holds below a folder without a project of its own.
+    """Return the folders of the projects that a revision (None: the disk) holds below a folder.
 
     Nothing where there is a project at the folder or around it. Raise `git.GitError`.
     """
@@ -37,26 +47,54 @@ def list_projects_below(path: Path | None, revision: str | None) -> tuple[str, .
     else:
         return ()
     repository = git.find_repository(path or Path.cwd())
-    objects = git.GitObjects(repository)
-    tree = objects.list_tree(git.resolve_revision(repository, revision or "HEAD"), repository.prefix) or {}
+    if revision is None:
+        return tuple(sorted(_list_projects_on_disk(repository.folder)))
+    tree = git.GitObjects(repository).list_tree(git.resolve_revision(repository, revision), repository.prefix) or {}
     return tuple(posixpath.dirname(file) for file in tree if posixpath.basename(file) == PROJECT_FILE)
 
 
+def _list_projects_on_disk(top: Path) -> Iterator[str]:
+    for folder, folders, file_names in FolderFiles(top).walk_folders(""):
+        folders[:] = [name for name in folders if name[0] != "." and name != OUTPUT_FOLDER]
+        if PROJECT_FILE in file_names:
+            yield folder
+
+
+def list_compared_projects(path: Path | None, first: str | None, second: str | None) -> tuple[ComparedProject, ...]:
+    """Return the projects of both versions below a folder without a project of its own, sorted by folder.
+
+    `first` and `second` are revisions, as for `read_versions`. Raise `git.GitError`, also for what is none.
+    """
+    revisions = _find_revisions(path, first, second)
+    before, after = (list_projects_below(path, revision) for revision in revisions)
+    return tuple(ComparedProject(each, each in before, each in after) for each in sorted({*before, *after}))
+
+
+def _find_revisions(path: Path | None, first: str | None, second: str | None) -> tuple[str, str | None]:
+    """Return the revisions that two versions name; None is the working tree."""
+    repository = git.find_repository(path or Path.cwd())
+    if first is None:
+        return git.find_branch_base(repository).commit_id, None
+    old_revision, dots, new_revision = split_range(first) if second is None else (first, "", second)
+    if dots == "...":
+        old_revision = git.find_common_commit(repository, old_revision, new_revision).commit_id
+    return old_revision, None if new_revision in {"", "."} else new_revision
+
+
 def compare_projects_below(
-    path: Path | None, folders: tuple[str, ...], first: str | None, second: str | None
+    path: Path | None, projects: Iterable[ComparedProject], first: str | None, second: str | None
 ) -> Iterator[ProjectComparison]:
     """Yield what changed in each project. `first` and `second` are the versions, as for `read_versions`.
 
-    Raise `git.GitError`.
+    A project in another folder than before counts as gone there and new here. Raise `git.GitError`.
     """
-    for folder in folders:
-        project = (path or Path()) / folder
-        try:
-            yield _compare_project(folder, *read_versions(first, second, project))
-        except NotAtRevisionError:
-            yield ProjectComparison(folder, "not there before", has_changes=True)
-        except ProjectNotFoundError:
-            yield ProjectComparison(folder, "not there any more", has_changes=True)
+    for project in projects:
+        if project.is_before and project.is_after:
+            folder = (path or Path()) / project.folder
+            yield _compare_project(project.folder, *read_versions(first, second, folder))
+        else:
+            summary = "not there before" if project.is_after else "not there any more"
+            yield ProjectComparison(project.folder, summary, has_changes=True)
 
 
 def _compare_project(folder: str, old_version: ProjectVersion, new_version: ProjectVersion) -> ProjectComparison:

@@ -221,4 +221,4 @@ def test_at_the_top_of_a_repository_each_project_is_merged(run: Run, tmp_path: P
     assert run("merge-check", "-C", top, "main", "rename").status == 0
     refused = run("merge-check", "-C", top, "main", "rename", "--format", "json")
     assert refused.status == 2
-    assert "there are 2 projects here: name one with -C" in refused.err
+    assert "this folder only holds projects: name one with -C, such as `-C " in refused.err

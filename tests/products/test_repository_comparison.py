@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from archgen import git
-from archgen.products.repository_comparison import compare_projects_below, list_projects_below
+from archgen.products.repository_comparison import compare_projects_below, list_compared_projects, list_projects_below
 from tests.repositories import commit, repository
 from tests.repositories import git as git_command
+from tests.repositories import git as run_git
 from tests.running import archgen
 
 LIBRARY = "component_types: {laser: {parameters: {range: 5.0}, outputs: {scan: sensor_msgs/msg/LaserScan}}}\n"
@@ -30,8 +31,8 @@ def top(tmp_path: Path) -> Path:
 
 
 def compare(top: Path, first: str | None = "HEAD", second: str | None = None) -> list[tuple[str, str]]:
-    folders = list_projects_below(top, second)
-    return [(each.folder, each.summary) for each in compare_projects_below(top, folders, first, second)]
+    projects = list_compared_projects(top, first, second)
+    return [(each.folder, each.summary) for each in compare_projects_below(top, projects, first, second)]
 
 
 def test_a_change_of_a_library_names_the_projects_that_use_it(top: Path) -> None:
@@ -57,9 +58,36 @@ def test_between_commits(top: Path) -> None:
     ]
 
 
-def test_a_project_that_is_gone(top: Path) -> None:
+def test_a_project_that_is_gone_or_new_on_the_disk(top: Path) -> None:
     (top / "robots" / "two" / "archgen.yaml").unlink()
-    assert compare(top)[1] == ("robots/two", "not there any more")
+    (top / "robots" / "new").mkdir()
+    # Where one went and another came, nobody says that it moved.
+    (top / "robots" / "new" / "archgen.yaml").write_text(PLAIN)
+    assert compare(top) == [
+        ("robots/new", "not there before"),
+        ("robots/one", "nothing changed"),
+        ("robots/two", "not there any more"),
+    ]
+
+
+@pytest.mark.parametrize("first", ["main..feat", "main...feat"])
+def test_a_range_lists_the_projects_of_both_ends(top: Path, first: str) -> None:
+    run_git(top, "checkout", "-q", "-b", "feat")
+    (top / "robots" / "two" / "archgen.yaml").unlink()
+    commit(top, {"robots/three/archgen.yaml": PLAIN})
+    run_git(top, "checkout", "-q", "main")
+    expected = [
+        ("robots/one", "nothing changed"),
+        ("robots/three", "not there before"),
+        ("robots/two", "not there any more"),
+    ]
+    assert compare(top, first) == compare(top, "main", "feat") == expected
+
+
+def test_without_versions_the_working_tree_is_compared_with_the_last_commit_of_the_main_line(top: Path) -> None:
+    (top / "common" / "a.yaml").write_text(LIBRARY.replace("5.0", "6.0"))
+    assert compare(top, None) == compare(top, "main")
+    archgen("diff", "robots/one", cwd=top, status=2)
 
 
 def test_in_a_project_or_outside_of_a_repository_there_is_no_list(
@@ -79,7 +107,7 @@ def test_the_verb_ends_as_it_does_for_one_project(top: Path) -> None:
     (top / "robots" / "one" / "archgen.yaml").write_text(USER + "review: {breaking: error}\n")
     archgen("diff", "HEAD", "--breaking", cwd=top, status=1)
     refused = archgen("diff", "HEAD", "--format", "json", cwd=top, status=2)
-    assert "there are 2 projects here: name one with -C" in refused.stderr.decode()
+    assert "this folder only holds projects: name one with -C, such as `-C robots/one`" in refused.stderr.decode()
 
 
 def test_what_ships_with_archgen_is_no_library_that_changed(tmp_path: Path) -> None:
