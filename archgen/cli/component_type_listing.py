@@ -18,7 +18,7 @@ _COLUMNS = ("type", "title", "functionality", "inputs", "outputs", "package")
 
 
 def list_component_types(
-    checked_project: CheckedProject, library: str | None
+    checked_project: CheckedProject, asked_library: str | None
 ) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return the columns and rows of the component types, of one library only if that is asked for.
 
@@ -28,7 +28,11 @@ def list_component_types(
 
     entries = list_type_entries(checked_project.merged_table)
     libraries = {each.id: each.is_shipped for each in checked_project.loaded_project.libraries}
+    library = asked_library
     if library == SHIPPED_LIBRARY and library not in libraries:
+        # What the project calls it, if it has it.
+        library = next((library_id for library_id, is_shipped in libraries.items() if is_shipped), None)
+    if library is None and asked_library == SHIPPED_LIBRARY:
         entries = _list_shipped_entries(checked_project)
     elif library is not None:
         _require_library(library, {*libraries, *(name.partition(".")[0] for name in entries if "." in name)})

@@ -94,7 +94,7 @@ def _find_holder(checked_project: CheckedProject, holder_id: str | None) -> str:
     if holder_id is None or "." not in holder_id:
         return find_group(checked_project, holder_id)
     architecture = checked_project.architecture
-    holder = architecture.shells.get(holder_id) or architecture.components.get(holder_id)
+    holder = architecture.find_component(holder_id)
     if holder is None:
         _find_holder(checked_project, holder_id.rpartition(".")[0])
         guess = did_you_mean(holder_id, architecture.shells) or f"`archgen new component {make_visible(holder_id)}`"
@@ -116,23 +116,6 @@ def _find_holder(checked_project: CheckedProject, holder_id: str | None) -> str:
 def _find_type_span(checked_project: CheckedProject, instance: Component) -> Span:
     component_type = checked_project.architecture.component_types.get(instance.type_name)
     return component_type.at if component_type else instance.at
-
-
-def explain_no_place() -> Any:  # noqa: ANN401 - a context
-    """Return a context that shows NoPlaceError as an error of the command line."""
-    # Made inside, since the exception's module is imported only where something is to be placed.
-    from contextlib import contextmanager
-
-    from archgen.edit.element_place import NoPlaceError
-
-    @contextmanager
-    def phrased() -> Any:  # noqa: ANN401 - a generator
-        try:
-            yield
-        except NoPlaceError as error:
-            raise click.ClickException(str(error)) from None
-
-    return phrased()
 
 
 def add_element(

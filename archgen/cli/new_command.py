@@ -46,8 +46,10 @@ def add_group(name: str, title: str | None, owner: str | None, project: Path | N
         "components": None,
     }
     hints = {"description": "what the group is for", "components": "`archgen new component` adds one"}
-    with element_adding.explain_no_place():
+    try:
         target_place = element_place.place_for_group(checked_project, name)
+    except element_place.NoPlaceError as error:
+        raise click.ClickException(str(error)) from None
     element_adding.add_element(checked_project, target_place, NewElement(name, body, hints), name, dry_run=dry_run)
 
 

@@ -37,6 +37,8 @@ class ArchitectureVersion:
     """The files that could not be read, or not as a whole."""
     broken_files: frozenset[str] = frozenset()
     """Those of them of which nothing could be read."""
+    library_files: frozenset[str] = frozenset()
+    """The files of its libraries: of these the version has what it uses."""
     waiting_rules: frozenset[str] = frozenset()
     """The rules that errors of reading and linking kept from being judged."""
     type_patterns: TypePatterns = field(default_factory=TypePatterns)

@@ -50,6 +50,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         _find_unnamed_outputs(after.architecture),
         (before.sound_files, after.sound_files),
         (before.broken_files, after.broken_files),
+        (before.library_files, after.library_files),
         (before.architecture.untyped_components, after.architecture.untyped_components),
         partner_names=title_partners(before.architecture, after.architecture),
     )

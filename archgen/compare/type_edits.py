@@ -57,8 +57,8 @@ def find_type_edits(comparison: Comparison, changes: Sequence[Change]) -> Iterat
         if own_change and id(own_change) in followed:
             continue  # it is told at the type that it follows
         instances = _list_instances(members, comparison)
-        edit = edits.setdefault((type_key.component_type, instances), TypeEdit(type_key.component_type, []))
-        edit.instances = instances
+        new_edit = TypeEdit(type_key.component_type, [], instances=instances)
+        edit = edits.setdefault((type_key.component_type, instances), new_edit)
         edit.texts.append((own_change or _make_change(type_key, finder, comparison.versions)).text)
         edit.changes += [*([own_change] if own_change else []), *members]
     yield from (_tell_instances(edit, comparison) for edit in edits.values())
@@ -72,7 +72,18 @@ def _make_change(type_key: TypeKey, finder: OriginFinder, versions: VersionPair)
 
 
 def _list_instances(changes: Iterable[Change], comparison: Comparison) -> tuple[str, ...]:
-    return tuple(sorted({name for change in changes for name in _name_instance(change, comparison)}))
+    names = {
+        _name_as_now(name, comparison) if change.kind == "removed" else name
+        for change in changes
+        for name in _name_instance(change, comparison)
+    }
+    return tuple(sorted(names))
+
+
+def _name_as_now(component_id: str, comparison: Comparison) -> str:
+    """Return what a component of the version before is called after it."""
+    new_ids = (comparison.matched_ids.find_new_id(kind, component_id) for kind in ("component", "composed"))
+    return next(filter(None, new_ids), component_id)
 
 
 def _name_instance(change: Change, comparison: Comparison) -> Iterator[str]:
@@ -105,6 +116,5 @@ def _tell_instances(edit: TypeEdit, comparison: Comparison) -> TypeEdit:
 
 def _list_owners(component_ids: Iterable[str], comparison: Comparison) -> list[str]:
     """Return the partners whose components these are, sorted by id."""
-    architecture = comparison.after.architecture
-    components = (architecture.shells.get(each) or architecture.components.get(each) for each in component_ids)
+    components = (comparison.after.architecture.find_component(each) for each in component_ids)
     return sorted({component.owner for component in components if component and component.owner})

@@ -93,20 +93,20 @@ class OriginFinder:
         if change.key:
             yield from self._list_keys(architecture, change.element_id, change.key)
             return
-        component = _find_component(architecture, change.element_id)
+        component = architecture.find_component(change.element_id)
         if component and component.parent:
             yield from self._list_keys(architecture, component.parent, "components")
 
     def _list_keys(self, architecture: Architecture, component_id: str, key: str) -> Iterator[TypeKey]:
         """Yield a key of a component at its types, then at the types of the components around it."""
-        component = _find_component(architecture, component_id)
+        component = architecture.find_component(component_id)
         holder = component
         while holder:
             path = component_id.removeprefix(holder.id).removeprefix(".")
             if path or key not in OWN_KEYS:
                 whole_key = f"components.{path}{PART_MARK}{key}" if path else key
-                yield from (TypeKey(name, whole_key) for name in self._list_types(holder))
-            holder = _find_component(architecture, holder.parent)
+                yield from (TypeKey(name, whole_key) for name in self._list_types(holder, architecture))
+            holder = architecture.find_component(holder.parent or "")
 
     def _list_type_keys(self, change: Change) -> Iterator[TypeKey]:
         """Yield where a key of a type may come from: the type of the part that it is about, or what it is made from."""
@@ -124,16 +124,20 @@ class OriginFinder:
             part = patterns.get(f"{type_id}.{outer_path}")
             if part and (inner_path or key not in OWN_KEYS):
                 whole_key = f"components.{inner_path}{PART_MARK}{key}" if inner_path else key
-                yield from (TypeKey(name, whole_key) for name in self._list_types(part))
+                yield from (
+                    TypeKey(name, whole_key) for name in self._list_types(part, self._comparison.after.architecture)
+                )
             outer_path = outer_path.rpartition(".")[0]
             inner_path = path.removeprefix(outer_path).removeprefix(".")
 
-    def _list_types(self, component: Component) -> Sequence[str]:
-        return self._list_bases(component.component_type) if component.component_type else ()
+    def _list_types(self, component: Component, architecture: Architecture) -> Sequence[str]:
+        name = component.type_name
+        if architecture is self._comparison.before.architecture:
+            name = self._comparison.matched_ids.common_id("component_type", name)
+        return self._list_bases(name)
 
-    def _list_bases(self, expression: str) -> tuple[str, ...]:
+    def _list_bases(self, name: str) -> tuple[str, ...]:
         """Return a type with all that it is made from, the outermost base first."""
-        name = expression.partition("<")[0]
         if name not in self._base_chains:
             bases = self._comparison.after.architecture.list_bases(name)
             self._base_chains[name] = tuple(each.id for each in reversed(list(bases)))
@@ -144,9 +148,3 @@ def trace_origins(comparison: Comparison, changes: Sequence[Change]) -> Mapping[
     """Return where changes come from, by the identity of each change that comes from a type."""
     finder = OriginFinder(comparison)
     return {id(change): origin for change in changes if (origin := finder.find_origin(change))}
-
-
-def _find_component(architecture: Architecture, component_id: str | None) -> Component | None:
-    if component_id is None:
-        return None
-    return architecture.shells.get(component_id) or architecture.components.get(component_id)

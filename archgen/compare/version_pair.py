@@ -34,6 +34,9 @@ class VersionPair:
     broken_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The files of which nothing could be read, before and after."""
 
+    library_files: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
+    """The files of libraries, before and after."""
+
     untyped_components: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """The components whose type is not known, before and after: what they have from it may be there all the same."""
 
@@ -49,7 +52,7 @@ class VersionPair:
         side, element = (
             (0, self.elements_after[key]) if key in self.elements_after else (1, self.elements_before.get(key))
         )
-        if element and (element.file in self.broken_files[side] or self._is_untyped(element, side)):
+        if element and (self._may_be_from_unread(element, side) or self._is_untyped(element, side)):
             return True
         lost_words = self.lost_keys[side]
         # What its own file, which was read well, does not hold is not there.
@@ -62,6 +65,14 @@ class VersionPair:
 
     def value_may_be_unread(self, key: ElementKey, before: object, after: object, value_key: str = "") -> bool:
         """Whether a value missing in one version may be in a part of it that could not be read; `value_key` names it."""
+        both_elements = (self.elements_before.get(key), self.elements_after.get(key))
+        for number, element in enumerate(both_elements):
+            other_element = both_elements[1 - number]
+            # Of what comes from a type that is not known, no value says anything: not even one that is there.
+            if element and self._is_untyped(element, number):
+                return True
+            if other_element and self._may_be_from_unread(other_element, number):
+                return True
         side = 0 if before is None else 1 if after is None else None
         if side is not None and self.key_may_be_unread(key, value_key, side):
             return True
@@ -79,8 +90,6 @@ class VersionPair:
     def key_may_be_unread(self, key: ElementKey, value_key: str, side: int) -> bool:
         """Whether a key of an element was taken out of one version, since its value could not be read."""
         element = (self.elements_before, self.elements_after)[side].get(key)
-        if element and self._is_untyped(element, side):
-            return True
         if element and element.file and element.file in self.sound_files[side]:
             return False
         name = value_key.rpartition(".")[2]
@@ -94,6 +103,14 @@ class VersionPair:
             return False
         parts = element_id.split(".")
         return any(".".join(parts[:end]) in untyped_components for end in range(1, len(parts) + 1))
+
+    def _may_be_from_unread(self, element: ComparedElement, side: int) -> bool:
+        """Whether an element of the other version stands where nothing could be read in this one.
+
+        Where types of components are not known, nobody knows what they use of a library.
+        """
+        is_unused = bool(self.untyped_components[side]) and element.file in self.library_files[1 - side]
+        return is_unused or element.file in self.broken_files[side]
 
     def _is_untyped(self, element: ComparedElement, side: int) -> bool:
         if element.kind in _COMPONENT_KINDS:

@@ -109,7 +109,7 @@ def _find_component(architecture: Architecture, element_id: str | None) -> Compo
     node = architecture.nodes.get(element_id or "")
     names = (*node.wholes, *node.implements)[:1] if node else (element_id or "", (element_id or "").rpartition(".")[0])
     for name in names:
-        component = architecture.shells.get(name) or architecture.components.get(name)
+        component = architecture.find_component(name)
         if component:
             return component
     return None

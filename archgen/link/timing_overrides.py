@@ -219,6 +219,10 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
         components = [element]
     if not components and element in architecture.component_types:
         return _list_instance_activities(architecture, element)
+    if not components and element in architecture.shells:
+        leaves = ", ".join(architecture.leaves_of(element)[:6])
+        msg = f"`{element}` is composed: name a component inside ({leaves})"
+        raise OverrideError(msg)
     if len(components) != 1:
         names = [*architecture.nodes, *architecture.components, *architecture.component_types]
         guess = did_you_mean(element, [candidate for name in names for candidate in (name, name.rpartition(".")[2])])

@@ -89,11 +89,21 @@ def read_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
 
 
 def _is_unordered(path: tuple[str, ...]) -> bool:
-    if path[:1] in {("groups",), ("component_types",)} and "node" not in path and path[-1] == _CHOICES_KEY:
-        return _FREE_SECTION in path
+    if path[:1] in {("groups",), ("component_types",)} and path[-1] == _CHOICES_KEY:
+        section, *names = _list_keys_of_component(path)
+        # Behind the name of a parameter: one that is itself called `choices` is data.
+        return section == _FREE_SECTION and len(names) > 1
     # What stands below `parameters` is the nodes' own data, whatever its keys are called.
     is_named = bool(path) and (path[-1] in UNORDERED_KEYS or path[-2:-1] == (_PORT_SECTION,))
     return is_named and _FREE_SECTION not in path and path[:-1] != (_CHAIN_SECTION,)
+
+
+def _list_keys_of_component(path: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what follows the innermost component on a path through a group or a component type."""
+    keys = path[2:]
+    while keys[:1] == ("components",) and len(keys) > 2:  # noqa: PLR2004 - components, id, and what is said of it
+        keys = keys[2:]
+    return keys
 
 
 def merge_values(

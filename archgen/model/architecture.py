@@ -228,6 +228,10 @@ class Architecture:
         inner_leaves = tuple(leaf for child in shell.children for leaf in self.leaves_of(child))
         return (component_id, *inner_leaves) if component_id in self.components else inner_leaves
 
+    def find_component(self, component_id: str) -> Component | None:
+        """Return a composed component or a leaf; of what is both, with ports that nothing inside carries, the composed one."""
+        return self.shells.get(component_id) or self.components.get(component_id)
+
     def list_described_components(self) -> Iterator[Component]:
         """Yield the composed components, then the leaves; what is not designed yet of a composed one is not told twice."""
         yield from self.shells.values()

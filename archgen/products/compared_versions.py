@@ -230,6 +230,7 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         sound_files=frozenset(checked_project.yaml_files).difference(unread_files),
         unread_files=tuple(sorted(unread_files)),
         broken_files=checked_project.loaded_project.broken_files,
+        library_files=frozenset(checked_project.loaded_project.library_files),
         waiting_rules=checked_project.waiting_rules,
         type_patterns=link_type_patterns(checked_project.merged_table, checked_project.architecture),
     )

@@ -29,6 +29,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, normalize_title, unordered_values
 from archgen.model.component import Component, Input, Output
+from archgen.model.generic_names import read_generic_name
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
 
@@ -173,11 +174,14 @@ def _mark_timing(_relations: ElementRelations, component: Component) -> frozense
 
 
 def name_common_type(type_text: str | None, context: ReadContext) -> str | None:
-    """Return the name of a component type with the common id in it, `lib.filter<Pose>`; None for none."""
-    if type_text is None:
-        return None
-    name, bracket, arguments = type_text.partition("<")
-    return f"{context.common_id('component_type', name.strip())}{bracket}{arguments}"
+    """Return the name of a component type with common ids in it, `lib.filter<Pose>`; None for none."""
+    return None if type_text is None else _name_with_common_ids(type_text.strip(), "component_type", context)
+
+
+def _name_with_common_ids(text: str, kind: str, context: ReadContext) -> str:
+    name, arguments = read_generic_name(text)
+    bound_names = ", ".join(_name_with_common_ids(each, "type", context) for each in arguments)
+    return f"{context.common_id(kind, name)}<{bound_names}>" if arguments else str(context.common_id(kind, name))
 
 
 def _read_component_type(component: Component, context: ReadContext) -> str | None:

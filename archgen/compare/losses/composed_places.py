@@ -38,7 +38,7 @@ def needs_other_id(context: ChangeContext, input_id: str, output_id: str, new_ou
 
 def _list_named_outputs(architecture: Architecture, name: str) -> Iterator[str]:
     """Yield the outputs of leaves that the id of an output, or of a component, stands for."""
-    component = architecture.shells.get(name) or architecture.components.get(name)
+    component = architecture.find_component(name)
     names = [output.id for output in component.outputs.values()] if component else [name]
     for each in names:
         inner_outputs = architecture.shell_ports.get(f"output {each}", ())

@@ -20,6 +20,8 @@ def name_owner(edit: Edit, comparison: Comparison, partner_names: Mapping[str, s
     """Return an edit that says whose element it changes, unless that is known from its heading, or there is only one
     partner.
     """
+    if edit.element_kind == "component_type" and all(each.element_kind != "component_type" for each in edit.changes):
+        return edit  # of a selection only what follows the type: whose that is, the sentence says itself
     owners = [_find_owner(change, comparison) for change in edit.changes]
     owner = owners[0] if len(set(owners)) == 1 else None
     if not owner or len(partner_names) < 2 or owner == known_owner:  # noqa: PLR2004 - with one partner nothing is foreign
