@@ -52,6 +52,13 @@ def test_what_ships_is_found_by_who_has_none_of_it(run: Run, tmp_path: Path) -> 
     ]
 
 
+def test_what_ships_is_listed_by_what_the_project_calls_it(run: Run, tmp_path: Path) -> None:
+    project = write_project(tmp_path, f"libraries: {{parts: builtin}}\n{OWN}")
+    by_word, by_id = (read_rows(run, project, "--library", name) for name in ("builtin", "parts"))
+    assert by_word == by_id
+    assert by_word[1][0].startswith("parts.")
+
+
 def test_a_library_that_there_is_not(run: Run, tmp_path: Path) -> None:
     project = write_project(tmp_path, "libraries: {parts: builtin}\n")
     result = run("list", "-C", project, "--of", "component_types", "--library", "part")

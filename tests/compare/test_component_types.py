@@ -200,3 +200,24 @@ groups: {g: {components: {r: {is: robot}}}}
             "`g.r.left.n`"
         )
     ]
+
+
+def test_a_type_under_another_name_is_the_same_one_as_an_argument_too(compared: Compared) -> None:
+    before = """\
+types: {Pose: geometry_msgs/msg/Pose}
+component_types:
+  filter: {title: Low pass, functionality: Smooths what arrives., generic: [T], inputs: {i: T}, outputs: {o: T}, timing: {rate: 10 Hz}}
+groups:
+  g:
+    components:
+      s: {outputs: {o: Pose}}
+      f: {is: filter<Pose>, inputs: {i: s.o}}
+      r: {inputs: {i: f.o}}
+"""
+    after = before.replace("Pose", "Place").replace("msg/Place", "msg/Pose").replace("filter", "sieve")
+    texts = list_texts(compared(before, after))
+    assert [text for text in texts if "made from" in text or "`f`" in text] == []
+    # What changed at the type that has another name now is told at the type all the same.
+    assert [text for text in list_texts(compared(before, after.replace("10 Hz", "5 Hz"))) if "rate" in text] == [
+        "component type `sieve`: rate `10 Hz` → `5 Hz`; in its instance `g.f`"
+    ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.compare.conftest import Compared
+from tests.compare.conftest import Compared, ComparedFolders
 
 ROBOT = """\
 groups:
@@ -59,3 +59,40 @@ def test_what_can_be_read_beside_it_is_told(compared: Compared) -> None:
         "`na.publishes.x`: QoS reliability `best_effort` → `reliable`",
         "host `pc`: cores 4 → 8",
     ]
+
+
+LIBRARY = {
+    "archgen.yaml": """\
+archgen: 1
+libraries: {common: lib}
+groups:
+  g:
+    components:
+      laser: {is: common.laser}
+      map: {inputs: {scan: laser.scan}, outputs: {map: Map}}
+types: {Map: nav_msgs/msg/OccupancyGrid}
+nodes: {map_node: {implements: map}}
+""",
+    "lib/components.yaml": """\
+component_types:
+  laser: {outputs: {scan: Scan}, timing: {rate: 10 Hz, wcet: 1 ms}, node: {package: laser_driver, executable: laser}}
+""",
+    "lib/types.yaml": "types: {Scan: sensor_msgs/msg/LaserScan}\n",
+}
+
+
+@pytest.mark.parametrize(
+    "after",
+    [
+        {**LIBRARY, "lib/components.yaml": LIBRARY["lib/components.yaml"] + "x: [\n"},
+        {**LIBRARY, "lib/types.yaml": LIBRARY["lib/types.yaml"] + "x: [\n"},
+        {"archgen.yaml": LIBRARY["archgen.yaml"]},
+        {"archgen.yaml": LIBRARY["archgen.yaml"].replace("libraries:", "library:")},
+    ],
+)
+def test_of_a_library_that_cannot_be_read_nothing_is_gone(
+    compared_folders: ComparedFolders, after: dict[str, str]
+) -> None:
+    comparison = compared_folders(LIBRARY, after)
+    assert [change.text for change in comparison.changes] == []
+    assert not comparison.is_judged

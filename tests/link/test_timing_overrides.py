@@ -247,3 +247,7 @@ def test_of_a_component_type_all_instances_are_meant(tmp_path: Path) -> None:
             apply_overrides(architecture, [f"{element}.timing.wcet=9ms"])
     with pytest.raises(OverrideError, match=r"nothing is called `lib.lazer`; did you mean `lib.laser`?"):
         apply_overrides(architecture, ["lib.lazer.timing.wcet=9ms"])
+    with pytest.raises(
+        OverrideError, match=r"`see.pair` is composed: name a component inside \(see.pair.left, see.pair.log\)"
+    ):
+        apply_overrides(architecture, ["see.pair.timing.wcet=9ms"])

@@ -111,3 +111,15 @@ def test_a_list_of_choices_below_a_node_is_data() -> None:
     text = b"nodes: {n: {parameters: {choices: [a]}}}\n"
     merged = merge_contents(text, text.replace(b"[a]", b"[a, b]"), text.replace(b"[a]", b"[a, c]"))
     assert merged.problem == "both sides changed `nodes.n.parameters.choices`"
+
+
+def test_a_parameter_called_choices_is_data_and_the_choices_of_a_parameter_are_none() -> None:
+    text = b"component_types: {arm: {components: {a: {parameters: {choices: [a], mode: {choices: [a]}}}}}}\n"
+    ours, theirs = (text.replace(b"mode: {choices: [a]", b"mode: {choices: [a, %b]" % each) for each in (b"b", b"c"))
+    assert merge_contents(text, ours, theirs).content == text.replace(
+        b"mode: {choices: [a]", b"mode: {choices: [a, b, c]"
+    )
+    ours, theirs = (text.replace(b"choices: [a], mode", b"choices: [a, %b], mode" % each) for each in (b"b", b"c"))
+    assert merge_contents(text, ours, theirs).problem == (
+        "both sides changed `component_types.arm.components.a.parameters.choices`"
+    )
