@@ -18,12 +18,15 @@ TEXTS = {
         "A{{7*7}}B {% raw %} ${7*7} <%= 7*7 %> ]]><!-- </title></style></script> &lt;script&gt; \\N\\T\\n"
         "`<script>alert(11)</script>` ```\n<script>alert(12)</script>\n```\n\n# h\n\n<script>alert(13)</script>\n---\n| a |\n"
     ),
-    "formula": "=cmd|' /C calc'!A0",
-    "terminal": "\x1b[31m\x1b]0;owned\x07\x1b[2J\x9b2J\n::error file=x::owned\n::add-mask::x\r::warning::%0A::error::owned",
-    "odd": "\u202egpj.exe\u202c \u2066x\u2069 👩‍👩‍👧 🇬🇷 e\u0301 \u0001\u0008\u000b\u001f\u007f\ufffe\uffff\u2028\u2029 \u200b\ufeff",
+    # One text, since one build of all outputs tries all of it: a formula is one only at the beginning.
+    "signs": (
+        "=cmd|' /C calc'!A0"
+        "\x1b[31m\x1b]0;owned\x07\x1b[2J\x9b2J\n::error file=x::owned\n::add-mask::x\r::warning::%0A::error::owned "
+        "\u202egpj.exe\u202c \u2066x\u2069 👩‍👩‍👧 🇬🇷 e\u0301 \u0001\u0008\u000b\u001f\u007f\ufffe\uffff\u2028\u2029 \u200b\ufeff"
+    ),
     "long": "w" * 5000,
 }
-"""By what they attack: documents and pages, spreadsheets, terminals and workflows, alphabets, layouts."""
+"""By what they attack: documents and pages; spreadsheets, terminals, workflows and alphabets; layouts."""
 ELEMENTS = {
     "partners": "partner",
     "use_cases": "use_case",

@@ -27,7 +27,7 @@ from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
 from tests.running import archgen, contents, made_once
 
-WORDS = ("markup", "formula", "terminal", "odd", "long")
+WORDS = tuple(hostile.TEXTS)
 SCHEMES = {"http", "https", "mailto"}
 ACTIVE = {"script", "iframe", "object", "embed", "base", "form", "foreignobject", "animate", "set", "math", "style"}
 
