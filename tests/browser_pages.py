@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from playwright.sync_api import Browser, Page, Request
+from playwright.sync_api import Browser, BrowserContext, Page, Request
 
 OpenPage = Callable[..., Page]
 _AXE = Path(__file__).parent / "judges" / "node_modules" / "axe-core" / "axe.min.js"
@@ -14,17 +14,19 @@ _AXE = Path(__file__).parent / "judges" / "node_modules" / "axe-core" / "axe.min
 
 @contextmanager
 def watch_pages(browser: Browser, addresses: tuple[str, ...] = ("file://",)) -> Iterator[Callable[..., Page]]:
-    """Give a function that watches a page, and close all pages at the end.
+    """Give a function that watches a page, and close what it watched at the end.
 
     A request to anywhere else than the addresses (how they begin), an error or a message in the console is a failure.
     """
     mistakes: list[str] = []
+    contexts: list[BrowserContext] = []
 
     def judge(request: Request) -> None:
         if not request.url.startswith(addresses):
             mistakes.append(request.url)
 
     def watch(page: Page, *, console: bool = True) -> Page:
+        contexts.append(page.context)
         page.on("request", judge)
         if console:
             page.on("console", lambda message: mistakes.append(message.text))
@@ -32,7 +34,7 @@ def watch_pages(browser: Browser, addresses: tuple[str, ...] = ("file://",)) -> 
         return page
 
     yield watch
-    for context in browser.contexts:
+    for context in contexts:
         context.close()
     assert mistakes == []
 

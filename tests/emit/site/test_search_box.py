@@ -58,6 +58,15 @@ def visit(browser: Browser, example: Path) -> Iterator[OpenPage]:
         yield open_page
 
 
+@pytest.fixture(scope="module")
+def shared_page(browser: Browser, example: Path) -> Iterator[Page]:
+    """Give one page for all that is only searched for: opening it and reading the index takes the time of such a test."""
+    with watch_pages(browser) as watch:
+        page = watch(browser.new_context(viewport={"width": 1280, "height": 800}).new_page(), console=True)
+        page.goto(f"file://{example}/index.html")
+        yield page
+
+
 def search(page: Page, words: str) -> None:
     """Search for some words, and wait until the index is read and the answer is whole."""
     page.keyboard.press("/")
@@ -98,11 +107,11 @@ def test_nothing_of_the_index_is_loaded_before_the_first_key(visit: OpenPage) ->
         ("handover planner skeletons", "Handover Planner · skeletons"),
     ],
 )
-def test_what_fits_best_stands_first(visit: OpenPage, words: str, first: str) -> None:
-    page = visit()
-    search(page, words)
-    assert titles(page)[0] == first
-    assert page.locator(".find-box .note").is_hidden() or "Also" in said(page)
+def test_what_fits_best_stands_first(shared_page: Page, words: str, first: str) -> None:
+    shared_page.keyboard.press("Escape")
+    search(shared_page, words)
+    assert titles(shared_page)[0] == first
+    assert shared_page.locator(".find-box .note").is_hidden() or "Also" in said(shared_page)
 
 
 @pytest.mark.parametrize(
@@ -121,14 +130,14 @@ def test_what_fits_best_stands_first(visit: OpenPage, words: str, first: str) ->
         ("Skelton", "skeleton"),
     ],
 )
-def test_one_wrong_letter_in_a_word_is_found_and_said(visit: OpenPage, words: str, nearest: str | None) -> None:
-    page = visit()
-    search(page, words)
-    assert "Skeleton Tracking" in titles(page)
+def test_one_wrong_letter_in_a_word_is_found_and_said(shared_page: Page, words: str, nearest: str | None) -> None:
+    shared_page.keyboard.press("Escape")
+    search(shared_page, words)
+    assert "Skeleton Tracking" in titles(shared_page)
     if nearest:
-        assert said(page).startswith(f"Nothing is spelt “{words}”. Nearest: {nearest}")
+        assert said(shared_page).startswith(f"Nothing is spelt “{words}”. Nearest: {nearest}")
     else:
-        assert page.locator(".find-box .note").is_hidden()
+        assert shared_page.locator(".find-box .note").is_hidden()
 
 
 def test_a_wrong_letter_that_makes_another_word_is_found_behind_it(visit: OpenPage, tmp_path: Path) -> None:
