@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from playwright.sync_api import Browser, BrowserContext, Page, Request
+from playwright.sync_api import BrowserContext, Page, Request
 
 OpenPage = Callable[..., Page]
 _AXE = Path(__file__).parent / "judges" / "node_modules" / "axe-core" / "axe.min.js"
 
 
 @contextmanager
-def watch_pages(browser: Browser, addresses: tuple[str, ...] = ("file://",)) -> Iterator[Callable[..., Page]]:
+def watch_pages(addresses: tuple[str, ...] = ("file://",)) -> Iterator[Callable[..., Page]]:
     """Give a function that watches a page, and close what it watched at the end.
 
     A request to anywhere else than the addresses (how they begin), an error or a message in the console is a failure.

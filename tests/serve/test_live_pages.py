@@ -20,7 +20,7 @@ LONG_TEXT = "# Words\n\n" + "".join(f"## Part {number}\n\n{'Some words. ' * 80}\
 @pytest.fixture
 def visit(browser: Browser, server: SiteServer) -> Iterator[OpenPage]:
     """Open a page of the preview; a request to another server, an error in the console or a reload is a failure."""
-    with watch_pages(browser, (server.url, "data:")) as watch:
+    with watch_pages((server.url, "data:")) as watch:
 
         def open_page(path: str, width: int = 1280, scheme: str = "light") -> Page:
             context = browser.new_context(viewport={"width": width, "height": 700}, color_scheme=scheme)  # type: ignore[arg-type]

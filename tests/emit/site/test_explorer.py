@@ -31,7 +31,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def visit(browser: Browser, example: Path) -> Iterator[OpenPage]:
     """Open the explorer; a request to anywhere else, an error or a message in the console is a failure."""
-    with watch_pages(browser, ("file://", "data:")) as watch:
+    with watch_pages(("file://", "data:")) as watch:
 
         def open_explorer(  # noqa: PLR0913 - what a reader's browser may be
             address: str = "",

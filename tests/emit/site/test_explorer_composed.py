@@ -26,7 +26,7 @@ def cleaning_robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def visit(browser: Browser, cleaning_robot: Path) -> Iterator[OpenPage]:
     """Open the explorer; an error or a message in the console is a failure."""
-    with watch_pages(browser, ("file://", "data:")) as watch:
+    with watch_pages(("file://", "data:")) as watch:
 
         def open_explorer(
             address: str = "", *, root: Path | None = None, path: str = "explorer.html", scheme: str = "light"

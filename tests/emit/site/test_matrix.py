@@ -95,7 +95,7 @@ def test_the_data_is_a_script_that_no_title_can_end() -> None:
 def page(browser: Browser, tmp_path: Path) -> Iterator[BrowserPage]:
     """Open the matrix from the disk; an error or a message in the console is a failure."""
     write_tree(build(make_matrix(3)), tmp_path / "site")
-    with watch_pages(browser) as watch:
+    with watch_pages() as watch:
         opened = watch(browser.new_context(viewport={"width": 1280, "height": 800}).new_page())
         opened.goto(f"file://{tmp_path}/site/index.html")
         yield opened

@@ -37,7 +37,7 @@ def site_of(*entries: SearchEntry, title: str = "Robot") -> FileTree:
 @pytest.fixture
 def visit(browser: Browser, example: Path) -> Iterator[OpenPage]:
     """Open a page from the disk; a request to anywhere else, an error or a message in the console is a failure."""
-    with watch_pages(browser) as watch:
+    with watch_pages() as watch:
 
         def open_page(  # noqa: PLR0913 - what a reader's browser may be
             path: str = "index.html",
@@ -61,7 +61,7 @@ def visit(browser: Browser, example: Path) -> Iterator[OpenPage]:
 @pytest.fixture(scope="module")
 def shared_page(browser: Browser, example: Path) -> Iterator[Page]:
     """Give one page for all that is only searched for: opening it and reading the index takes the time of such a test."""
-    with watch_pages(browser) as watch:
+    with watch_pages() as watch:
         page = watch(browser.new_context(viewport={"width": 1280, "height": 800}).new_page(), console=True)
         page.goto(f"file://{example}/index.html")
         yield page
