@@ -110,8 +110,12 @@ class _StepJudge:
     def _is_open(self, component_id: str) -> bool:
         """Whether an input of a component has a source that is not resolved: that is reported, and may be what is missing."""
         if self._open_components is None:
+            # What reads an input of the component around it has no connection of its own, and lacks none.
+            handed_in = {port for ports in self.architecture.shell_ports.values() for port in ports}
             self._open_components = frozenset(
-                port.component for port in self.architecture.inputs.values() if port.from_written and not port.connections
+                port.component
+                for port in self.architecture.inputs.values()
+                if port.from_written and not port.connections and port.id not in handed_in
             )
         return bool(self._open_components) and not self._open_components.isdisjoint(
             self.architecture.leaves_of(component_id)
@@ -160,7 +164,9 @@ class _StepJudge:
 
     def _choose_output(self, component_id: str) -> str:
         component = self.architecture.find_component(component_id)
-        return next((port.id for port in component.outputs.values()) if component else iter(()), f"{component_id}.OUTPUT")
+        return next(
+            (port.id for port in component.outputs.values()) if component else iter(()), f"{component_id}.OUTPUT"
+        )
 
     def _find_between(self, sender: str, reader: str) -> tuple[str, ...]:
         """Return the components on a shortest way from one to the other; none if it is long, or there is none."""

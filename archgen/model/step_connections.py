@@ -45,7 +45,9 @@ class StepConnections:
         self._wholes: dict[str, tuple[str, ...]] = {}
         for edge in architecture.edges:
             output, reader = architecture.outputs[edge.output], architecture.inputs[edge.input].component
-            self._add_connection(output.component, reader, StepConnection(_find_way(architecture, output), edge.output, edge.input))
+            self._add_connection(
+                output.component, reader, StepConnection(_find_way(architecture, output), edge.output, edge.input)
+            )
         for input_port in architecture.inputs.values():
             for connection in input_port.connections:
                 if not connection.outputs and connection.kind == "component":
@@ -178,9 +180,7 @@ class UseCaseSteps:
         connections = StepConnections(self._architecture)
         return {
             use_case.id: tuple(
-                ConnectedStep(
-                    number, step, connections.find_connections(step), connections.needs_connection(step)
-                )
+                ConnectedStep(number, step, connections.find_connections(step), connections.needs_connection(step))
                 for number, step in enumerate(use_case.steps, 1)
             )
             for use_case in use_cases

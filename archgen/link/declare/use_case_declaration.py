@@ -76,7 +76,7 @@ def _resolve_end(
     count = len(resolver.diagnostics)
     target = resolver.resolve_reference(written_end, _END_KINDS, use_case_id)
     if target is None:
-        resolver.diagnostics[count:] = [_mention_actors(each, text) for each in resolver.diagnostics[count:]]
+        resolver.diagnostics[count:] = [_mention_actors(each, text, resolver) for each in resolver.diagnostics[count:]]
         return StepEnd("unknown", text, written_end.span)
     return StepEnd("output" if target.kind == "output" else "component", target.id, written_end.span)
 
@@ -101,8 +101,14 @@ def _warn_hidden(written_end: ScalarNode, actor: Actor, use_case_id: str, resolv
         )
 
 
-def _mention_actors(diagnostic: Diagnostic, text: str) -> Diagnostic:
-    """Return a finding about an unknown name with how an actor is declared, where nothing else helps."""
-    if diagnostic.rule != "unknown-reference" or diagnostic.help is not None or "." in text:
+def _mention_actors(diagnostic: Diagnostic, text: str, resolver: ReferenceResolver) -> Diagnostic:
+    """Return a finding about an unknown name with what a step can name: a component, or an actor that is declared."""
+    if diagnostic.rule != "unknown-reference":
+        return diagnostic
+    inputs = resolver.names.ids_ending_in("input", text)
+    if inputs:
+        component_id = inputs[0].rpartition(".")[0]
+        return replace(diagnostic, help=f"a step ends at a component, whatever input it enters by: `{component_id}`")
+    if diagnostic.help is not None or "." in text:
         return diagnostic
     return replace(diagnostic, help=f"who stands outside is declared in the use case: `actors: {{{text}: ...}}`")

@@ -79,4 +79,6 @@ def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup
     from archgen.timing.chains.whole_bounds import bound_wholes
 
     lookup = make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
-    return replace(lookup, whole_bounds=bound_wholes(analysis, architecture), use_cases=bound_use_cases(analysis, architecture))
+    return replace(
+        lookup, whole_bounds=bound_wholes(analysis, architecture), use_cases=bound_use_cases(analysis, architecture)
+    )
