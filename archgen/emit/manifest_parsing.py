@@ -142,7 +142,7 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
         case "Enum":
             predicate = f"must be one of {', '.join(f'`{option}`' for option in kind.options)}"
         case "AnyOf":
-            predicate = "must be `outline`, `pages`, `record`, `graphs` or `tables`, or a list of these"
+            predicate = "must be `outline`, `pages`, `record`, `graphs`, `sequences` or `tables`, or a list of these"
         case "PropertyNames":
             predicate = _describe_wrong_key(kind.error.instance, is_filter=error.instance_path == ["escapes"])
         case "MaxProperties":

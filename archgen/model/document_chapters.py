@@ -6,6 +6,7 @@ from archgen.frozen import dataclass
 
 GENERATED_CHAPTERS = (
     "overview",
+    "use_cases",
     "groups",
     "frames",
     "deployment",

@@ -15,6 +15,7 @@ from archgen.products.product_table import PRODUCTS
 from archgen.products.trusted_backends import TrustedRevision, refuse_untrusted
 from archgen.views import resolved_record
 from archgen.views.graph_shapes import Graph
+from archgen.views.sequence_shapes import SequenceChart
 from archgen.views.tables import statistics_tables
 
 BackendTarget = Literal["documents", "workspace", "file"]
@@ -111,6 +112,7 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
         "outline": lambda: inputs.outline,
         "pages": lambda: inputs.pages,
         "graphs": lambda: tuple(graph for graph in inputs.views.drawings.values() if isinstance(graph, Graph)),
+        "sequences": lambda: tuple(each for each in inputs.views.drawings.values() if isinstance(each, SequenceChart)),
         "record": lambda: resolved_record.make_record(inputs.views.lookup),
         "tables": lambda: statistics_tables.make_statistics_tables(inputs.views.lookup.architecture),
     }

@@ -9,6 +9,7 @@ from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.views.graph_shapes import Graph
+from archgen.views.sequence_shapes import SequenceChart
 
 SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]
 
@@ -64,5 +65,5 @@ class Chart:
     alt: str = ""
 
 
-Drawing = Graph | Chart
+Drawing = Graph | Chart | SequenceChart
 """What a Figure may show."""

@@ -10,6 +10,7 @@ from archgen.views import graphs
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.lookup import Lookup
+from archgen.views.sequences.sequence_charts import make_sequence_charts
 from archgen.views.timing import chain_charts
 
 COMPONENT_KINDS: frozenset[GraphKind] = frozenset({"component", "implementation"})
@@ -40,9 +41,9 @@ def make_drawings(
         lookup.architecture, selection, lookup.findings, lookup.timing, undrawn_kinds=undrawn_kinds, depth=depth
     )
     timing_charts = chain_charts.make_timing_charts(lookup)
-    drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs} | {
-        chart.id: chart for chart in timing_charts
-    }
+    sequences = make_sequence_charts(lookup, selection.components if selection else None)
+    drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs}
+    drawings_by_id |= {chart.id: chart for chart in timing_charts} | {chart.id: chart for chart in sequences}
     # Charts of chains stay: the report on the functional level has a chapter on chains, too.
     return (
         drawings_by_id

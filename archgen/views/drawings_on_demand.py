@@ -16,6 +16,7 @@ from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.sequences.sequence_charts import CHART_PREFIX, make_sequence_chart
 from archgen.views.timing import chain_charts
 
 # One without boxes is not shown: there may be neither hosts nor frames.
@@ -83,11 +84,14 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
     def _list_drawings(self, drawing_id: str) -> Iterator[Drawing]:
         """Yield a drawing and whatever can only be made together with it."""
         family, _, name = drawing_id.partition("/")
-        made_drawings = (
-            self._make_timing_drawings(family)
-            if family in {"timing", "chains", "load"}
-            else (self._draw_graph(family, name),)
-        )
+        made_drawings: Iterable[Drawing | None]
+        if family in {"timing", "chains", "load"}:
+            made_drawings = self._make_timing_drawings(family)
+        elif f"{family}/" == CHART_PREFIX:
+            has_steps = name in self._lookup.steps.by_use_case
+            made_drawings = (make_sequence_chart(self._lookup, name),) if has_steps else ()
+        else:
+            made_drawings = (self._draw_graph(family, name),)
         yield from (drawing for drawing in made_drawings if drawing and self._is_shown(drawing))
 
     def _is_shown(self, drawing: Drawing) -> bool:

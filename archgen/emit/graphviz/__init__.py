@@ -1,4 +1,4 @@
-"""Draw the shapes Graph and Chart as svg, png and pdf, with Graphviz.
+"""Draw the shapes Graph, Chart and SequenceChart as svg, png and pdf, with Graphviz.
 
 `draw_pictures` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what
 was drawn before comes from the cache. No picture is trusted: after each layout every arrow is looked for in the result.
@@ -32,6 +32,7 @@ from archgen.emit.graphviz.worker_pool import (
 from archgen.emit.graphviz.worker_pool import draw_tasks as draw_all
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Chart, Drawing
+from archgen.views.sequence_shapes import SequenceChart
 
 __all__ = ["PICTURE_FORMATS", "MissingGraphviz", "dark_rules", "draw_pictures", "start_early_workers"]
 
@@ -139,8 +140,11 @@ def _draw_tasks(
 
 def _link_addresses(drawing: Drawing, resolve_link: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
     """Yield each ref of a graph that has an address, with the address."""
+    refs: list[str | None]
     if isinstance(drawing, Chart):
         refs = [bar.ref for bar in drawing.bars]
+    elif isinstance(drawing, SequenceChart):
+        refs = [lifeline.ref for lifeline in drawing.lifelines] + [message.ref for message in drawing.messages]
     else:
         refs = [item.ref for items in (drawing.boxes, drawing.arrows, drawing.clusters) for item in items]
     for ref in dict.fromkeys(refs):

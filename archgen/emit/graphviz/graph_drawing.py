@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from archgen.emit.graphviz import chart_layout, flow_layout, framed_layout, layout_engine, two_step_layout
+from archgen.emit.graphviz import (
+    chart_layout,
+    flow_layout,
+    framed_layout,
+    layout_engine,
+    sequence_layout,
+    two_step_layout,
+)
 from archgen.emit.graphviz.box_decorations import add_decorations
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
@@ -16,6 +23,7 @@ from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, clean_outlines
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Chart, Drawing
 from archgen.views.graph_shapes import Graph
+from archgen.views.sequence_shapes import SequenceChart
 
 _LAYOUT_FUNCTIONS = {
     "flow": flow_layout.lay_out_flow,
@@ -80,6 +88,11 @@ def draw_picture(  # noqa: PLR0913 - what to draw, and how, each by its name
     if isinstance(drawing, Chart):
         return render_picture(
             drawing, chart_layout.lay_out_chart(drawing, links.get), formats, quick=True, warning=warning
+        )
+    if isinstance(drawing, SequenceChart):
+        # Many hues side by side: gd's own palette would take two pale fills for one.
+        return render_picture(
+            drawing, sequence_layout.lay_out_sequence(drawing, links.get), formats, quick=False, warning=warning
         )
     _, scene = lay_out_graph(drawing, links, simple=simple, memory=memory)
     return render_picture(drawing, scene, formats, quick=_count_hues(drawing) <= _FEW_HUES, warning=warning)

@@ -25,7 +25,7 @@ from archgen.emit.graphviz.drawing_worker import (
 )
 from archgen.emit.picture import Picture
 from archgen.resources import worker_environment
-from archgen.views.chart_shapes import Chart
+from archgen.views.graph_shapes import Graph
 
 DRAWING_TIMEOUT = 300.0
 """Seconds that one drawing may take by the clock: for what hangs, and for a machine without limits on processor time."""
@@ -135,7 +135,7 @@ def create_worker(folder: Path, command_line: CommandLine | None = None) -> Draw
 
 def _count_boxes(task: DrawingTask) -> int:
     """Count the boxes of a drawing, which tell how long it takes; charts have nothing to lay out."""
-    return 0 if isinstance(task.drawing, Chart) else len(task.drawing.boxes)
+    return len(task.drawing.boxes) if isinstance(task.drawing, Graph) else 0
 
 
 class _DrawingRun:

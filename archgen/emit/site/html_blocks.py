@@ -21,6 +21,7 @@ from archgen.emit.site.html_text import (
     write_signs,
 )
 from archgen.emit.site.page_links import CurrentPage
+from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -225,8 +226,11 @@ class PageWriter:
         svg = page_pictures.inline_svg(picture.svg, self.current_page.href, alt)
         warning = f'<p class="notice warning">{escape_html(picture.warning)}</p>\n' if picture.warning else ""
         canvas = f"canvas {name_natural_width(picture)}" if self.standalone else "canvas"
+        # A sequence keeps its size: it is read from step to step, with the canvas moved below it.
+        is_sequence = figure.graph.startswith(CHART_PREFIX)
+        kind, focus = ("picture sequence", ' tabindex="0"') if is_sequence else ("picture", "")
         return (
-            f'<figure class="picture"{self._id_attribute(figure.anchor)}>\n<div class="{canvas}">{svg}</div>\n{warning}'
+            f'<figure class="{kind}"{self._id_attribute(figure.anchor)}>\n<div class="{canvas}"{focus}>{svg}</div>\n{warning}'
             f"<figcaption><span>{caption}</span>{self._picture_link(figure.graph, caption)}</figcaption>\n</figure>"
         )
 

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
 
-Shape = TypeVar("Shape", Box, Arrow, Cluster, Graph)
+Shape = TypeVar("Shape", Box, Arrow, Cluster, Graph, Lifeline, SequenceMessage, SequenceChart)
 
 
 def graph_from_plain(data: object) -> Graph:
@@ -22,6 +23,18 @@ def graph_from_plain(data: object) -> Graph:
         "clusters": tuple(_from_plain(Cluster, cluster) for cluster in data["clusters"]),
     }
     return _from_plain(Graph, {**data, **parts})
+
+
+def sequence_from_plain(data: object) -> SequenceChart:
+    """Return the sequence that `shape_to_plain` made plain data of. Raise TypeError for anything else."""
+    if not isinstance(data, Mapping) or data.get("shape") != "sequencechart":
+        msg = "`mermaid_sequence` takes one of `sequences`"
+        raise TypeError(msg)
+    parts: dict[str, Any] = {
+        "lifelines": tuple(_from_plain(Lifeline, lifeline) for lifeline in data["lifelines"]),
+        "messages": tuple(_from_plain(SequenceMessage, message) for message in data["messages"]),
+    }
+    return _from_plain(SequenceChart, {**data, **parts})
 
 
 def _from_plain(shape: type[Shape], data: Mapping[str, Any]) -> Shape:

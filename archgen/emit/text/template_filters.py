@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from archgen.emit.markdown.mermaid_chart import escape_mermaid, write_flowchart
 from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
+from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
 from archgen.emit.safe_names import make_identifier, make_slug
-from archgen.emit.text.plain_graphs import graph_from_plain
+from archgen.emit.text.plain_graphs import graph_from_plain, sequence_from_plain
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
@@ -78,6 +79,11 @@ def draw_mermaid(graph: object) -> str:
     return "\n".join(write_flowchart(fold_for_mermaid(graph_from_plain(graph)), has_stable_names=True))
 
 
+def draw_mermaid_sequence(sequence: object) -> str:
+    """Write a sequence, as templates get it, as a Mermaid sequence diagram without the fence around it."""
+    return "\n".join(write_sequence_diagram(sequence_from_plain(sequence)))
+
+
 def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:
     """Make a filter that replaces each character of a text by its entry in the table; all others stay."""
     replacements = str.maketrans(dict(table))
@@ -92,5 +98,6 @@ TEMPLATE_FILTERS: dict[str, Any] = {
     "markdown": escape_markdown,
     "mermaid": escape_mermaid,
     "mermaid_graph": draw_mermaid,
+    "mermaid_sequence": draw_mermaid_sequence,
     "slug": lambda text: make_slug(str(text)),
 }

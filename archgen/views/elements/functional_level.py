@@ -12,6 +12,7 @@ from archgen.views import inline_text
 from archgen.views.elements import port_tables
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
+from archgen.views.sequences.sequence_blocks import link_use_cases
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -187,6 +188,8 @@ def list_component_facts(lookup: Lookup, component: Component) -> list[tuple[str
                 inline_text.join_inlines(inline_text.frame_link(frame.id) for frame in written_frames),
             )
         )
+    if use_cases := link_use_cases(lookup, component.id):
+        rows.append(("Takes part in", use_cases))
     if component.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(component.tags))))
     if component.urls:

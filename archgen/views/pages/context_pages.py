@@ -17,6 +17,7 @@ from archgen.views.element_references import message_link
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import chain_link
+from archgen.views.sequences.sequence_blocks import make_sequence_blocks
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -49,7 +50,7 @@ def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Pag
     for requirement in architecture_tables.shown_requirements(lookup):
         yield _requirement_page(lookup, requirement)
     for name in lookup.architecture.use_cases:
-        yield _use_case_page(lookup, name)
+        yield _use_case_page(lookup, name, keep_drawn)
     for host in lookup.architecture.hosts.values():
         yield _host_page(lookup, host, keep_drawn)
     for name in lookup.architecture.containers:
@@ -262,12 +263,13 @@ def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
     return make_page(section, "requirements", crumb, "Requirement")
 
 
-def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
+def _use_case_page(lookup: Lookup, use_case_id: str, keep_drawn: FigureFilter) -> Page:
     use_case = lookup.architecture.use_cases[use_case_id]
     serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
     table = architecture_tables.make_requirement_table(lookup, serving_requirements)
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
     blocks += [Markdown(use_case.description)] if use_case.description else []
+    blocks += keep_drawn(make_sequence_blocks(lookup, use_case))
     blocks += [table] if table else []
     crumb = ("Requirements and use cases", "page:requirements")
     return make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
@@ -18,6 +18,7 @@ from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
+from archgen.views.sequences.sequence_blocks import make_use_case_sections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 from archgen.views.tables import architecture_tables, frame_table, project_growth
 
@@ -145,6 +146,15 @@ class _ChapterMaker:
         """Drop figures that are not among this document's drawings."""
         return tuple(b for b in blocks if not isinstance(b, Figure) or b.graph in self.edition.drawings)
 
+    def make_use_cases(self) -> list[Section]:
+        """Make the chapter of use cases that have steps; a part of the architecture has none."""
+        if self.lookup.scope.components is not None:
+            return []
+        sections = tuple(
+            replace(section, blocks=self._keep_drawn(section.blocks)) for section in make_use_case_sections(self.lookup)
+        )
+        return [Section("page:use_cases", "Use cases", (), sections, page_break=True)] if sections else []
+
     def make_frames(self) -> list[Section]:
         """Make the chapter of coordinate frames."""
         blocks = [*self._make_figures("frames"), *_drop_missing(frame_table.make_frame_table(self.lookup))]
@@ -240,6 +250,7 @@ class _ChapterMaker:
 
 _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] = {
     "overview": _ChapterMaker.make_overview,
+    "use_cases": _ChapterMaker.make_use_cases,
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,
     "deployment": _ChapterMaker.make_deployment,

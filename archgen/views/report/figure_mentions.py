@@ -52,6 +52,8 @@ _BLOCK_WORDS = {
     "table:bandwidth": "lists what each topic adds to it",
     "table:types": "says which ROS message carries each type",
     "table:connections": "lists who sends what to whom",
+    "figure:sequences/": "shows who says what to whom",
+    "table:steps/": "lists the steps with what they run along",
     "table:use_cases": "says what happens in each use case",
     "table:requirements": "traces each requirement to what serves it",
     "table:own_requirements": "lists what components ask of themselves",

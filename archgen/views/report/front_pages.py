@@ -94,19 +94,22 @@ def make_partner_table(lookup: Lookup) -> Table | None:
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
 
-def make_use_case_table(lookup: Lookup) -> Table | None:
-    """Say what the use cases are that requirements name."""
+def make_use_case_table(lookup: Lookup, *, has_chapter: bool = False) -> Table | None:
+    """Say what the use cases are that requirements name; those with a section of their own in the chapter lead to it."""
     use_cases = lookup.architecture.use_cases.values()
+    told = lookup.steps.by_use_case if has_chapter and lookup.scope.components is None else {}
     rows = tuple(
         (
-            inline_text.to_inlines(use_case.id),
+            inline_text.to_inlines(
+                Text(use_case.id, ref=f"use_case:{use_case.id}") if use_case.id in told else use_case.id
+            ),
             inline_text.to_inlines(Text(use_case.title, strong=True)),
             inline_text.to_inlines(" ".join((use_case.description or "").split())),
         )
         for use_case in use_cases
     )
     columns = (Column("Id", 0.4), Column("Use case", 1.2), Column("What happens", 3))
-    anchors = tuple(f"use_case:{use_case.id}" for use_case in use_cases)
+    anchors = tuple(None if use_case.id in told else f"use_case:{use_case.id}" for use_case in use_cases)
     return Table("table:use_cases", "Use cases", columns, rows, anchors) if rows else None
 
 

@@ -18,7 +18,8 @@ from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summ
 from archgen.views.report.figure_mentions import mention_section
 from archgen.views.report.message_annex import make_message_annex
 from archgen.views.report.printed_figures import print_section_figures
-from archgen.views.report.report_drawings import LEGEND_NAME, make_report_drawings
+from archgen.views.report.report_drawings import LEGEND_NAME, is_piece_of, make_report_drawings
+from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 
 _TIMING_ANNEX = "Rates, loads and traffic"
@@ -80,7 +81,9 @@ class _ReportPrinter:
 
     def _print_others(self, section: Section) -> Section:
         blocks = tuple(_flatten(self._keep_legible(section.blocks)))
-        if section.anchor == "page:requirements" and (table := front_pages.make_use_case_table(self.lookup)):
+        if section.anchor == "page:requirements" and (
+            table := front_pages.make_use_case_table(self.lookup, has_chapter="use_cases" in self.edition.chapter_names)
+        ):
             blocks = (table, *blocks)
         sections = tuple(self._print_others(each) for each in section.sections)
         # Annexes are looked up, not read: they follow one another without the rest of a page between them.
@@ -92,10 +95,25 @@ class _ReportPrinter:
         for block in blocks:
             if not isinstance(block, Figure):
                 yield block
+            elif block.graph.startswith(CHART_PREFIX):
+                yield from self._print_sequence(block)
             elif (
                 block.graph not in _LARGE_DRAWINGS or self.edition.settings.has_large_paper
             ) and block.graph in self.drawings:
                 yield dataclasses.replace(block, graph=self.drawings[block.graph].id)
+
+    def _print_sequence(self, figure: Figure) -> Iterator[Figure]:
+        """Yield a sequence as the pieces that it is drawn in."""
+        pieces = [each for each in self.drawings.values() if each.id == figure.graph or is_piece_of(each, figure.graph)]
+        for piece in pieces:
+            is_whole = piece.id == figure.graph
+            yield (
+                figure
+                if is_whole
+                else dataclasses.replace(
+                    figure, anchor=f"figure:{piece.id}", graph=piece.id, caption=piece.title, alt=piece.alt
+                )
+            )
 
     def _print_group(self, section: Section) -> Section:
         blocks = list(_flatten(self._keep_legible(section.blocks)))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.lookup import Lookup
+from archgen.views.sequence_shapes import SequenceChart
+from archgen.views.sequences.sequence_charts import CHART_PREFIX, make_printed_charts
 
 _PREFIX = "report/"
 LEGEND_NAME = "report/legend"
@@ -28,9 +30,26 @@ def make_report_drawings(
         for name, drawing in drawings.items()
         if shows_ros or not (isinstance(drawing, Graph) and drawing.kind in {"implementation", "group-timing"})
     }
+    fitted = dict(_cut_sequences(lookup, fitted))
     legend = _draw_legend([drawing for drawing in fitted.values() if isinstance(drawing, Graph)])
     fitted = {name: _leave_legend(drawing) for name, drawing in fitted.items()}
     return fitted | ({LEGEND_NAME: legend} if legend.legend else {})
+
+
+def _cut_sequences(lookup: Lookup, drawings: Mapping[str, Drawing]) -> Iterator[tuple[str, Drawing]]:
+    """Yield the drawings by name, sequences that are too large for a page in pieces."""
+    for name, drawing in drawings.items():
+        if isinstance(drawing, SequenceChart):
+            pieces = make_printed_charts(lookup, name.removeprefix(CHART_PREFIX))
+            yield from ((piece.id, piece) for piece in pieces)
+        else:
+            yield name, drawing
+
+
+def is_piece_of(drawing: Drawing, name: str) -> bool:
+    """Whether a drawing is a piece of the sequence of this name."""
+    whole, _, number = drawing.id.rpartition("/")
+    return isinstance(drawing, SequenceChart) and whole == name and number.isdecimal()
 
 
 def _draw_legend(graphs: Sequence[Graph]) -> Graph:

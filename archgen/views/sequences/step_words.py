@@ -47,7 +47,7 @@ def describe_step_time(lookup: Lookup, use_case_id: str, number: int) -> str:
     if value is None:
         return ""
     text = value_format.display_duration(value)
-    return NOT_PROVEN if text == value_format.UNKNOWN_FIGURE else text
+    return NOT_PROVEN if value.value is None or text == value_format.UNKNOWN_FIGURE else text
 
 
 def describe_total(lookup: Lookup, use_case_id: str) -> str:
@@ -56,9 +56,9 @@ def describe_total(lookup: Lookup, use_case_id: str) -> str:
     if times is None:
         return ""
     text = value_format.display_duration(times.total)
-    if text == value_format.UNKNOWN_FIGURE:
+    if times.total.value is None:
         return NOT_PROVEN
-    is_bound = times.total.complete and times.total.value is not None
+    is_bound = times.total.complete
     return f"at most {text}" if is_bound else f"{NOT_PROVEN} ({text})"
 
 

@@ -12,11 +12,13 @@ from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
 from archgen.emit.safe_names import make_identifier
 from archgen.emit.text.template_filters import (
     draw_mermaid,
+    draw_mermaid_sequence,
     escape_markdown,
     make_code_span,
     safe_commonmark,
 )
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
 from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Section, Table, Text, shape_to_plain
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
@@ -57,7 +59,9 @@ def wiki(title: str) -> dict[str, str]:
         Page("groups/g.html", "group:g", title, "groups", group, (HOME,), title),
         Page("components/g.a.html", "component:g.a", title, "components", component, (HOME, (title, "group:g"))),
     )
-    tree, diagnostics = text.render_backend(read_shipped_backend("wiki"), {"pages": pages, "graphs": (graph,)})
+    tree, diagnostics = text.render_backend(
+        read_shipped_backend("wiki"), {"pages": pages, "graphs": (graph,), "sequences": ()}
+    )
     assert diagnostics == ()
     assert tree is not None
     return {path: data.decode() for path, data in tree.files.items()}
@@ -187,3 +191,41 @@ def test_frames_become_boxes_where_too_many_arrows_are_inside() -> None:
     arrows = tuple(Arrow(f"e{at}", f"a.{at % 10}", f"a.{at // 10}") for at in range(100))
     graph = Graph("g", "G", "group", inside, arrows, (Cluster("a", "A"),), kind="group")
     assert [box.title for box in fold_for_mermaid(graph).boxes] == ["A"]
+
+
+def test_a_use_case_has_a_page_with_its_sequence() -> None:
+    chart = SequenceChart(
+        "sequences/UC-1",
+        "Water",
+        (Lifeline("The <resident>", "actor"), Lifeline("Ears; end")),
+        (
+            SequenceMessage(1, 0, 1, 'asks: "water"', "Voice\n5 ms", "physical"),
+            SequenceMessage(2, 1, 1, "end", style="inner"),
+            SequenceMessage(3, 1, 0, "", "no connection", "broken"),
+        ),
+    )
+    section = Section("use_case:UC-1", "UC-1", (Figure("figure:sequences/UC-1", "sequences/UC-1", "Step by step", ""),))
+    pages = (
+        Page("index.html", "page:index", "Robot", "overview", Section("page:index", "Robot", ())),
+        Page("use_cases/uc-1.html", "use_case:UC-1", "UC-1", "use_cases", section, (HOME,), "Use case"),
+    )
+    backend = read_shipped_backend("wiki")
+    tree, diagnostics = text.render_backend(backend, {"pages": pages, "graphs": (), "sequences": (chart,)})
+    assert diagnostics == ()
+    assert tree is not None
+    files = {path: data.decode() for path, data in tree.files.items()}
+    assert "## Use cases\n\n- [UC-1](use_cases/uc-1.md)\n" in files["home.md"]
+    assert files["use_cases/uc-1.md"].partition("```mermaid\n")[2].partition("\n```")[0].split("\n") == [
+        "sequenceDiagram",
+        "  actor p0 as The #60;resident#62;",
+        "  participant p1 as Ears#59; end",
+        "  p0->>p1: 1 asks#58; #34;water#34;<br>Voice<br>5 ms",
+        "  p1->>p1: 2 end",
+        "  p1-xp0: 3<br>no connection",
+    ]
+
+
+@pytest.mark.parametrize("given", ["text", {"shape": "graph"}, None])
+def test_what_is_no_sequence_is_not_drawn(given: object) -> None:
+    with pytest.raises(TypeError, match="`mermaid_sequence` takes one of `sequences`"):
+        draw_mermaid_sequence(given)

@@ -1,0 +1,131 @@
+"""Use cases in documents: the sequence, how long it takes, and a table of its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from archgen.model.architecture import UseCase
+from archgen.model.path_resolver import title_from_id
+from archgen.model.step_connections import ConnectedStep
+from archgen.model.use_case_steps import StepEnd
+from archgen.views import inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.sequences import step_words
+from archgen.views.sequences.sequence_charts import CHART_PREFIX
+from archgen.views.shapes import (
+    Block,
+    Column,
+    Facts,
+    Figure,
+    Inlines,
+    Markdown,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    drop_empty_columns,
+)
+from archgen.views.timing import timing_tables
+
+
+def make_use_case_sections(lookup: Lookup) -> Iterator[Section]:
+    """Yield a section for each use case with steps, for the report."""
+    for use_case_id in lookup.steps.by_use_case:
+        use_case = lookup.architecture.use_cases[use_case_id]
+        title = f"{use_case.id}: {use_case.title}" if use_case.title != use_case.id else use_case.id
+        texts = (Markdown(use_case.description),) if use_case.description else ()
+        yield Section(f"use_case:{use_case.id}", title, (*texts, *make_sequence_blocks(lookup, use_case)))
+
+
+def make_sequence_blocks(lookup: Lookup, use_case: UseCase) -> Iterator[Block]:
+    """Yield what is said of the steps of a use case; nothing for one without."""
+    steps = lookup.steps.by_use_case.get(use_case.id)
+    if not steps:
+        return
+    facts = tuple(_list_facts(lookup, use_case))
+    if facts:
+        yield Facts(facts)
+    broken = [each.number for each in steps if each.is_broken]
+    if broken:
+        numbers = inline_text.join_inlines(inline_text.to_inlines(str(number)) for number in broken)
+        lead = "Step " if len(broken) == 1 else "Steps "
+        rest = " runs along no connection." if len(broken) == 1 else " run along no connection."
+        yield Paragraph((Text(lead), *numbers, Text(rest)), "warning")
+    chart_id = f"{CHART_PREFIX}{use_case.id}"
+    alt = f"The steps of {use_case.title} between those who take part; the table has them in words."
+    yield Figure(f"figure:{chart_id}", chart_id, f"{use_case.title}, step by step", alt)
+    yield make_step_table(lookup, use_case, steps)
+
+
+def _list_facts(lookup: Lookup, use_case: UseCase) -> Iterator[tuple[str, Inlines]]:
+    if use_case.actors:
+        yield "From outside", inline_text.to_inlines(", ".join(actor.title for actor in use_case.actors.values()))
+    total = step_words.describe_total(lookup, use_case.id)
+    if total:
+        yield "All steps", inline_text.to_inlines(total)
+
+
+def make_step_table(lookup: Lookup, use_case: UseCase, steps: Iterable[ConnectedStep]) -> Table:
+    """List the steps with who takes part, what they run along, and how long they take."""
+    columns = (
+        Column("Step", 0.4, "right"),
+        Column("From", 1.3),
+        Column("To", 1.3),
+        Column("What happens", 2),
+        Column("Along", 1.5),
+        Column("Within", 0.8, "right"),
+    )
+    rows = tuple(
+        (
+            inline_text.to_inlines(str(each.number)),
+            _link_participant(lookup, use_case, each.step.source),
+            inline_text.to_inlines(Text("itself", muted=True))
+            if each.step.is_inner
+            else _link_participant(lookup, use_case, each.step.target),
+            inline_text.to_inlines(" ".join(each.step.say.split())) if each.step.say else (),
+            _link_carriers(lookup, each),
+            _make_time_cell(lookup, use_case, each.number),
+        )
+        for each in steps
+    )
+    anchor = f"table:steps/{use_case.id}"
+    return drop_empty_columns(Table(anchor, f"Steps of {use_case.title}", columns, rows))
+
+
+def _link_participant(lookup: Lookup, use_case: UseCase, end: StepEnd) -> Inlines:
+    component = lookup.architecture.find_component(end.participant) if end.kind != "actor" else None
+    if component is not None:
+        return (inline_text.component_link(component),)
+    return inline_text.to_inlines(Text(step_words.name_participant(lookup, use_case, end), emphasis=True))
+
+
+def _link_carriers(lookup: Lookup, connected: ConnectedStep) -> Inlines:
+    """Return what a step runs along: each type with its page, or the ports that have none."""
+    if connected.is_broken:
+        return (Text("no connection", status="warning"),)
+    architecture = lookup.architecture
+    links: dict[str, Inlines] = {}
+    for each in connected.connections:
+        port = architecture.outputs.get(each.output or "") or architecture.inputs.get(each.input or "")
+        if port is not None:
+            own_name = Text(title_from_id(port.name), ref=f"component:{port.component}")
+            links.setdefault(port.type or port.id, inline_text.type_link(port.type) if port.type else (own_name,))
+    return inline_text.join_inlines(links.values())
+
+
+def _make_time_cell(lookup: Lookup, use_case: UseCase, number: int) -> Inlines:
+    times = step_words.find_times(lookup, use_case.id)
+    value = times.steps[number - 1] if times else None
+    if value is None:
+        return ()
+    if value.value is None:
+        return (Text(step_words.NOT_PROVEN, muted=True),)
+    return timing_tables.duration_cell(value)
+
+
+def link_use_cases(lookup: Lookup, component_id: str) -> Inlines:
+    """Return links to the use cases in which a component takes part; empty where there are none."""
+    use_case_ids = lookup.steps.by_component.get(component_id, ())
+    return inline_text.join_inlines(
+        inline_text.to_inlines(Text(use_case_id, ref=f"use_case:{use_case_id}")) for use_case_id in use_case_ids
+    )
