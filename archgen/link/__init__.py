@@ -9,12 +9,14 @@ from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
+from archgen.link.variants import variant_rules
 
 RULES = (
     *slice_merging.RULES,
     *reference_rules.RULES,
     *composition_rules.RULES,
     *type_rules.RULES,
+    *variant_rules.RULES,
     DUPLICATE_FRAME,
     MISSING_CHAPTER,
     MISSING_PICTURE,

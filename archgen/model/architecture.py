@@ -18,6 +18,7 @@ from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
+from archgen.model.variant import Variant
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -198,6 +199,8 @@ class Architecture:
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
+    variants: Mapping[str, Variant] = field(default_factory=dict)
+    """The variants that the project describes; none in the project as it stands in one of them."""
     review: ReviewSettings = field(default_factory=ReviewSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)

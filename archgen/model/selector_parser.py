@@ -104,6 +104,11 @@ def parse_selector(text: str) -> ParsedSelector:
     return ParsedSelector(tuple(words), tuple(problems))
 
 
+def split_words(text: str) -> Iterator[str]:
+    """Yield the words of a selector as they are written, with their `-`."""
+    return (match[0] for match in _WORD_PATTERN.finditer(text))
+
+
 def _parse_word(text: str, start: int, end: int) -> SelectorWord | SelectorProblem:
     """Parse the word between two positions of a text."""
     reserved = _find_reserved(text, start, end)
