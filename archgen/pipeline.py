@@ -173,14 +173,17 @@ class VersionCache:
         self.analysis_memory = AnalysisMemory()
 
 
-def check_project(path: Path | None = None, version_cache: VersionCache | None = None) -> CheckedProject:
+def check_project(
+    path: Path | None = None, version_cache: VersionCache | None = None, variants: Sequence[str] | None = None
+) -> CheckedProject:
     """Read and check the project at a path (a folder, a file, or None for the one around the current folder).
 
-    Raises `project.ProjectNotFoundError` if there is no project.
+    `variants` are those that are asked for: others are not judged; None is all of them. Raises `project.ProjectNotFoundError` if there is no project.
     """
     version_cache = version_cache or VersionCache()
     with _pause_garbage_collection():
-        return judge_project(project.load_project(path, version_cache.parsed_slices), version_cache.analysis_memory)
+        loaded_project = project.load_project(path, version_cache.parsed_slices)
+        return judge_project(loaded_project, version_cache.analysis_memory, variants)
 
 
 def check_at_revision(path: Path | None, revision: str, version_cache: VersionCache | None = None) -> CheckedProject:
@@ -232,8 +235,14 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
         return check_project(file).findings
 
 
-def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory | None = None) -> CheckedProject:
+def judge_project(
+    loaded_project: LoadedProject,
+    analysis_memory: AnalysisMemory | None = None,
+    variant_names: Sequence[str] | None = None,
+) -> CheckedProject:
     """Run all stages on a loaded project, up to its findings; of one with variants, on it in each of them, too.
+
+    `variant_names` are those that are asked for, None for all of them.
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
@@ -245,11 +254,19 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     from archgen.findings import variant_findings
 
     judge = _VariantJudge(merged_project, checked_project, analysis_memory)
-    variants = {name: judge.judge_steps(judge.list_steps([name])) for name in checked_project.architecture.variants}
-    all_findings = {BASE_NAME: checked_project.findings, **{name: each.findings for name, each in variants.items()}}
+    variants = {
+        name: judge.judge_steps(judge.list_steps([name]))
+        for name in checked_project.architecture.variants
+        if variant_names is None or name in variant_names
+    }
+    judged_projects = {BASE_NAME: checked_project, **variants}
+    joined_findings = variant_findings.join_findings(
+        {name: each.findings for name, each in judged_projects.items()},
+        {name: each.waiting_rules for name, each in judged_projects.items()},
+    )
     return replace(
         checked_project,
-        findings=finding_limit.limit_findings(variant_findings.join_findings(all_findings)),
+        findings=finding_limit.limit_findings(joined_findings),
         own_findings=checked_project.findings,
         variants=variants,
     )
@@ -262,19 +279,39 @@ def stand_in_variants(
 
     Raises `UnknownVariantError` for a name that is none of them.
     """
-    known_names = (BASE_NAME, *checked_project.architecture.variants)
-    for name in names:
-        if name not in known_names:
-            raise UnknownVariantError(name, known_names)
+    _refuse_unknown(checked_project, names)
     wanted_names = [name for name in names if name != BASE_NAME]
     if not wanted_names:
         findings = checked_project.own_findings if checked_project.variants else checked_project.findings
         return replace(checked_project, findings=findings, variants={})
-    if len(wanted_names) == 1:
+    if len(wanted_names) == 1 and wanted_names[0] in checked_project.variants:
         return checked_project.variants[wanted_names[0]]
     merged_project = _merge_project(checked_project.loaded_project)
     judge = _VariantJudge(merged_project, checked_project, analysis_memory or AnalysisMemory())
     return judge.judge_steps(judge.list_steps(wanted_names))
+
+
+def keep_variant_findings(checked_project: CheckedProject, names: Sequence[str]) -> CheckedProject:
+    """Return a checked project with the findings that hold in some of its variants; `base` is the project itself.
+
+    Raises `UnknownVariantError` for a name that is none of them.
+    """
+    _refuse_unknown(checked_project, names)
+    kept = tuple(each for each in checked_project.findings if not each.variants or set(names) & set(each.variants))
+    return replace(checked_project, findings=kept)
+
+
+def list_variant_names(path: Path | None) -> tuple[str, ...]:
+    """Return the variants of the project at a path, without judging it. Raises `project.ProjectNotFoundError`."""
+    table, _ = slice_merging.merge_documents(project.load_project(path).documents)
+    return tuple(mapping_values.get_mapping(table, "variants").entries)
+
+
+def _refuse_unknown(checked_project: CheckedProject, names: Sequence[str]) -> None:
+    known_names = (BASE_NAME, *checked_project.architecture.variants)
+    for name in names:
+        if name not in known_names:
+            raise UnknownVariantError(name, known_names)
 
 
 class UnknownVariantError(Exception):
@@ -282,7 +319,9 @@ class UnknownVariantError(Exception):
 
     def __init__(self, name: str, known_names: Sequence[str]) -> None:
         """Take the name, and the variants that there are."""
-        help_line = did_you_mean(name, known_names) or f"there are {join_words([f'`{each}`' for each in known_names], 'and')}"
+        help_line = (
+            did_you_mean(name, known_names) or f"there are {join_words([f'`{each}`' for each in known_names], 'and')}"
+        )
         super().__init__(f"no variant named `{name}`: {help_line}")
 
 
@@ -324,9 +363,7 @@ class _VariantJudge:
 
     def _lay_step(self, steps: tuple[str, ...], name: str) -> _MergedProject:
         before = self._merged[steps]
-        laid = self._layer.lay_variant(
-            before.table, self._written[name], lambda: self.judge_steps(steps).architecture
-        )
+        laid = self._layer.lay_variant(before.table, self._written[name], lambda: self.judge_steps(steps).architecture)
         loaded_project = before.loaded_project
         if changes_settings(self._written[name]):
             loaded_project = adopt_settings(loaded_project, laid.root)

@@ -58,6 +58,7 @@ class ArchitectureSize:
     made_connections: int = 0
     """Those among `connections` that `autoconnect` made."""
     frames: int = 0
+    variants: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +121,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         component_types=len(arch.component_types),
         made_connections=sum(connection.is_made for connection in arch.connections),
         frames=len(arch.frames),
+        variants=len(arch.variants),
     )
 
 

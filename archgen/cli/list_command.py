@@ -31,6 +31,7 @@ LISTABLE_KINDS = (
     "hosts",
     "frames",
     "component_types",
+    "variants",
     "backends",
 )
 
@@ -47,6 +48,7 @@ LISTABLE_KINDS = (
 )
 @click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
 @shared_options.project_option
+@shared_options.variant_option
 def command(selector: tuple[str, ...], sort: str, library: str | None, form: str, project: Path | None) -> None:
     """List what SELECTOR names; without one, everything.
 

@@ -105,7 +105,9 @@ class _ChangeLayer:
     def _lay_type(self, below: MappingEntry, over: YamlNode) -> MappingNode:
         base = below.value if isinstance(below.value, MappingNode) else MappingNode({}, below.key_span)
         return (
-            self._overlay.lay_over_type(base, over, below.key) if isinstance(over, MappingNode) and over.entries else base
+            self._overlay.lay_over_type(base, over, below.key)
+            if isinstance(over, MappingNode) and over.entries
+            else base
         )
 
     def _lay_group(self, base: MappingNode, over: MappingNode, group_id: str) -> MappingNode:

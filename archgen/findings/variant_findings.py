@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from archgen.diagnostics.common_wording import join_words
@@ -46,10 +46,12 @@ MISSING_RULES = frozenset(
 """Rules that report what is not written: what every variant writes is not missing in the project itself."""
 
 
-def join_findings(findings_by_variant: Mapping[str, Sequence[Diagnostic]]) -> tuple[Diagnostic, ...]:
+def join_findings(
+    findings_by_variant: Mapping[str, Sequence[Diagnostic]], waiting_rules: Mapping[str, frozenset[str]]
+) -> tuple[Diagnostic, ...]:
     """Return the findings of a project and its variants, by name, each once and with the variants in which it holds.
 
-    What is missing in the project itself and given by every variant is not missing; what one of them needs is not
+    A rule that waits in a variant says nothing of it: what it finds in the project itself counts as found there. What is missing in the project itself and given by every variant is not missing; what one of them needs is not
     unused.
     """
     names = tuple(findings_by_variant)
@@ -59,13 +61,16 @@ def join_findings(findings_by_variant: Mapping[str, Sequence[Diagnostic]]) -> tu
             holders = holding.setdefault(replace(finding, labels=(), help=None), [])
             if not holders or holders[-1] != name:
                 holders.append(name)
+    for finding, holders in holding.items():
+        if holders[0] == BASE_NAME:
+            holders += [name for name in names if finding.rule in waiting_rules[name] and name not in holders]
     joined: dict[Diagnostic, Diagnostic] = {}
     for findings in findings_by_variant.values():
         for finding in findings:
             identity = replace(finding, labels=(), help=None)
             if identity not in joined and not _is_explained(finding, holding[identity], names):
                 holders = holding[identity]
-                joined[identity] = replace(finding, variants=() if len(holders) == len(names) else tuple(holders))
+                joined[identity] = finding if len(holders) == len(names) else _name_variants(finding, holders)
     return tuple(sorted(joined.values(), key=lambda each: each.sort_key))
 
 
@@ -78,18 +83,29 @@ def _is_explained(finding: Diagnostic, holders: Sequence[str], names: Sequence[s
     return finding.rule in MISSING_RULES and BASE_NAME in names and list(holders) == [BASE_NAME]
 
 
-def phrase_variants(finding: Diagnostic) -> str:
-    """Return in which variants a finding holds, in words; empty where it holds in all."""
-    if not finding.variants:
+def _name_variants(finding: Diagnostic, holders: Sequence[str]) -> Diagnostic:
+    """Return a finding with the variants in which it holds; one that does not hold in the project itself says it."""
+    quoted_names = [f"`{name}`" for name in holders if name != BASE_NAME]
+    message, help_line = finding.message, finding.help
+    if finding.rule == "unknown-reference" and BASE_NAME not in holders and help_line is None:
+        help_line = "it is not there in this variant: drop what names it, or write in `changes` what is there instead"
+    if BASE_NAME not in holders:
+        # In the message, by which findings are told apart: a baseline knows one of a variant as such.
+        plural = "s" if len(quoted_names) > 1 else ""
+        message = f"{message} (in the variant{plural} {join_words(quoted_names, 'and')})"
+    return replace(finding, message=message, help=help_line, variants=tuple(holders))
+
+
+def phrase_absence(finding: Diagnostic) -> str:
+    """Return where a finding of the project itself holds, in words; empty where that is everywhere, or in its message."""
+    if BASE_NAME not in finding.variants:
         return ""
     quoted_names = [f"`{name}`" for name in finding.variants if name != BASE_NAME]
+    if not quoted_names:
+        return "it holds in no variant"
     plural = "s" if len(quoted_names) > 1 else ""
-    variant_phrase = f"in the variant{plural} {join_words(quoted_names, 'and')}" if quoted_names else ""
-    if BASE_NAME not in finding.variants:
-        return variant_phrase
-    return f"without a variant, and {variant_phrase}" if variant_phrase else "only without a variant"
-
-
-def list_variant_names(findings: Iterable[Diagnostic]) -> tuple[str, ...]:
-    """Return the variants that some findings name, in order of first mention."""
-    return tuple(dict.fromkeys(name for finding in findings for name in finding.variants))
+    return (
+        f"of the variants it holds in {join_words(quoted_names, 'and')}"
+        if plural
+        else f"of the variants it holds in {quoted_names[0]} only"
+    )

@@ -27,6 +27,7 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         ("container", architecture.containers),
         ("link", architecture.links),
         ("frame", architecture.frames),
+        ("variant", architecture.variants),
         ("type", architecture.types),
         ("topic", architecture.topics),
         ("partner", architecture.partners),

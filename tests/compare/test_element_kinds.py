@@ -24,6 +24,7 @@ from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
+from archgen.model.variant import Variant
 from archgen.views.elements.element_card import kinds_by_id, make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.resolved_record import make_record
@@ -49,6 +50,7 @@ MODEL_CLASSES: Mapping[str, type] = {
     "frame": Frame,
     "chain": Chain,
     "policy": Policy,
+    "variant": Variant,
     "view": View,
 }
 SECTIONS = {
@@ -69,6 +71,7 @@ SECTIONS = {
     "frame": "frames",
     "chain": "chains",
     "policy": "policies",
+    "variant": "variants",
     "view": "views",
 }
 """Each kind with its section of the architecture."""
@@ -302,6 +305,9 @@ frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}}}
 policies: {p: {title: P, forbid: {from: g, to: g}}}
+variants:
+  in: {title: I}
+  sim: {title: S, description: D, of: [in], without: "tag:t -n", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
 """
 """A project in which every kind has every field."""
 
@@ -427,7 +433,7 @@ def test_the_order_of_the_report() -> None:
         *("project", "chapter", "partner", "use_case", "requirement", "component_type", "group", "composed"),
         *("component", "output", "input"),
         *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "frame"),
-        *("chain", "policy", "view"),
+        *("chain", "policy", "variant", "view"),
     ]
     assert list(KIND_ORDER.values()) == list(range(24))
 

@@ -69,7 +69,9 @@ class ChangeTargets:
 
     def _keep_group(self, known: MappingNode, group: MappingEntry) -> MappingEntry:
         below = known.entries.get(group.key)
-        return self._keep_parts(group, mapping_values.get_body(below) if below else mapping_values.EMPTY_MAPPING, group.key)
+        return self._keep_parts(
+            group, mapping_values.get_body(below) if below else mapping_values.EMPTY_MAPPING, group.key
+        )
 
     def _keep_parts(self, holder: MappingEntry, known_body: MappingNode, holder_id: str) -> MappingEntry:
         """Return a group or component with the components inside that the project has, or that declare themselves."""

@@ -63,7 +63,7 @@ class ElementRemover:
         )
         if "links" in entries:
             entries["links"] = self._prune_links(entries["links"], hosts)
-        return MappingNode({key: entry for key, entry in entries.items()}, root.span, root.declares)
+        return MappingNode(entries, root.span, root.declares)
 
     def _prune_groups(self, section: MappingEntry) -> MappingEntry:
         groups = {
@@ -98,10 +98,9 @@ class ElementRemover:
             if side in entries:
                 entries[side] = self._prune_ports(entries[side], component_id, side)
         self._prune_sources(entries, lambda scalar: self._find_source(scalar, component_id))
-        if component_id in self._changed_shells and "components" in entries:
-            inner = self._prune_parts(mapping_values.get_mapping(body, "components"), component_id)
-            entries["components"] = _with_value(entries["components"], inner)
-        elif "components" in entries and not _TYPE_KEYS.intersection(body.entries):
+        if (component_id in self._changed_shells and "components" in entries) or (
+            "components" in entries and not _TYPE_KEYS.intersection(body.entries)
+        ):
             inner = self._prune_parts(mapping_values.get_mapping(body, "components"), component_id)
             entries["components"] = _with_value(entries["components"], inner)
         if all(entries[key] is body.entries[key] for key in entries) and body is part.value:
@@ -199,9 +198,7 @@ class ElementRemover:
         items = [each for each in mapping_values.get_scalars(body, "implements") if each not in gone]
         entries["implements"] = _with_value(implements, SequenceNode([*items], implements.value.span))
         kept_targets = (self._resolver.resolve_reference(each, ("component",), node.key) for each in items)
-        kept_ports = {
-            name for target in kept_targets if target for name in self._list_ports(target.id)
-        }
+        kept_ports = {name for target in kept_targets if target for name in self._list_ports(target.id)}
         gone_ports = {name for component_id in gone_ids for name in self._list_ports(component_id)} - kept_ports
         gone_names = {component_id.rpartition(".")[2] for component_id in gone_ids}
         for key in _USE_KEYS:
@@ -227,7 +224,9 @@ class ElementRemover:
             if scalar.text not in gone_nodes
             and not (
                 self.removed.may_be_named(scalar.text)
-                and self._is_removed(self._resolver.names.resolve_path(scalar.text, ("node", "component")).unique_element)
+                and self._is_removed(
+                    self._resolver.names.resolve_path(scalar.text, ("node", "component")).unique_element
+                )
             )
         ]
         if len(kept) == len(scalars):

@@ -56,9 +56,7 @@ def _diagnose_unknown(scalar: ScalarNode, name: str, known_names: Sequence[str])
     help_line = did_you_mean(scalar.text, known_names) or "`of` names variants of this project"
     if scalar.text == BASE_NAME:
         help_line = "every variant is built on the project itself: leave it out"
-    return Diagnostic(
-        "unknown-variant", f"no variant named `{scalar.text}`", scalar.span, help=help_line, element=name
-    )
+    return Diagnostic("unknown-variant", f"no variant named `{scalar.text}`", scalar.span, help=help_line, element=name)
 
 
 def _find_circle(references: Mapping[str, Sequence[ScalarNode]], name: str) -> list[str]:

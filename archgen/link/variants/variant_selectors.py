@@ -55,9 +55,7 @@ def select_elements(selector: ScalarNode, evaluator: SelectorEvaluator, variant_
     ]
     if not selection.components and not selection.nodes and not idle_words:
         idle_words = [
-            Diagnostic(
-                "empty-variant-selector", "`without` takes nothing out", selector.span, element=variant_id
-            )
+            Diagnostic("empty-variant-selector", "`without` takes nothing out", selector.span, element=variant_id)
         ]
     return SelectedElements(selection.components, selection.nodes, tuple(idle_words))
 

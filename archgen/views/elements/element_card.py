@@ -65,6 +65,7 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "chain": a.chains,
         "view": a.views,
         "policy": a.policies,
+        "variant": a.variants,
     }
 
 
@@ -382,6 +383,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             "rate",
             "deadline",
             "show",
+            "of",
+            "without",
+            "drop",
         )
     ]
     lists: list[tuple[str, tuple[str, ...]]] = []
@@ -422,6 +426,8 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     elif kind == "frame":
         facts.append(("static", "yes" if element.static else ""))
         lists += list_frame_users(architecture, element)
+    elif kind == "variant":
+        lists.append(("changes", tuple(f"{change.path}: {change.value}" for change in element.changes)))
     elif kind == "chain":
         chain = architecture.chains[element_id]
         facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]
