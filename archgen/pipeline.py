@@ -145,11 +145,12 @@ class CheckedProject:
     def pack_project(self) -> PackedProject:
         """Return the whole project as one mapping, with the contents of interface files, chapters and pictures."""
         texts, _ = read_interface_files(self.loaded_project)
+        judged_variants = tuple(self.variants.values())
         attachments = PackedAttachments(
             {name: text for file, text in texts.items() if (name := interface_sources.interface_name_of(file))},
             {path: chapter.text for path, chapter in self.chapters.texts.items()},
             self.chapters.read_pictures(),
-            self.packed_parameters,
+            {**self.packed_parameters, **{k: t for each in judged_variants for k, t in each.packed_parameters.items()}},
         )
         ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
         silenced_lines = {(each.span.file, each.span.line) for each in self.silenced_findings}
@@ -157,7 +158,17 @@ class CheckedProject:
         ignores += (
             each for each in self.loaded_project.library_ignores if (each.span.file, each.span.line) in silenced_lines
         )
-        return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
+        silenced_findings = dict.fromkeys(
+            finding for each in (self, *judged_variants) for finding in each.silenced_findings
+        )
+        return pack_project(
+            self.merged_table,
+            self.architecture,
+            ignores,
+            attachments,
+            tuple(silenced_findings),
+            [each.architecture for each in judged_variants],
+        )
 
 
 class VersionCache:

@@ -61,7 +61,7 @@ class _ChangeLayer:
         for entry in types:
             library_id, dot, type_id = entry.key.partition(".")
             library = bodies.get(library_id)
-            library_types = library.value.get("component_types") if dot and library and _is_mapping(library) else None
+            library_types = _get_mapping(library.value, "component_types") if dot and library else None
             if library is None or not isinstance(library_types, MappingNode) or type_id not in library_types.entries:
                 continue
             del own_types[entry.key]
@@ -124,8 +124,8 @@ class _ChangeLayer:
         return group
 
 
-def _is_mapping(entry: MappingEntry) -> bool:
-    return isinstance(entry.value, MappingNode)
+def _get_mapping(node: YamlNode, key: str) -> YamlNode | None:
+    return node.get(key) if isinstance(node, MappingNode) else None
 
 
 def _replace_key(entry: MappingEntry, key: str, value: MappingNode) -> MappingEntry:

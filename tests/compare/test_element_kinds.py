@@ -435,7 +435,7 @@ def test_the_order_of_the_report() -> None:
         *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "frame"),
         *("chain", "policy", "variant", "view"),
     ]
-    assert list(KIND_ORDER.values()) == list(range(24))
+    assert list(KIND_ORDER.values()) == list(range(25))
 
 
 def test_the_schema_of_comparisons_knows_every_kind() -> None:
@@ -502,7 +502,7 @@ def test_how_far_a_changed_key_reaches(effect: Effect, keys: str) -> None:
 def test_how_far_a_whole_element_reaches() -> None:
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.TEXT} == {"chapter", "view", "use_case"}
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.SYSTEM} == {
-        *("project", "partner", "requirement", "policy", "component_type", "composed", "frame")
+        *("project", "partner", "requirement", "policy", "component_type", "composed", "frame", "variant")
     }
 
 

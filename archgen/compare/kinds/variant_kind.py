@@ -26,7 +26,12 @@ VARIANT = KindSpec(
         TITLE,
         DESCRIPTION,
         # The order counts: the later wins.
-        KeySpec("of", lambda variant, _: variant.of or None, verb="is built on", new_verb="is built on"),
+        KeySpec(
+            "of",
+            lambda variant, _: variant.of or None,
+            list_verbs=("is now built on", "is no longer built on"),
+            new_verb="is built on",
+        ),
         KeySpec("without", _read_selector, verb="is without"),
         KeySpec("drop", _read_drop, list_verbs=("now drops", "no longer drops")),
         KeySpec("changes", _read_changes, list_verbs=("now writes", "no longer writes")),

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.link import mapping_values
-from archgen.model.variant import Variant, WrittenChange
+from archgen.model.variant import BASE_NAME, Variant, WrittenChange
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
 
 def declare_variants(root: MappingNode) -> dict[str, Variant]:
-    """Declare the variants."""
+    """Declare the variants, except one that takes the name of the project itself, which is reported."""
     return {
         name: Variant(
             id=name,
@@ -23,6 +23,7 @@ def declare_variants(root: MappingNode) -> dict[str, Variant]:
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "variants")
+        if name != BASE_NAME
     }
 
 

@@ -28,7 +28,7 @@ class RemovedElements:
 def find_removed(outline: ElementOutline, leaves: frozenset[str], nodes: frozenset[str]) -> RemovedElements:
     """Return what goes with some leaves and nodes: composed components and groups of which nothing is left."""
     components = {leaf for leaf in leaves if leaf in outline.components}
-    for shell in reversed(outline.shells.values()):  # inner ones first
+    for shell in reversed(list(outline.shells.values())):  # inner ones first
         if shell.children and components.issuperset(shell.children):
             components.add(shell.id)
     groups = {group_id for group_id, members in outline.members.items() if members and components.issuperset(members)}

@@ -119,7 +119,9 @@ def _prune_text(text: str, removed: RemovedElements, evaluator: SelectorEvaluato
     kept = [word for word in words if word not in gone_words]
     had_wanted = any(not word.startswith("-") for word in words)
     has_wanted = any(not word.startswith("-") for word in kept)
-    return " ".join(kept) if has_wanted or not had_wanted else None
+    if had_wanted and not has_wanted:
+        return None
+    return " ".join(kept) or "*"  # nothing is taken away any more
 
 
 def _means_removed(word: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> bool:
