@@ -226,8 +226,7 @@ groups:
   g:
     components:
       a: {outputs: {x: T}}
-      # archgen: ignore[unfed-input] the simulator gives it
-      b: {inputs: {x: a.x}}
+      b: {inputs: {x: a.x}}  # archgen: ignore[unfed-input] the simulator gives it
 types: {T: std_msgs/msg/Bool}
 nodes: {a: a, b: b}
 """
@@ -241,7 +240,7 @@ def test_settings_of_rules_hold_in_the_variant_that_writes_them(tmp_path: Path) 
     robot = "archgen: 1\ngroups: {g: {components: {a: {outputs: {x: T}}, b: {inputs: {x: a.x}}}}}\ntypes: {T: std_msgs/msg/Bool}\nnodes: {a: a, b: b}\n"
     findings = check(tmp_path, variants, robot).findings
     assert [each.variants for each in findings if each.rule == "unfed-input"] == [("other",)]
-    assert [each.message for each in findings if each.rule == "unfed-input"][0].endswith("(in the variant `other`)")
+    assert next(each.message for each in findings if each.rule == "unfed-input").endswith("(in the variant `other`)")
 
 
 def test_unknown_variants_are_refused(tmp_path: Path) -> None:
