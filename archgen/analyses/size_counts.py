@@ -59,6 +59,8 @@ class ArchitectureSize:
     """Those among `connections` that `autoconnect` made."""
     frames: int = 0
     variants: int = 0
+    steps: int = 0
+    """The steps of all use cases."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +124,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         made_connections=sum(connection.is_made for connection in arch.connections),
         frames=len(arch.frames),
         variants=len(arch.variants),
+        steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
     )
 
 

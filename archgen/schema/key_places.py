@@ -32,6 +32,7 @@ _HOMES = {
     "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
     "frame": "`frames: {{FRAME: {{{key}: ...}}}}`",
     "variant": "`variants: {{VARIANT: {{{key}: ...}}}}`",
+    "use_case": "`use_cases: {{USE-CASE: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
 _READER_KEYS = frozenset({"freshness", "optional"})
@@ -55,6 +56,7 @@ _ELEMENT_SECTIONS = {
     "requirements": "requirement",
     "frames": "frame",
     "variants": "variant",
+    "use_cases": "use_case",
 }
 
 

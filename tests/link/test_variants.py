@@ -9,6 +9,7 @@ import yaml
 
 from archgen import pipeline
 from archgen.pipeline import CheckedProject
+from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_writer import write_yaml
 
 ROBOT = """\
@@ -249,3 +250,13 @@ def test_unknown_variants_are_refused(tmp_path: Path) -> None:
         pipeline.stand_in_variants(checked, ["simulaton"])
     with pytest.raises(pipeline.UnknownVariantError, match="there are `base` and `simulation`"):
         pipeline.keep_variant_findings(checked, ["xyzzy"])
+
+
+def test_variants_change_every_section_but_those_that_say_what_the_project_is() -> None:
+    schema = load_schema()
+    changed = schema["$defs"]["variant_changes"]["properties"]
+    kept = {"archgen", "project", "sources", "libraries", "variants", "review"}
+    # A new section goes into `variant_changes`, as it stands among the properties of the schema.
+    assert set(changed) == set(schema["properties"]) - kept
+    for name in set(changed) - {"component_types"}:  # where types of libraries are named, too
+        assert changed[name] == schema["properties"][name], name
