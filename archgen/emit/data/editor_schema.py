@@ -58,6 +58,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "requirement.use_cases": ("use_cases",),
     "requirement.verified_by": ("use_cases", "chains"),
     "ros.distro": ("distros",),
+    "step.from": ("step_ends",),
+    "step.to": ("step_ends",),
     "tags": ("tags",),
     "topic_names": ("topics",),
     "topic_use": ("topics",),
