@@ -289,6 +289,8 @@ nodes:
     parameters: {plugins.x: 1}
     parameter_commands: {plugins.y: [cat, z]}
     parameter_files: [p.yaml]
+    command: [stage, w]
+    start: {phase: core, after: m, ready: {port: 1, file: f, topic: t, service: s, log: l, wait: 1 s, within: 2 s}, respawn: true, respawn_delay: 1 s, environment: {A: b}, directory: /d, user: u, once: true, state: active, by: m}
     tags: [t]
     urls: {a: "https://a.eu"}
     publishes: {o: /o}
