@@ -11,7 +11,23 @@ from archgen.model.start_up import NO_START
 MAX_GUARDED_PORT = 1023
 """Up to this one, ports belong to the administrator."""
 _SYSTEM_PROGRAMS = frozenset(
-    "ip ifconfig tc iptables nft modprobe insmod rmmod mount umount sysctl systemctl service chrt chown".split()
+    [
+        "ip",
+        "ifconfig",
+        "tc",
+        "iptables",
+        "nft",
+        "modprobe",
+        "insmod",
+        "rmmod",
+        "mount",
+        "umount",
+        "sysctl",
+        "systemctl",
+        "service",
+        "chrt",
+        "chown",
+    ]
 )
 """Programs that change the system, for which one needs rights as a rule."""
 
@@ -23,11 +39,10 @@ def build_command(architecture: Architecture, node: Node) -> tuple[str, ...]:
     if is_ros_1(architecture.distro):
         return _build_ros_1_command(architecture, node)
     if node.plugin and node.package and not node.executable:
+        container = architecture.containers.get(node.container or "")
+        verb = ("load", container.full_name) if container else ("standalone",)
         names = ("--node-name", node.name, *(("--node-namespace", node.namespace) if node.namespace != "/" else ()))
-        if node.container is None:
-            return ("ros2", "component", "standalone", node.package, node.plugin, *names)
-        container = architecture.containers[node.container]
-        return ("ros2", "component", "load", container.full_name, node.package, node.plugin, *names)
+        return ("ros2", "component", *verb, node.package, node.plugin, *names)
     if not node.package or not node.executable:
         return ()
     if "program" in node.kinds:

@@ -31,7 +31,8 @@ def make_start_plan(architecture: Architecture) -> StartPlan:
     start_waits = StartWaits(architecture)
     phases = _find_phases(architecture)
     step_ids = list(phases)
-    following, against_phases = [], []
+    following: list[Wait] = []
+    against_phases: list[Wait] = []
     for wait in start_waits.list_waits():
         is_against = PHASES.index(phases[wait.awaited]) > PHASES.index(phases[wait.waiting])
         (against_phases if is_against else following).append(wait)
@@ -110,7 +111,10 @@ def _list_steps(
                 container=container.id,
             )
         )
-    return [*containers, *(_make_node_step(architecture, each, managers[each.id]) for each in architecture.nodes.values())]
+    return [
+        *containers,
+        *(_make_node_step(architecture, each, managers[each.id]) for each in architecture.nodes.values()),
+    ]
 
 
 def _make_node_step(architecture: Architecture, node: Node, managers: tuple[str, ...]) -> StartStep:

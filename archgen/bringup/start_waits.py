@@ -52,7 +52,9 @@ class StartWaits:
     def _list_written_waits(self) -> Iterator[Wait]:
         for node in self._architecture.nodes.values():
             if node.container is not None:
-                yield Wait(name_container(self._architecture, node.container), node.id, "container", at=node.container_at)
+                yield Wait(
+                    name_container(self._architecture, node.container), node.id, "container", at=node.container_at
+                )
             for target in (node.start or NO_START).after:
                 awaited = dict.fromkeys(self.find_nodes(target))
                 if len(awaited) > 1:

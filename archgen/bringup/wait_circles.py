@@ -72,9 +72,7 @@ class _KeptOrder:
         self._predecessors[waiting].append(awaited)
         return ()
 
-    def _reach(
-        self, neighbours: dict[str, list[str]], start: str, lowest: int, highest: int
-    ) -> dict[str, str | None]:
+    def _reach(self, neighbours: dict[str, list[str]], start: str, lowest: int, highest: int) -> dict[str, str | None]:
         """Return what can be reached between two positions, each with the step before it: the nearest first."""
         found: dict[str, str | None] = {start: None}
         queue = [start]

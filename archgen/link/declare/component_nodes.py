@@ -40,7 +40,7 @@ class ImplementingNodes(NamedTuple):
     """Nodes of components that say where they run, but not what."""
 
 
-def declare_component_nodes(
+def declare_component_nodes(  # noqa: PLR0913, PLR0917 - what nodes are made of
     outline: ElementOutline,
     expansion: ExpandedProject,
     written_targets: dict[str, tuple[str, ...]],
@@ -72,7 +72,7 @@ def declare_component_nodes(
 class ComponentNodes:
     """The nodes that components bring along: `entries` in normal form by node id, `implements` by node id."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 - what nodes are made of
         self,
         outline: ElementOutline,
         expansion: ExpandedProject,

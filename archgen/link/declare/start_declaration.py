@@ -30,7 +30,7 @@ def declare_start(body: MappingNode, resolver: ReferenceResolver, node_id: str) 
     manager = mapping_values.get_scalar(start, "by")
     targets = (_resolve_target(each, resolver, node_id) for each in mapping_values.get_scalars(start, "after"))
     return StartUp(
-        phase=phase if phase in PHASES else None,  # type: ignore[arg-type]
+        phase=phase if phase in PHASES else None,
         after=tuple(dict.fromkeys(filter(None, targets))),
         ready=_read_conditions(mapping_values.get_mapping(start, "ready"), resolver, node_id),
         respawn=mapping_values.get_flag(start, "respawn"),
@@ -66,7 +66,8 @@ def _read_conditions(ready: MappingNode, resolver: ReferenceResolver, node_id: s
 
 
 def _list_places(mapping: MappingNode) -> dict[str, Span]:
-    return {entry.key: entry.value.span for entry in mapping if isinstance(entry.value, (ScalarNode, SequenceNode))}
+    # The span of a mapping may cover lines: its key is shown instead.
+    return {e.key: e.key_span if isinstance(e.value, MappingNode) else e.value.span for e in mapping}
 
 
 def _resolve_target(
