@@ -59,6 +59,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "start": ("implemented",),
     "start.after": ("implemented",),
     "start.by": ("implemented",),
+    "step.from": ("step_ends",),
+    "step.to": ("step_ends",),
     "tags": ("tags",),
     "topic_names": ("topics",),
     "topic_use": ("topics",),
