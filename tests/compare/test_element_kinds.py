@@ -313,7 +313,7 @@ views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, l
 policies: {p: {title: P, forbid: {from: g, to: g}}}
 variants:
   in: {title: I}
-  sim: {title: S, description: D, of: [in], without: "tag:t -n", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
+  sim: {title: S, description: D, of: [in], without: "g.whole", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
 """
 """A project in which every kind has every field."""
 
