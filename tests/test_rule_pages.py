@@ -18,7 +18,12 @@ _LOUD = {Severity.ERROR, Severity.WARNING}
 
 
 def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
-    """Judge an example: one file, or several that begin with a line `# file: NAME`."""
+    """Judge an example: one file, or several that begin with a line `# file: NAME`, or one of a commit of some day."""
+    if example.startswith("# committed on "):
+        day = example.partition("\n")[0].removeprefix("# committed on ")
+        write_files(folder, {"archgen.yaml": example})
+        commit_on_day(folder, day)
+        return check_project(folder / "archgen.yaml").findings
     parts = re.split(r"^# file: (\S+)\n", f"{example}\n", flags=re.MULTILINE)
     if len(parts) == 1:
         return check_text(parts[0])
