@@ -115,8 +115,9 @@ def _diagnose_use(architecture: Architecture, use: _Use, rule: str) -> Diagnosti
     elif deprecated.until:
         until = f", which is there until {deprecated.until}"
     replacement = find_replacement(architecture, use.kind, deprecated)
-    own_name = replacement.rpartition(".")[2] if use.kind == "output" and replacement else replacement
-    short = own_name if use.kind == "output" and _share_component(use.name, replacement) else replacement
+    short = replacement
+    if use.kind == "output" and replacement and replacement.rpartition(".")[0] == use.name.rpartition(".")[0]:
+        short = ".".join(replacement.split(".")[-2:])
     at = deprecated.at
     return Diagnostic(
         rule,
@@ -128,10 +129,6 @@ def _diagnose_use(architecture: Architecture, use: _Use, rule: str) -> Diagnosti
         else f"ask its owner what replaces it; `deprecated` of `{use.name}` names nothing",
         element=use.element,
     )
-
-
-def _share_component(name: str, other: str | None) -> bool:
-    return other is not None and name.rpartition(".")[0] == other.rpartition(".")[0]
 
 
 def _list_uses(architecture: Architecture) -> Iterator[_Use]:

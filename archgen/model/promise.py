@@ -60,6 +60,12 @@ class Deprecation:
         return day is not None and self.until is not None and day > self.until
 
 
+def describe_deprecation(deprecated: Deprecation) -> str:
+    """Return in words until when something may be used, and what replaces it: `until 2027-03-01, use cloud instead`."""
+    until = f"until {deprecated.until}" if deprecated.until else "no day named"
+    return f"{until}, use {deprecated.use} instead" if deprecated.use else until
+
+
 def format_range(limits: tuple[float, float], unit: str | None = None) -> str:
     """Return the least and the greatest value as people read them: `0 to 30 m`."""
     least, greatest = (format_limit(limit) for limit in limits)
@@ -70,7 +76,7 @@ def format_limit(limit: float) -> str:
     """Return a limit as people read it."""
     if limit in {float("inf"), float("-inf")}:
         return "no limit" if limit > 0 else "no lower limit"
-    return f"{limit:g}" if isinstance(limit, float) and abs(limit) < 1e6 else str(limit)  # noqa: PLR2004 - from here on with an exponent
+    return str(limit).removesuffix(".0")
 
 
 def format_promised(key: str, value: object, unit: str | None = None) -> str:
