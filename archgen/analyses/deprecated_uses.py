@@ -164,16 +164,17 @@ def _list_type_users(architecture: Architecture, types: Mapping[str, Deprecation
 def _list_naming_ports(architecture: Architecture, types: Mapping[str, Deprecation]) -> Iterator[_Use]:
     """Yield the ports and operations that name a type."""
     for component, output in list_described_outputs(architecture):
-        if output.type in types and output.deprecated is None:
+        if output.deprecated is None:
             span = output.type_at if output.type_at != NO_SPAN else output.at
-            yield _Use(f"`{output.id}` has", "type", output.type, types[output.type], span, component.id)
+            for name in _list_names(output.type, types):
+                yield _Use(f"`{output.id}` has", "type", name, types[name], span, component.id)
     for component in architecture.list_described_components():
         for port in component.inputs.values():
-            if port.type in types:
-                yield _Use(f"`{port.id}` expects", "type", port.type, types[port.type], port.type_at, component.id)
+            for name in _list_names(port.type, types):
+                yield _Use(f"`{port.id}` expects", "type", name, types[name], port.type_at, component.id)
         for operation in component.operations.values():
-            for name in dict.fromkeys(operation.type_names):
-                if name in types:
+            for type_name in dict.fromkeys(operation.type_names):
+                for name in _list_names(type_name, types):
                     phrase = f"the operation `{operation.id}` of `{component.id}` has"
                     yield _Use(phrase, "type", name, types[name], operation.at, component.id)
 
@@ -182,11 +183,15 @@ def _list_type_readers(architecture: Architecture, types: Mapping[str, Deprecati
     """Yield the inputs that say nothing of a type: they read what their sources send."""
     told: set[tuple[str, str]] = set()
     for counted in list_counted_outputs(architecture):
-        name, reader = counted.leaf.type, counted.reader
-        if name in types and reader.type is None and (reader.id, name) not in told:
-            told.add((reader.id, name))
-            span = counted.connection.at if counted.connection.at != NO_SPAN else reader.at
-            yield _Use(f"`{reader.id}` reads", "type", name, types[name], span, reader.component)
+        reader = counted.reader
+        # Who reads what is going away with its type leaves both at once.
+        if reader.type is not None or counted.port.deprecated is not None:
+            continue
+        for name in _list_names(counted.leaf.type, types):
+            if (reader.id, name) not in told:
+                told.add((reader.id, name))
+                span = counted.connection.at if counted.connection.at != NO_SPAN else reader.at
+                yield _Use(f"`{reader.id}` reads", "type", name, types[name], span, reader.component)
 
 
 def _list_holders(architecture: Architecture, types: Mapping[str, Deprecation]) -> Iterator[_Use]:
@@ -196,10 +201,21 @@ def _list_holders(architecture: Architecture, types: Mapping[str, Deprecation]) 
             continue  # a type that is going away itself
         fields = ((field.element_type, field.type_at) for _, field in holder.list_fields())
         parts = ((name, holder.at) for name in (holder.request, holder.response, holder.feedback) if name)
-        arguments = ((name, holder.at) for name in read_generic_name(holder.name).arguments)
-        for name, span in dict.fromkeys(chain(fields, parts, arguments)):
-            if name in types and name not in holder.generic:
+        for type_name, span in dict.fromkeys(chain(fields, parts, [(holder.name, holder.at)])):
+            for name in _list_names(type_name, types):
+                if name in holder.generic or name == holder.name:
+                    continue
                 yield _Use(f"the type `{holder.name}` holds", "type", name, types[name], span, holder.name)
+
+
+def _list_names(type_name: str | None, types: Mapping[str, Deprecation]) -> list[str]:
+    """Return the deprecated types that a name holds: itself, and what `Box<Old>` names in its brackets."""
+    pending, names = [type_name] if type_name else [], dict[str, None]()
+    while pending:
+        name = pending.pop()
+        names |= {name: None} if name in types else {}
+        pending += read_generic_name(name).arguments if "<" in name else ()
+    return [*names]
 
 
 def _list_instances(architecture: Architecture, component_types: Mapping[str, Deprecation]) -> Iterator[_Use]:

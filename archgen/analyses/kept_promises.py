@@ -113,14 +113,13 @@ def _find_broken(
             yield _Broken("rate", words, "let it be sent more often, or promise a lower rate")
     if paces and promise.max_gap is not None:
         gap = smallest_value(pace.gap for pace in paces)
-        words = _exceed(gap, promise.max_gap.value, "between two messages")
-        if words:
-            yield _Broken("max_gap", words, "let it be sent more often and at each run, or promise a longer gap")
+        gap_words = _exceed(gap, promise.max_gap.value, "between two messages")
+        if gap_words:
+            yield _Broken("max_gap", gap_words, "let it be sent more often and at each run, or promise a longer gap")
     if promise.max_age is not None:
         worst: tuple[Arc, TimingValue] | None = None
         for arc, age in ages:
-            words = _exceed(age, promise.max_age.value, "")
-            if words and (worst is None or _rank(age) > _rank(worst[1])):
+            if _exceed(age, promise.max_age.value, "") and (worst is None or _rank(age) > _rank(worst[1])):
                 worst = (arc, age)
         if worst:
             arc, age = worst

@@ -78,7 +78,7 @@ class TypeTable:
         if reference.text in self.entries:
             self.library_names |= {reference.text: None} if library else {}
         elif library not in self.incomplete_libraries:
-            self.diagnostics.append(self._diagnose_unknown_type(reference, TypeExpression(reference.text), name))
+            self.diagnostics.append(self._diagnose_unknown_type(reference, TypeExpression(reference.text, ()), name))
 
     def get_body(self, expression: TypeExpression) -> MappingNode | None:
         """Return the body of a type, with what it is made from; None where that goes in a circle."""

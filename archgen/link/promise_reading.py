@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.link import mapping_values, sanity_checks
 from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise
 from archgen.model.quantity import Quantity
+from archgen.schema.quantity_wording import clip_text
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 _DIMENSIONS = {"rate": "frequency", "max_gap": "duration", "max_age": "duration"}
@@ -54,9 +55,19 @@ def read_promise(holder: MappingNode, element_id: str, diagnostics: list[Diagnos
 def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> tuple[_Limit, ...]:
     """Return the least and the greatest value; nothing, and a diagnostic, where they are not two in one unit."""
     entry = body.entries.get("range")
-    limits = [limit for item in mapping_values.get_scalars(body, "range") if (limit := _read_limit(item))]
-    if entry is None or (not limits and mapping_values.get_scalars(body, "range")):
-        return ()  # what cannot be read is reported already
+    if entry is None:
+        return ()
+    items = mapping_values.get_scalars(body, "range")
+    limits: list[_Limit] = []
+    for item in items:
+        limit = _read_limit(item)
+        if limit is None:
+            help_line = "a limit is a number, with or without a unit, such as `0`, `1.5 m` or `.inf`"
+            diagnostics.append(
+                _diagnose(f"`{clip_text(item.text)}` is no limit of a range", item.span, help_line, element_id)
+            )
+            return ()
+        limits.append(limit)
     place = entry.value.span if limits else entry.key_span
     if len(limits) != 2:  # noqa: PLR2004 - least and greatest
         message = f"a range has two limits, the least and the greatest value: here {_count(len(limits))}"

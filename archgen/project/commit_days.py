@@ -26,10 +26,10 @@ def find_commit_day(files: ProjectFiles, architecture: Architecture) -> str | No
 
 
 def _has_last_day(architecture: Architecture) -> bool:
-    holders = (
-        *architecture.outputs.values(),
-        *(output for shell in architecture.shells.values() for output in shell.outputs.values()),
-        *architecture.types.values(),
-        *architecture.component_types.values(),
+    words = (
+        *(output.deprecated for output in architecture.outputs.values()),
+        *(output.deprecated for shell in architecture.shells.values() for output in shell.outputs.values()),
+        *(each.deprecated for each in architecture.types.values()),
+        *(each.deprecated for each in architecture.component_types.values()),
     )
-    return any(holder.deprecated is not None and holder.deprecated.until is not None for holder in holders)
+    return any(deprecated is not None and deprecated.until is not None for deprecated in words)

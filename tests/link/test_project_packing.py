@@ -395,8 +395,13 @@ def test_promises_pack_to_the_same(tmp_path: Path) -> None:
     again = packed_again(checked, tmp_path)
     for name in ("types", "outputs", "component_types"):
         assert getattr(again.architecture, name) == getattr(checked.architecture, name)
-    assert checked.architecture.component_types["lib.x"].deprecated.target == "lib.y"
-    assert checked.architecture.types["L"].deprecated.target == "M"
+    deprecated, type_deprecated = (
+        checked.architecture.component_types["lib.x"].deprecated,
+        checked.architecture.types["L"].deprecated,
+    )
+    assert deprecated
+    assert type_deprecated
+    assert (deprecated.target, type_deprecated.target) == ("lib.y", "M")
 
 
 def test_frames_pack_to_the_same(tmp_path: Path) -> None:

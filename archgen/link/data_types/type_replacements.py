@@ -20,13 +20,15 @@ def name_replacements(
     """Give deprecated types the names of those that replace them, and return these; report names that nothing has."""
     found_names: list[str] = []
     guesses_left = _MAX_GUESSES
-    for each in [each for each in types.values() if each.deprecated and each.deprecated.use]:
+    for each in list(types.values()):
         deprecated = each.deprecated
-        name = mapping_values.normalise_type_name((deprecated.use if deprecated else None) or "")
+        if deprecated is None or deprecated.use is None:
+            continue
+        name = mapping_values.normalise_type_name(deprecated.use)
         if _is_known(name, types, sources):
             types[each.name] = replace(each, deprecated=replace(deprecated, target=name))
             found_names.append(name)
-        elif deprecated and not sources.is_partial and name not in sources.lost_keys:
+        elif not sources.is_partial and name not in sources.lost_keys:
             guess = find_closest(name, (other for other in types if other != each.name)) if guesses_left > 0 else None
             guesses_left -= 1
             diagnostics.append(

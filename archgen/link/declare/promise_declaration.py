@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN
@@ -138,7 +138,7 @@ class PromisedOutputs:
             self._resolver.diagnostics.append(
                 Diagnostic(
                     "unknown-reference",
-                    f"no output of `{component_id}`, and none with the complete path `{text}`",
+                    f"`{text}` is no output of `{component_id}`, and no complete path of another one",
                     deprecated.use_at,
                     labels=(Label(span, "declared here"),) if guess and span != NO_SPAN else (),
                     help=f"did you mean `{guess}`?"
@@ -154,7 +154,9 @@ def _lay_over(given: _Said, own: _Said) -> _Said:
     """Return what is said by itself, and for the rest what is given on; of a promise key by key."""
     promise = own.promise or given.promise
     if own.promise and given.promise:
-        kept = {key: value for key, value in given.promise.list_kept() if getattr(own.promise, key) is None}
+        kept: dict[str, Any] = {
+            key: value for key, value in given.promise.list_kept() if getattr(own.promise, key) is None
+        }
         if "unit" in kept and own.promise.range is not None:
             del kept["unit"]  # the unit of another range
         promise = replace(own.promise, **kept, places={**given.promise.places, **own.promise.places})
@@ -166,7 +168,9 @@ def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:
     first, *others = promises
     if first is None:
         return None
-    differing = {key: None for key in PROMISE_KEYS if any(_read(each, key) != _read(first, key) for each in others)}
+    differing: dict[str, Any] = {
+        key: None for key in PROMISE_KEYS if any(_read(each, key) != _read(first, key) for each in others)
+    }
     joined = replace(first, **differing)
     return joined if any(_list_kept(joined)) else None
 
