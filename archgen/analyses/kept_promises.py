@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
-    from archgen.model.component import Output
     from archgen.model.promise import Promise
     from archgen.timing.analysis import Analysis, EventPace
     from archgen.timing.figures.timing_values import TimingValue
     from archgen.timing.system.timing_system import Arc
+
+
+_NOUNS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
 
 
 class _Broken(NamedTuple):
@@ -32,6 +34,19 @@ class _Broken(NamedTuple):
     words: str
     help: str
     reader_at: Span = NO_SPAN
+
+
+class BrokenPromise(NamedTuple):
+    """A promise of an output that what is sent by a leaf (`leaf`, its output) does not keep, in words."""
+
+    port: str
+    leaf: str
+    key: str
+    promised: str
+    words: str
+    help: str
+    at: Span
+    reader_at: Span
 
 
 def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
@@ -62,28 +77,42 @@ def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[D
           localiser: {implements: localiser, timing: {period: 50 ms, wcet: 5 ms, bcet: 5 ms}}
           brake: {implements: brake, timing: {period: 20 ms, wcet: 2 ms}}
     """
+    told: set[tuple[str, str, Span]] = set()
+    for broken in find_broken_promises(architecture, analysis):
+        # What is given on as it is promised inside is not told twice.
+        if (broken.key, broken.leaf, broken.at) not in told:
+            told.add((broken.key, broken.leaf, broken.at))
+            yield _diagnose_broken(broken)
+
+
+def find_broken_promises(architecture: Architecture, analysis: Analysis) -> Iterator[BrokenPromise]:
+    """Yield what outputs promise and figures do not keep, leaves first."""
     promises = [
-        (component.id, output, output.promise)
-        for component, output in list_described_outputs(architecture)
+        (output, output.promise)
+        for _, output in list_described_outputs(architecture)
         if output.promise and (output.promise.rate or output.promise.max_gap or output.promise.max_age)
     ]
     if not promises:
         return
     paces = _find_paces(architecture, analysis)
-    leaves = {leaf for _, output, _ in promises for leaf in architecture.leaf_ports_of("output", output.id)}
+    leaves = {leaf for output, _ in promises for leaf in architecture.leaf_ports_of("output", output.id)}
     ages: dict[str, list[tuple[Arc, TimingValue]]] = defaultdict(list)
     for arc, age in find_sent_ages(analysis, leaves):
         ages[arc.output].append((arc, age))
-    # Leaves first: what is given on as it is promised there is not told twice.
-    promises.sort(key=lambda promise: promise[1].id not in architecture.outputs)
-    told: set[tuple[str, str, Span]] = set()
-    for component_id, output, promise in promises:
+    promises.sort(key=lambda promise: promise[0].id not in architecture.outputs)
+    for output, promise in promises:
         for leaf in architecture.leaf_ports_of("output", output.id):
             for broken in _find_broken(promise, paces.get(leaf, ()), ages.get(leaf, ())):
-                place = promise.places.get(broken.key, promise.at)
-                if (broken.key, leaf, place) not in told:
-                    told.add((broken.key, leaf, place))
-                    yield _diagnose_broken(component_id, output, promise, broken)
+                yield BrokenPromise(
+                    output.id,
+                    leaf,
+                    broken.key,
+                    f"{_NOUNS[broken.key]}{getattr(promise, broken.key)}",
+                    broken.words,
+                    broken.help,
+                    promise.places.get(broken.key, promise.at),
+                    broken.reader_at,
+                )
 
 
 def _find_paces(architecture: Architecture, analysis: Analysis) -> Mapping[str, Sequence[EventPace]]:
@@ -144,19 +173,15 @@ def _exceed(value: TimingValue, limit: object, where: str) -> str | None:
     return None
 
 
-_NOUNS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
-
-
-def _diagnose_broken(component_id: str, output: Output, promise: Promise, broken: _Broken) -> Diagnostic:
-    promised = f"{_NOUNS[broken.key]}{getattr(promise, broken.key)}"
+def _diagnose_broken(broken: BrokenPromise) -> Diagnostic:
     labels = (Label(broken.reader_at, "read here"),) if broken.reader_at != NO_SPAN else ()
     return Diagnostic(
         "broken-promise",
-        f"`{output.id}` promises {promised}: {broken.words}",
-        promise.places.get(broken.key, promise.at),
+        f"`{broken.port}` promises {broken.promised}: {broken.words}",
+        broken.at,
         labels=labels,
         help=broken.help,
-        element=component_id,
+        element=broken.port.rpartition(".")[0],
     )
 
 
