@@ -39,6 +39,8 @@ from archgen.analyses import (
     ros_generations,
     ros_messages,
     selector_checks,
+    start_order,
+    start_settings,
     timing_plausibility,
     topic_messages,
     topic_sources,
@@ -95,6 +97,8 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *frame_tree.RULES,
     *interface_promises.RULES,
     *deprecated_uses.RULES,
+    *start_order.RULES,
+    *start_settings.RULES,
     *completeness.RULES,
 )
 
