@@ -107,15 +107,17 @@ class _WordComparison:
         context = self._context
         group = key.partition(".")[0]
         shell, _, name = new_port.id.rpartition(".")
-        for kind, element, keys in (
-            ("output", new_port.id, lambda each: each == key),
-            ("composed", shell, lambda each: each == f"outputs.{name}:{key}"),
-            ("output", leaf, lambda each: each == key),
-            ("output", new_port.id, lambda each: each.startswith(group)),
-            ("composed", shell, lambda each: each.startswith(f"outputs.{name}:{group}")),
+        for kind, element, beginning in (
+            ("output", new_port.id, key),
+            ("composed", shell, f"outputs.{name}:{key}"),
+            ("output", leaf, key),
+            ("output", new_port.id, group),
+            ("composed", shell, f"outputs.{name}:{group}"),
         ):
             indices = [
-                index for index, change in context.find_changes(kind, element) if change.key and keys(change.key)
+                index
+                for index, change in context.find_changes(kind, element)
+                if change.key and change.key.startswith(beginning)
             ]
             if indices:
                 return list(dict.fromkeys(indices))

@@ -72,7 +72,7 @@ def _list_fact(
 ) -> Iterator[tuple[str, Inlines]]:
     texts = _group_values(ports, read_text)
     if texts:
-        yield name, _write_values(texts, len(ports) > 1, str)
+        yield name, _write_values(texts, str, is_several=len(ports) > 1)
 
 
 def add_promises(
@@ -121,7 +121,7 @@ def _group_values(
 
 
 def _write_values(
-    values: Sequence[tuple[_Value, tuple[str, ...]]], is_several: bool, write: Callable[[_Value], str]
+    values: Sequence[tuple[_Value, tuple[str, ...]]], write: Callable[[_Value], str], *, is_several: bool
 ) -> Inlines:
     """Write values, one a line; where not all readers see the same, each with its readers."""
     lines = []
@@ -148,7 +148,7 @@ def _promise_figure(
     # Of several the one that promises least counts.
     aspect, figure = ("rate", min(figures)) if key == "rate" else (key, -max(figures))
     strength: PromiseStrength = {**row.strength, **({aspect: figure} if is_complete else {})}
-    promised = _write_values(values, is_several, lambda quantity: _WORDS[key].format(quantity))
+    promised = _write_values(values, _WORDS[key].format, is_several=is_several)
     identity = "; ".join(f"{quantity.value} {', '.join(readers) if is_several else ''}" for quantity, readers in values)
     return PromiseRow(row.name, promised, expected, strength, identity)
 
@@ -163,7 +163,9 @@ def _list_value_rows(ports: Sequence[CountedPort]) -> Iterator[PromiseRow]:
     ):
         texts = _group_values(ports, read_text)
         if texts:
-            yield PromiseRow(name, _write_values(texts, is_several, str), strength=_measure_range(ports, name))
+            yield PromiseRow(
+                name, _write_values(texts, str, is_several=is_several), strength=_measure_range(ports, name)
+            )
 
 
 def _range_text(promise: Promise) -> str | None:
