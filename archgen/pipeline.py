@@ -27,7 +27,7 @@ from archgen.findings import (
     option_settings,
     rule_table,
 )
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import (
     chapter_pictures,
     element_outline,
@@ -51,6 +51,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.model.variant import BASE_NAME
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
+from archgen.project.commit_days import find_commit_day
 from archgen.project.variant_settings import adopt_settings, changes_settings
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
@@ -446,6 +447,9 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     for path, text in read_parameters.texts.items():
         loaded_project.sources.add_text(path, text)
     architecture = transform.transform_architecture(read_parameters.architecture)
+    commit_day = find_commit_day(loaded_project.files, architecture)
+    if commit_day is not None:
+        architecture = replace(architecture, commit_day=commit_day)
     analysis = analyses.analyse_timing(architecture, analysis_memory)
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     missing_pictures = chapter_pictures.find_missing_pictures(
