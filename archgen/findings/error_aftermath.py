@@ -47,6 +47,7 @@ _LACK_RULES = frozenset(
         "half-written",
         "idle-timing",
         "incompatible-qos",
+        "missing-property",
         "remote-resource",
         "role-mismatch",
         "unfed-input",

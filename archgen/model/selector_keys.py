@@ -10,6 +10,7 @@ from archgen.model.component import Component
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
+from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_condition
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +64,8 @@ def find_by_key(
         return _find_tagged(architecture, value)
     if key == "parameter":
         return _find_by_parameter(architecture, value)
+    if key == "property":
+        return _find_by_property(architecture, value)
     if key == "finding":
         return _hit_of_findings(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
@@ -149,6 +152,24 @@ def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
         node.id
         for node in architecture.nodes.values()
         if _matches_any(pattern, find_effective_parameters(architecture, node))
+    )
+    return SelectorHit(frozenset(components), frozenset(nodes))
+
+
+def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
+    """Find what has a property itself; components also by what is around them, nodes by their host."""
+    condition = parse_condition(text)
+    if condition is None:
+        return SelectorHit(frozenset(), frozenset())
+    components = (
+        c.id
+        for c in architecture.components.values()
+        if condition.is_met(find_component_properties(architecture, c), matches_wildcard)
+    )
+    nodes = (
+        n.id
+        for n in architecture.nodes.values()
+        if condition.is_met(find_node_properties(architecture, n), matches_wildcard)
     )
     return SelectorHit(frozenset(components), frozenset(nodes))
 

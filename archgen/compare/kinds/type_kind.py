@@ -13,7 +13,7 @@ from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
-from archgen.compare.kinds.shared_keys import mark_values, prose_key, text_feature
+from archgen.compare.kinds.shared_keys import ANNOTATIONS, mark_values, prose_key, text_feature
 from archgen.model.message_types import ConceptualType, DataField
 
 
@@ -83,6 +83,7 @@ TYPE = KindSpec(
         frame_reference("is given in"),
         KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM, noun="type parameters"),
         KeySpec("fields.", _read_fields, Effect.SYSTEM),
+        *ANNOTATIONS,
     ),
     elements=_list_types,
     features=(
