@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import chain
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple, Protocol
 
 from archgen.diagnostics.source_span import Span
@@ -46,7 +45,7 @@ class AnnotatedElement(NamedTuple):
 
 def list_annotated_elements(architecture: Architecture) -> Iterator[AnnotatedElement]:
     """Yield every element that was written; components and ports of instances included, types of libraries not."""
-    plain_sections = {
+    plain_sections: Mapping[str, Mapping[str, Annotated]] = {
         "partner": architecture.partners,
         "use_case": architecture.use_cases,
         "requirement": architecture.requirements,
@@ -67,10 +66,8 @@ def list_annotated_elements(architecture: Architecture) -> Iterator[AnnotatedEle
             yield AnnotatedElement("component_type", each.id, each, is_expected=not each.is_abstract)
     for component in architecture.list_described_components():
         yield AnnotatedElement("component", component.id, component, is_expected=not component.children)
-        ports = chain(
-            (("input", p) for p in component.inputs.values()), (("output", p) for p in component.outputs.values())
-        )
-        yield from (AnnotatedElement(kind, port.id, port) for kind, port in ports)
+        yield from (AnnotatedElement("input", port.id, port) for port in component.inputs.values())
+        yield from (AnnotatedElement("output", port.id, port) for port in component.outputs.values())
     for type_ in architecture.types.values():
         if type_.origin == "project" and type_.at.file and type_.library is None:
             yield AnnotatedElement("type", type_.name, type_)

@@ -60,12 +60,8 @@ def find_by_key(
             c.id for c in architecture.components.values() if _matches_any(value, list_origins(architecture, c))
         )
         return SelectorHit(frozenset(instances), frozenset())
-    if key == "tag":
-        return _find_tagged(architecture, value)
-    if key == "parameter":
-        return _find_by_parameter(architecture, value)
-    if key == "property":
-        return _find_by_property(architecture, value)
+    if find_elements := _FINDERS.get(key):
+        return find_elements(architecture, value)
     if key == "finding":
         return _hit_of_findings(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
@@ -198,3 +194,11 @@ def _find_holder(architecture: Architecture, element_id: str) -> str:
     shell = architecture.shells.get(holder)
     is_child = shell is not None and element_id in shell.children
     return holder if shell and not is_child and (name in shell.inputs or name in shell.outputs) else element_id
+
+
+_FINDERS: Mapping[str, Callable[[Architecture, str], SelectorHit]] = {
+    "tag": _find_tagged,
+    "parameter": _find_by_parameter,
+    "property": _find_by_property,
+}
+"""Keys that look at more than one thing."""

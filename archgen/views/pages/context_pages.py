@@ -14,6 +14,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import chain_link
@@ -197,6 +198,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
         ("Message", architecture_tables.message_cell(lookup, conceptual_type)),
         ("Size", _size_cell(lookup, conceptual_type)),
         ("Remarks", inline_text.to_inlines(architecture_tables.describe_mapping(conceptual_type))),
+        *list_annotation_facts(lookup, conceptual_type),
     ]
     # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
@@ -239,7 +241,8 @@ def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
             inline_text.join_inlines(architecture_tables.use_case_link(lookup, name) for name in requirement.use_cases),
         ),
         ("Tags", inline_text.to_inlines(", ".join(requirement.tags)) if requirement.tags else ()),
-        ("Links", inline_text.link_urls(requirement.urls.items())),
+        ("Links", inline_text.link_urls(requirement.urls.items(), lookup.repository)),
+        *list_annotation_facts(lookup, requirement),
     ]
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(requirement.title))]
     blocks += [Facts(known_facts)] if (known_facts := tuple((name, value) for name, value in facts if value)) else []
@@ -267,6 +270,7 @@ def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
     serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
     table = architecture_tables.make_requirement_table(lookup, serving_requirements)
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
+    blocks += [Facts(facts)] if (facts := tuple(list_annotation_facts(lookup, use_case))) else []
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += [table] if table else []
     crumb = ("Requirements and use cases", "page:requirements")
@@ -280,6 +284,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        *list_annotation_facts(lookup, host),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
         (
             "Links",

@@ -19,7 +19,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth
+from archgen.views.tables import architecture_tables, frame_table, project_growth, property_tables
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -214,6 +214,18 @@ class _ChapterMaker:
             architecture_tables.make_free_requirement_table(self.lookup),
         )
 
+    def make_properties(self) -> list[Section]:
+        """Make the appendix of properties."""
+        sections = property_tables.make_property_sections(self.lookup)
+        return (
+            [Section("page:properties", "Properties", (), sections, appendix=True, page_break=True)] if sections else []
+        )
+
+    def make_glossary(self) -> list[Section]:
+        """Make the appendix of terms."""
+        sections = property_tables.make_glossary(self.lookup)
+        return [Section("page:glossary", "Glossary", (), sections, appendix=True, page_break=True)] if sections else []
+
     def make_open_points(self) -> list[Section]:
         """Make the appendix of findings."""
         summary = Paragraph(
@@ -249,6 +261,8 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "types": _ChapterMaker.make_types,
     "connections": _ChapterMaker.make_connections,
     "requirements": _ChapterMaker.make_requirements,
+    "properties": _ChapterMaker.make_properties,
+    "glossary": _ChapterMaker.make_glossary,
     "open_points": _ChapterMaker.make_open_points,
     "statistics": _ChapterMaker.make_statistics,
 }
