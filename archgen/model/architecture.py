@@ -130,7 +130,7 @@ class Policy:
 
 @dataclass(frozen=True, slots=True)
 class GlossaryTerm:
-    """What a term means, as CommonMark."""
+    """What a term means."""
 
     term: str
     text: str

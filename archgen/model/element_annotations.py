@@ -112,6 +112,16 @@ def _find_number_fault(declared: PropertyDeclaration, text: str) -> str | None:
     if declared.type == "integer" and figure.value != int(figure.value):
         return "it is a whole number"
     if declared.range and not declared.range[0] <= figure.value <= declared.range[1]:
-        unit = f" {declared.unit}" if declared.unit else ""
-        return f"it is at least {declared.range[0]}{unit} and at most {declared.range[1]}{unit}"
+        return f"it is {describe_range(declared)}"
     return None
+
+
+def describe_range(declared: PropertyDeclaration) -> str:
+    """Describe the smallest and the greatest value of a declared property."""
+    if declared.range is None:
+        return ""
+    least, greatest = declared.range
+    unit = f" {declared.unit}" if declared.unit else ""
+    if greatest.is_infinite():
+        return "any number" if least.is_infinite() else f"at least {least}{unit}"
+    return f"at most {greatest}{unit}" if least.is_infinite() else f"{least} to {greatest}{unit}"

@@ -485,7 +485,8 @@ def test_no_key_is_listed_twice() -> None:
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
                 "type comment, input external, output description, chapter text, "
                 "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
-                "project layout, partner description, host tags, node urls.x, frame title"
+                "project layout, partner description, host tags, node urls.x, frame title, component contact, component image, input urls.x, output urls.x, view properties.x, "
+                "use_case hints.x, project glossary.x"
             ),
         ),
         (
@@ -498,7 +499,8 @@ def test_no_key_is_listed_twice() -> None:
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
-                "output frame, input frame, type frame"
+                "output frame, input frame, type frame, component status, component properties.trl, node hints.a.b, host properties.x, "
+                "project properties.trl"
             ),
         ),
         (

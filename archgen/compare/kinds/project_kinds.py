@@ -18,6 +18,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
+from archgen.model.element_annotations import describe_range
 from archgen.model.path_resolver import title_from_id
 from archgen.model.review_settings import ReviewSettings
 
@@ -47,7 +48,7 @@ def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Ma
             "of": ", ".join(declared.of) or None,
             "type": declared.type,
             "unit": declared.unit,
-            "range": declared.range and " to ".join(map(str, declared.range)),
+            "range": describe_range(declared) or None,
             "choices": ", ".join(declared.choices) or None,
             "required": declared.required or None,
         }
@@ -100,8 +101,8 @@ PROJECT = KindSpec(
         KeySpec("chapters", lambda _, context: context.version.chapter_order),
         KeySpec("review.", _read_review),
         KeySpec("site.", _read_site, Effect.TEXT),
-        KeySpec("properties.", _read_declared_properties, noun="declared properties"),
-        KeySpec("glossary.", _read_glossary, Effect.TEXT, noun="glossary"),
+        KeySpec("properties.", _read_declared_properties),
+        KeySpec("glossary.", _read_glossary, Effect.TEXT),
         KeySpec("rules.", lambda _, context: context.version.rule_settings),
     ),
     Effect.SYSTEM,

@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Component, ComponentType
-from archgen.model.element_annotations import PropertyDeclaration, read_figure
+from archgen.model.element_annotations import read_figure
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
 from archgen.views import inline_text
@@ -82,14 +82,3 @@ def make_image_blocks(lookup: Lookup, element: Component | ComponentType) -> lis
     title = " ".join(element.title.split()).translate(_MARKDOWN_SIGNS)
     # As a picture of a chapter: read inside of the project's folder, cleaned, and copied.
     return [Markdown(f"![{title}](<{quote(element.image)}>)")]
-
-
-def describe_range(declared: PropertyDeclaration) -> str:
-    """Describe the smallest and the greatest value of a declared property."""
-    if declared.range is None:
-        return ""
-    least, greatest = declared.range
-    unit = f" {declared.unit}" if declared.unit else ""
-    if greatest.is_infinite():
-        return "any number" if least.is_infinite() else f"at least {least}{unit}"
-    return f"at most {greatest}{unit}" if least.is_infinite() else f"{least} to {greatest}{unit}"

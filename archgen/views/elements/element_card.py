@@ -136,9 +136,8 @@ def _list_further_facts(lookup: Lookup, kind: str, element_id: str) -> Iterator[
     element = _elements_by_kind(lookup.architecture)[kind][element_id]
     if kind in {"component", "composed", "component type"}:
         yield from _known_facts([(key, _format_fact(getattr(element, key))) for key in ("status", "contact", "image")])
-    if kind in {"input", "output"}:
-        if element.urls:
-            yield "urls", ", ".join(f"{name}: {address}" for name, address in element.urls.items())
+    if kind in {"input", "output"} and element.urls:
+        yield "urls", ", ".join(f"{name}: {address}" for name, address in element.urls.items())
     yield from list_annotation_lines(element)
 
 

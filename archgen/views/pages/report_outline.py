@@ -223,8 +223,7 @@ class _ChapterMaker:
 
     def make_glossary(self) -> list[Section]:
         """Make the appendix of terms."""
-        sections = property_tables.make_glossary(self.lookup)
-        return [Section("page:glossary", "Glossary", (), sections, appendix=True, page_break=True)] if sections else []
+        return self._make_appendix("glossary", "Glossary", property_tables.make_glossary_table(self.lookup))
 
     def make_open_points(self) -> list[Section]:
         """Make the appendix of findings."""

@@ -246,8 +246,8 @@ class PageMaker:
             yield self._spanning_page("frames", "Frames", *self.make_figures("frames"), frames)
         if sections := property_tables.make_property_sections(self.lookup):
             yield self._listing_page("properties", "Properties", sections)
-        if terms := property_tables.make_glossary(self.lookup):
-            yield self._listing_page("glossary", "Glossary", terms)
+        if glossary_table := property_tables.make_glossary_table(self.lookup):
+            yield self._spanning_page("glossary", "Glossary", glossary_table)
         if self.edition.level == "implementation":
             yield self._spanning_page(
                 "nodes",

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements
-from archgen.model.element_annotations import PropertyDeclaration
+from archgen.model.element_annotations import PropertyDeclaration, describe_range
 from archgen.views import inline_text
-from archgen.views.elements.annotation_facts import describe_range, title_property, write_property
+from archgen.views.elements.annotation_facts import title_property, write_property
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Paragraph, Section, Table, Text
 
@@ -92,7 +92,12 @@ def _link_element(lookup: Lookup, each: AnnotatedElement) -> Inlines:
     return (Text(each.id if each.kind == "node" else title, ref=f"{each.kind}:{each.id}"),)
 
 
-def make_glossary(lookup: Lookup) -> tuple[Section, ...]:
-    """Return a section for each term of the glossary, sorted; references to a term lead there."""
+def make_glossary_table(lookup: Lookup) -> Table | None:
+    """List the terms of the glossary, sorted; references to a term lead to its row. None where there are none."""
     terms = sorted(lookup.architecture.glossary.values(), key=lambda each: (each.term.casefold(), each.term))
-    return tuple(Section(f"term:{each.term}", each.term, (Markdown(each.text),)) for each in terms)
+    rows = tuple(
+        ((Text(each.term, strong=True),), inline_text.to_inlines(" ".join(each.text.split()))) for each in terms
+    )
+    anchors = tuple(f"term:{each.term}" for each in terms)
+    columns = (Column("Term"), Column("Meaning", 3))
+    return Table("table:glossary", "Terms", columns, rows, row_anchors=anchors) if rows else None

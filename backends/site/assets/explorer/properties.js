@@ -1,7 +1,7 @@
 // Conditions on properties: `sil`, `sil>=2`, `vendor=ac*`. The same as archgen/model/property_conditions.py.
 "use strict";
 archgenExplorer.propertyConditions = (function () {
-  const CONDITION = /^([a-z0-9_*]+)\s*(?:(>=|<=|=|>|<)\s*(.*\S))?$/;
+  const CONDITION = /^([a-z0-9_*]+)\s*(?:(>=|<=|=|>|<)\s*((?![<=>]).*\S))?$/;
   const FIGURE = /^([+-]?[0-9]+(?:\.[0-9]+)?)(?:\s*([^\s\d+.-]\S{0,30}))?$/;
   const DATE = /^\d{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|[12]\d|3[01])$/;
   const MAX_DIGITS = 15;
