@@ -21,6 +21,7 @@ _NAMED_SECTIONS = {
     "defaults": "default of",
     "comments": "what is said of",
     "callback_groups": "callback group",
+    "actors": "actor",
     "scheduling": "order on core",
     "properties": "property",
     "hints": "hint",

@@ -13,6 +13,7 @@ _WHOLE_MODEL_RULES = frozenset(
     {
         # Timing: one figure that could not be read changes the bounds of everything that shares a host with it.
         "broken-chain",
+        "broken-step",
         "deadlocked-trigger",
         "endless-trigger",
         "late-chain",
@@ -38,6 +39,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "unset-parameter",
         "unsubscribed-input",
         "unused-type",
+        "unverified-requirement",
     }
 )
 """Rules that judge the model as a whole: they wait until everything is read and linked."""

@@ -10,6 +10,7 @@ from archgen.link.named_files import MISSING_FILE
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
+from archgen.link.verification_files import MISSING_VERIFICATION
 
 RULES = (
     *slice_merging.RULES,
@@ -21,6 +22,7 @@ RULES = (
     MISSING_PICTURE,
     MISSING_FILE,
     MISSING_PARAMETER_FILE,
+    MISSING_VERIFICATION,
 )
 
 __all__ = ["RULES", "link_project"]

@@ -17,8 +17,10 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
+from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
+from archgen.model.use_case_steps import Actor, Step
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -48,25 +50,13 @@ class Partner:
 
 @dataclass(frozen=True, slots=True)
 class UseCase:
-    """A use case that requirements serve."""
+    """A use case that requirements serve, with the steps in which it happens."""
 
     id: str
     title: str
     description: str | None = None
-    annotations: ElementAnnotations = NO_ANNOTATIONS
-    at: Span = field(default=NO_SPAN, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A declared requirement, and the ids of its use cases."""
-
-    id: str
-    title: str
-    description: str | None = None
-    use_cases: tuple[str, ...] = ()
-    tags: tuple[str, ...] = ()
-    urls: Mapping[str, str] = field(default_factory=dict)
+    actors: Mapping[str, Actor] = field(default_factory=dict)
+    steps: tuple[Step, ...] = ()
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from archgen.model.architecture import Architecture, Chain, Requirement
+from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.record_values import drop_unknown, pick_fields, record_annotations, record_quantity, to_plain
 from archgen.views.shapes import Record
 from archgen.views.timing_record import record_timing
 from archgen.views.type_record import record_type
+from archgen.views.use_case_record import record_use_cases
 
 RECORD_VERSION = 1
 """Version of the format, written as `archgen_resolved`."""
@@ -36,10 +38,7 @@ def make_record(lookup: Lookup) -> Record:
             p.id: pick_fields(p, "title", "description", "contact", "reviewers") | record_annotations(p)
             for p in architecture.partners.values()
         },
-        "use_cases": {
-            u.id: pick_fields(u, "title", "description") | record_annotations(u)
-            for u in architecture.use_cases.values()
-        },
+        "use_cases": record_use_cases(lookup),
         "requirements": {r.id: _record_requirement(lookup, r) for r in architecture.requirements.values()},
         **_record_vocabulary(architecture),
         "groups": {name: _record_group(lookup, architecture.groups[name]) for name in lookup.shown_groups()},
@@ -132,8 +131,13 @@ def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, o
         "served_by_chains": [chain.id for chain in lookup.chains_for_requirement.get(requirement.id, ())],
         "urls": dict(requirement.urls),
         **record_annotations(requirement),
+        "parent": list(requirement.parents),
+        "verified_by": [{"kind": each.kind, "text": each.text} for each in requirement.verified_by],
     }
-    return pick_fields(requirement, "title", "description", "use_cases", "tags") | drop_unknown(dict(servers))
+    known_fields = pick_fields(
+        requirement, "title", "description", "kind", "priority", "rationale", "source", "use_cases", "tags"
+    )
+    return known_fields | drop_unknown(dict(servers))
 
 
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:

@@ -19,7 +19,13 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, property_tables
+from archgen.views.tables import (
+    architecture_tables,
+    frame_table,
+    project_growth,
+    property_tables,
+    requirement_tables,
+)
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -204,14 +210,14 @@ class _ChapterMaker:
 
     def make_requirements(self) -> list[Section]:
         """Make the appendix that traces requirements."""
-        requirement_table = architecture_tables.make_requirement_table(
-            self.lookup, architecture_tables.shown_requirements(self.lookup)
+        requirement_table = requirement_tables.make_requirement_table(
+            self.lookup, requirement_tables.shown_requirements(self.lookup)
         )
         return self._make_appendix(
             "requirements",
             "Requirements trace",
             requirement_table,
-            architecture_tables.make_free_requirement_table(self.lookup),
+            requirement_tables.make_free_requirement_table(self.lookup),
         )
 
     def make_properties(self) -> list[Section]:
@@ -261,9 +267,9 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "connections": _ChapterMaker.make_connections,
     "requirements": _ChapterMaker.make_requirements,
     "properties": _ChapterMaker.make_properties,
-    "glossary": _ChapterMaker.make_glossary,
     "open_points": _ChapterMaker.make_open_points,
     "statistics": _ChapterMaker.make_statistics,
+    "glossary": _ChapterMaker.make_glossary,
 }
 """What makes each of the generated chapters, by its name in `GENERATED_CHAPTERS`."""
 
