@@ -14,12 +14,15 @@ from archgen.analyses import (
     component_roles,
     composed_ports,
     connectivity,
+    deprecated_uses,
     frame_tree,
     half_written,
     host_links,
     ineffective_timing,
     input_freshness,
     input_sources,
+    interface_promises,
+    kept_promises,
     name_validity,
     node_mapping,
     parameter_settings,
@@ -37,6 +40,8 @@ from archgen.analyses import (
     ros_generations,
     ros_messages,
     selector_checks,
+    start_order,
+    start_settings,
     timing_plausibility,
     topic_messages,
     topic_sources,
@@ -92,6 +97,10 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *policy_violations.RULES,
     *selector_checks.RULES,
     *frame_tree.RULES,
+    *interface_promises.RULES,
+    *deprecated_uses.RULES,
+    *start_order.RULES,
+    *start_settings.RULES,
     *completeness.RULES,
 )
 
@@ -103,6 +112,7 @@ _TIMING_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *answer_times.RULES,
     *chain_latency.RULES,
     *input_freshness.RULES,
+    *kept_promises.RULES,
 )
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 

@@ -48,7 +48,7 @@ def link_project(  # noqa: PLR0913 - all by name
     # containers and components. Every step appends to the same list of diagnostics.
     root = expansion.root
     diagnostics: list[Diagnostic] = [*expansion.diagnostics, *declared_types.diagnostics]
-    diagnostics += diagnose_undeclared_inputs(element_outline)
+    diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
@@ -56,7 +56,9 @@ def link_project(  # noqa: PLR0913 - all by name
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, parameters)
+    implemented = declare_component_nodes(
+        element_outline, expansion, written_targets, declared_groups, parameters, resolver
+    )
     implements = implemented.implements
     containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)

@@ -16,8 +16,10 @@ from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
+from archgen.views.promise_record import record_life, record_words
 from archgen.views.record_values import drop_unknown, pick_fields, record_annotations, record_quantity, to_plain
 from archgen.views.shapes import Record
+from archgen.views.start_record import record_start
 from archgen.views.timing_record import record_timing
 from archgen.views.type_record import record_type
 from archgen.views.use_case_record import record_use_cases
@@ -111,6 +113,7 @@ def _record_component_type(component_type: ComponentType) -> dict[str, object]:
         "is": component_type.base,
         "generic": list(component_type.generic),
         "abstract": component_type.is_abstract or None,
+        **record_life(component_type),
         "inputs": {name: kind or "" for name, kind in component_type.inputs.items()},
         "outputs": {name: kind or "" for name, kind in component_type.outputs.items()},
         "components": list(component_type.components),
@@ -264,7 +267,9 @@ def _record_input(port: Input) -> dict[str, object]:
 def _record_output(lookup: Lookup, port: Output) -> dict[str, object]:
     readers = dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ()))
     return drop_unknown(
-        _record_port(port) | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
+        _record_port(port)
+        | record_words(port)
+        | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
     )
 
 
@@ -295,6 +300,8 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             **{key: getattr(node, key) for key in field_names},
             "full_name": node.full_name,
             "kind": list(node.kinds),
+            "command": list(node.command),
+            "start": record_start(node.start),
             "co_owners": list(node.co_owners),
             "implements": list(node.implements),
             "callback_groups": {name: list(members) for name, members in node.callback_groups.items()},

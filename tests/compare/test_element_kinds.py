@@ -105,7 +105,8 @@ SCHEMA_ONLY = {
     **{
         f"component_type {key}": "what its instances have"
         for key in SCHEMA["$defs"]["component_type"]["properties"]
-        if key not in {"title", "functionality", "description", "owner", "is", "generic", "abstract"}
+        if key
+        not in {"title", "functionality", "description", "owner", "is", "generic", "abstract", "version", "deprecated"}
         and key not in {"inputs", "outputs", "components"} | READ_OFF_PATTERNS
     },
     "group components": "elements of their own",
@@ -277,7 +278,7 @@ groups:
         hints: {x: {a: [1]}}
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}}
-        outputs: {o: {type: T, external: the world, frame: base, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}}
+        outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}, o2: {external: the world}}
         frames: {base: {title: B, parent: map, rate: 10 Hz, properties: {q: 1}, hints: {x: {a: 1}}}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
@@ -286,11 +287,11 @@ groups:
       whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
       copy: {same_as: drum}
 component_types:
-  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
+  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, version: 3, deprecated: {until: 2999-01-01, use: spare}}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
   spare: {status: adapted, contact: c@d.eu, image: a.png, properties: {p: 1 kg}, hints: {x: {a: 1}}, parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
 types:
-  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, properties: {q: 1}, hints: {x: {a: 1}}}
+  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}, properties: {q: 1}, hints: {x: {a: 1}}}
   S: {request: T, response: T, feedback: T}
   F: {fields: {x: {type: float64, default: 0.5, unit: m, comment: C}, y: {type: "int8[]", default: [1, 2]}, t: T}, constants: {A: {type: int8, value: 1, comment: C}}}
   V: {values: [ON, OFF]}
@@ -318,6 +319,8 @@ nodes:
     parameters: {plugins.x: 1}
     parameter_commands: {plugins.y: [cat, z]}
     parameter_files: [p.yaml]
+    command: [stage, w]
+    start: {phase: components, after: m, ready: {port: 1, file: f, topic: t, service: s, log: l, wait: 1 s, within: 2 s}, respawn: true, respawn_delay: 1 s, environment: {A: b}, directory: /d, user: u, once: true, state: active, by: m}
     tags: [t]
     urls: {a: "https://a.eu"}
     properties: {q: 1}
@@ -499,14 +502,15 @@ def test_no_key_is_listed_twice() -> None:
             (
                 "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, component performance.p.accuracy, "
                 "component requirements, chain requirements, node package, node executable, node plugin, node status, "
-                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, project parameters.x, "
+                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, node command, node start.after, node start.ready.port, node start.environment.x, project parameters.x, "
                 "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "requirement parent, requirement kind, requirement priority, requirement verified_by, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
                 "output frame, input frame, type frame, component status, component properties.trl, node hints.a.b, host properties.x, "
-                "project properties.trl"
+                "project properties.trl, output promise.rate, output version, output deprecated.until, type version, "
+                "type deprecated.use, component_type version, component_type deprecated.until"
             ),
         ),
         (

@@ -81,7 +81,7 @@ def test_wording(text: str, expected: str) -> None:
 
 
 def test_keys_that_look_like_numbers() -> None:
-    assert findings("hosts: {00: {cors: 1}, +1: {cores: x}, 7: [x]}\ngroups: {a: {urls: {1: "f:x"}, 0: y}}") == [
+    assert findings("hosts: {00: {cors: 1}, +1: {cores: x}, 7: [x]}\ngroups: {a: {urls: {1: 'f:x'}, 0: y}}") == [
         f"1:9 wrong-value: `00` cannot be an id | {ID}",
         "1:14 unknown-key: a host has no key `cors` | did you mean `cores`?",
         f"1:24 wrong-value: `+1` cannot be an id | {ID}",
