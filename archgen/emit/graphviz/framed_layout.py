@@ -16,6 +16,7 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
+from archgen.emit.graphviz.title_places import clear_titles
 
 _SCREEN_SIZE = (1000.0, 700.0)
 _DIRECTIONS = {None: ("LR", "TB"), "left-right": ("LR",), "top-bottom": ("TB",)}
@@ -51,7 +52,7 @@ def _lay_out_direction(styled_graph: StyledGraph, direction: str) -> Scene:
     layout = layout_engine.lay_out_dot(write_dot(_layout_settings(styled_graph, direction), statements))
     scene = read_scene(layout, styled_graph.box_attributes, styled_graph.arrow_attributes)
     frames = read_frames(styled_graph, layout, graph.clusters)
-    return declutter_labels(place_labels_on_lines(styled_graph, scene.joined(frames)))
+    return declutter_labels(place_labels_on_lines(styled_graph, clear_titles(scene.joined(frames))))
 
 
 def _layout_settings(styled_graph: StyledGraph, direction: str) -> str:
