@@ -36,7 +36,8 @@ def draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, inside
     heights += [
         part.y + side * part.height / 2
         for part in scene.parts
-        if left <= part.x <= right and (part.name in held_names or part.name[1:] in inner_edges)
+        if left <= part.x <= right
+        and (part.name in held_names or (part.kind == "label" and part.name[1:] in inner_edges))
         for side in (-1, 1)
     ]
     heights += [y for inner_frame in scene.frames for y in (inner_frame.rectangle[1], inner_frame.rectangle[3])]

@@ -16,9 +16,11 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
-from archgen.emit.graphviz.title_places import clear_titles
+from archgen.emit.graphviz.title_places import clear_titles, count_cut_titles
 
 _SCREEN_SIZE = (1000.0, 700.0)
+_CUT_PENALTY = 0.05
+"""How much smaller a picture may be for each title of a frame that cuts no line, as a share of its size."""
 _DIRECTIONS = {None: ("LR", "TB"), "left-right": ("LR",), "top-bottom": ("TB",)}
 """Directions to try by the one that the project asks for; the first is taken where both are as good."""
 
@@ -27,12 +29,17 @@ def lay_out_framed(styled_graph: StyledGraph) -> Scene:
     """Lay out boxes in frames, then place the labels on the arrows. Of two directions the better is taken, unless one is asked for."""
     scenes = [_lay_out_direction(styled_graph, direction) for direction in _DIRECTIONS[styled_graph.graph.direction]]
     # `min` returns the first of equals.
-    return min(scenes, key=lambda scene: (_count_lost_labels(styled_graph, scene), _screen_overflow(scene)))
+    return min(scenes, key=lambda scene: (_count_lost_labels(styled_graph, scene), _reading_cost(scene)))
 
 
 def _count_lost_labels(styled_graph: StyledGraph, scene: Scene) -> int:
     """Count the labels that found no place."""
     return len(styled_graph.label_attributes) - sum(part.kind == "label" for part in scene.parts)
+
+
+def _reading_cost(scene: Scene) -> float:
+    """Return how hard a scene is to read: how small it gets on a screen, and how many titles of frames cut lines."""
+    return _screen_overflow(scene) * (1 + _CUT_PENALTY * count_cut_titles(scene))
 
 
 def _screen_overflow(scene: Scene) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from archgen.emit.graphviz.box_styles import style_box
+from archgen.emit.graphviz.placed_scene import DotAttributes
 from archgen.emit.graphviz.styled_graph import StyledGraph, measure_nodes
 from archgen.frozen import replace
 
@@ -18,7 +19,7 @@ _TITLE_WIDTH = 30
 
 def unwrap_tall_columns(styled_graph: StyledGraph) -> StyledGraph:
     """Return a graph with the titles of neighbours in one line where they make a column taller than a page."""
-    new_attributes = {}
+    new_attributes: dict[str, DotAttributes] = {}
     for side in ("left", "right"):
         boxes = [box for box in styled_graph.graph.boxes if box.side == side and box.style != "port"]
         names = [styled_graph.dot_names[box.id] for box in boxes]

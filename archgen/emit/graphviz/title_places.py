@@ -21,9 +21,22 @@ def clear_titles(scene: Scene) -> Scene:
     titles = [part for part in scene.parts if part.kind == "title"]
     if not titles:
         return scene
-    points = [point for line in scene.lines for point in sample_line(line, _SAMPLES)]
+    points = _sample_lines(scene)
     moved = {part.name: _find_place(part, frames[part.name[1:]], points) for part in titles if part.name[1:] in frames}
     return replace(scene, parts=tuple(moved.get(part.name, part) for part in scene.parts))
+
+
+def count_cut_titles(scene: Scene) -> int:
+    """Return how many titles stand on a line."""
+    points = _sample_lines(scene)
+    return sum(
+        any(left < x < right and bottom < y < top for x, y in points)
+        for left, bottom, right, top in (part.rectangle for part in scene.parts if part.kind == "title")
+    )
+
+
+def _sample_lines(scene: Scene) -> list[ScenePoint]:
+    return [point for line in scene.lines for point in sample_line(line, _SAMPLES)]
 
 
 def _find_place(title: ScenePart, frame: Rectangle, points: Sequence[ScenePoint]) -> ScenePart:
