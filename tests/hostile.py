@@ -30,6 +30,7 @@ TEXTS = {
 ELEMENTS = {
     "partners": "partner",
     "use_cases": "use_case",
+    "actors": "actor",
     "requirements": "requirement",
     "groups": "group",
     "component_types": "component_type",
@@ -68,8 +69,20 @@ def project(text: str) -> dict[str, Any]:
             "texts": {"docs/evil.md": f"{text}\n\n> {text}\n\n- {text}\n"},
         },
         "partners": {"p": {}},
-        "use_cases": {"UC-1": {}},
-        "requirements": {"R-1": {"use_cases": ["UC-1"]}},
+        "use_cases": {
+            "UC-1": {
+                "actors": {"who": {}},
+                "steps": [
+                    {"from": "who", "to": "a.x", "say": text},
+                    {"from": "a.x", "to": "b.y", "say": text},
+                    {"from": "b.y", "to": "b.y", "say": text},
+                ],
+            }
+        },
+        "requirements": {
+            "R-0": {},
+            "R-1": {"parent": ["R-0"], "verified_by": [f"{kind} {kind}"], "use_cases": ["UC-1"]},
+        },
         "component_types": {"t": {"inputs": {"in": {"type": kind}}, "outputs": {"made": {"type": kind}}}},
         "libraries": {
             "lib": {
@@ -78,10 +91,14 @@ def project(text: str) -> dict[str, Any]:
             },
         },
         "groups": {
-            "a": {"owner": "p", "urls": {text[:60]: "https://example.org/"}, "components": {"x": _component({}, kind)}},
+            "a": {
+                "owner": "p",
+                "urls": {text[:60]: "https://example.org/"},
+                "components": {"x": _component({}, kind, text)},
+            },
             "b": {
                 "components": {
-                    "y": _component({"in": {"from": "a.x.out"}}, kind),
+                    "y": _component({"in": {"from": "a.x.out"}}, kind, text),
                     "z": {},
                     "s": _compose(),
                     "w": {"is": "lib.u"},
@@ -91,6 +108,18 @@ def project(text: str) -> dict[str, Any]:
         "nodes": {
             "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
             "m": {"implements": "b.y", "host": "h"},
+            "s": {
+                "kind": ["program"],
+                "host": "h",
+                "command": ["stage", text, f"-{text}"],
+                "start": {
+                    "after": ["n"],
+                    "environment": {"WORLD": text},
+                    "directory": text,
+                    "user": "robot",
+                    "ready": {"file": text, "topic": text, "service": text, "log": text, "within": "1 s"},
+                },
+            },
         },
         "types": {
             kind: {"message": "std_msgs/msg/String"},
@@ -122,13 +151,21 @@ def _compose() -> dict[str, Any]:
     return {"inputs": {"in": {"from": "a.x.out"}}, "outputs": {"made": {"from": "i.made"}}, "components": inner}
 
 
-def _component(inputs: dict[str, Any], kind: str) -> dict[str, Any]:
+def _component(inputs: dict[str, Any], kind: str, text: str) -> dict[str, Any]:
     outside = {"medium": "physical"}
     return {
         "requirements": ["R-1", f"{kind} {kind}"],
         "performance": {"overall": {}},
         "inputs": {**inputs, "felt": {**outside}},
-        "outputs": {"out": {"type": kind, "frame": "map"}, "seen": {**outside, "type": kind}},
+        "outputs": {
+            "out": {
+                "type": kind,
+                "frame": "map",
+                "promise": {"rate": "1 Hz", "unit": text, "frame": "map", "range": [0, "1"]},
+                "deprecated": {"until": "2999-01-01", "use": "seen"},
+            },
+            "seen": {**outside, "type": kind},
+        },
     }
 
 

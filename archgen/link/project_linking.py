@@ -13,7 +13,9 @@ from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
+from archgen.link.declare.requirement_declaration import declare_requirements
 from archgen.link.declare.type_declaration import DeclaredTypes
+from archgen.link.declare.use_case_declaration import declare_use_cases
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
@@ -46,7 +48,7 @@ def link_project(  # noqa: PLR0913 - all by name
     # containers and components. Every step appends to the same list of diagnostics.
     root = expansion.root
     diagnostics: list[Diagnostic] = [*expansion.diagnostics, *declared_types.diagnostics]
-    diagnostics += diagnose_undeclared_inputs(element_outline)
+    diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
@@ -54,14 +56,17 @@ def link_project(  # noqa: PLR0913 - all by name
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, parameters)
+    implemented = declare_component_nodes(
+        element_outline, expansion, written_targets, declared_groups, parameters, resolver
+    )
     implements = implemented.implements
     containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
         implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented
     )
-    requirements = section_declaration.declare_requirements(root, resolver)
+    requirements = declare_requirements(root, resolver)
+    use_cases = declare_use_cases(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
@@ -78,7 +83,7 @@ def link_project(  # noqa: PLR0913 - all by name
         ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
         layout=mapping_values.get_layout(root),
         partners=section_declaration.declare_partners(root),
-        use_cases=section_declaration.declare_use_cases(root),
+        use_cases=use_cases,
         requirements=requirements,
         groups=declared_groups.groups,
         components=components,

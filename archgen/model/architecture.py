@@ -16,8 +16,10 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
+from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
+from archgen.model.use_case_steps import Actor, Step
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -46,24 +48,13 @@ class Partner:
 
 @dataclass(frozen=True, slots=True)
 class UseCase:
-    """A use case that requirements serve."""
+    """A use case that requirements serve, with the steps in which it happens."""
 
     id: str
     title: str
     description: str | None = None
-    at: Span = field(default=NO_SPAN, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A declared requirement, and the ids of its use cases."""
-
-    id: str
-    title: str
-    description: str | None = None
-    use_cases: tuple[str, ...] = ()
-    tags: tuple[str, ...] = ()
-    urls: Mapping[str, str] = field(default_factory=dict)
+    actors: Mapping[str, Actor] = field(default_factory=dict)
+    steps: tuple[Step, ...] = ()
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -163,6 +154,8 @@ class Architecture:
     project: ProjectInfo
     repository: SourceRepository | None = None
     """Where its files are on the web; None where the project does not say."""
+    commit_day: str | None = None
+    """The day of the newest commit, as YYYY-MM-DD; None where nothing ends on a day, and where git does not say."""
     distro: str | None = None
     distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()

@@ -46,8 +46,12 @@ _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
 _CONTAINER_FORM = ElementForm(("host",), raw_keys=frozenset({"parameters"}))
 _FRAME_FORM = ElementForm(("parent",))
+_START_FORM = ElementForm(("after",), frozenset({"after"}), part_forms={"ready": ElementForm(("wait",))})
 _COMPONENT_NODE_FORM = ElementForm(
-    list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})
+    list_keys=frozenset({"kind", "command"}),
+    keyed_forms=_USE_FORMS,
+    part_forms={"start": _START_FORM},
+    raw_keys=frozenset({"parameters"}),
 )
 
 _COMPONENT_PARTS = {
@@ -75,9 +79,9 @@ _COMPONENT_TYPE_FORM = ElementForm(
 )
 _NODE_FORM = ElementForm(
     ("implements",),
-    frozenset({"implements", "kind"}),
+    frozenset({"implements", "kind", "command"}),
     keyed_forms=_USE_FORMS,
-    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS)},
+    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS), "start": _START_FORM},
     raw_keys=frozenset({"parameters"}),
 )
 # One latency is both the best and the worst: a constant.
@@ -93,8 +97,8 @@ _TYPE_FORM = ElementForm(
 _ROOT_FORM = ElementForm(
     keyed_forms={
         "partners": _TITLED_FORM,
-        "use_cases": _TITLED_FORM,
-        "requirements": _TITLED_FORM,
+        "use_cases": ElementForm(("title",), keyed_forms={"actors": _TITLED_FORM}),
+        "requirements": ElementForm(("title",), frozenset({"parent", "verified_by"})),
         "component_types": _COMPONENT_TYPE_FORM,
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
         "nodes": _NODE_FORM,
@@ -130,11 +134,22 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     )
     parameter_diagnostics = tuple(expand_parameters(document.root))
     _normalise_mapping(document.root, _ROOT_FORM)
+    _drop_empty_step_keys(document.root)
     review = document.root.get("review")
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
     return library_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
+
+
+def _drop_empty_step_keys(root: MappingNode) -> None:
+    """Drop the empty keys in the steps of use cases, in place: these are no elements by id."""
+    use_cases = root.get("use_cases")
+    for entry in use_cases if isinstance(use_cases, MappingNode) else ():
+        steps = entry.value.get("steps") if isinstance(entry.value, MappingNode) else None
+        for step in steps.items if isinstance(steps, SequenceNode) else ():
+            if isinstance(step, MappingNode):
+                _normalise_mapping(step, _PLAIN_FORM)
 
 
 def _normalise_libraries(document: YamlDocument) -> Iterator[Diagnostic]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -20,7 +20,9 @@ from archgen.model.coordinate_frames import Frame
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.source_repository import SourceRepository
+from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
+from archgen.views.requirement_trace import RequirementTrace, trace_requirements
 from archgen.views.timing.timing_lookup import TimingLookup
 
 T = TypeVar("T")
@@ -68,6 +70,8 @@ class Lookup:
     """Components that serve a requirement, by the requirement's id."""
     chains_for_requirement: Mapping[str, tuple[Chain, ...]] = field(default_factory=dict)
     """Chains that serve a requirement, by the requirement's id."""
+    requirement_trace: RequirementTrace = field(default_factory=RequirementTrace)
+    """Which requirements are served, verified and met."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
     """Outputs by the name of their conceptual type."""
     physical_types: frozenset[str] = frozenset()
@@ -81,6 +85,9 @@ class Lookup:
     """Size of a message on the wire, by message and type."""
     repository: SourceRepository | None = None
     """Where the project's files are on the web, with the project's folder in it."""
+    # Computed when somebody asks: most views show no use case.
+    steps: UseCaseSteps = field(kw_only=True, compare=False, repr=False)
+    """The steps of use cases, with what they run along."""
     timing: TimingLookup | None = None
     """Results of the timing analysis; None for the many views that need no timing."""
 
@@ -153,8 +160,14 @@ def make_lookup(
 ) -> Lookup:
     """Build all look-ups, each in one pass over the architecture."""
     all_findings = tuple(findings)
-    components, nodes = architecture.components.values(), architecture.nodes.values()
+    nodes = architecture.nodes.values()
     written_connections = tuple(list_written_connections(architecture))
+    components_for_requirement = _group_values(
+        (use.text, c) for c in architecture.list_described_components() for use in c.requirements if use.is_id
+    )
+    chains_for_requirement = _group_values(
+        (r, chain) for chain in architecture.chains.values() for r in chain.requirements
+    )
     return Lookup(
         architecture,
         all_findings,
@@ -167,11 +180,10 @@ def make_lookup(
         nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
         endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.endpoints),
         findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
-        components_for_requirement=_group_values(
-            (use.text, c) for c in components for use in c.requirements if use.is_id
-        ),
-        chains_for_requirement=_group_values(
-            (r, chain) for chain in architecture.chains.values() for r in chain.requirements
+        components_for_requirement=components_for_requirement,
+        chains_for_requirement=chains_for_requirement,
+        requirement_trace=trace_requirements(
+            architecture, (*components_for_requirement, *chains_for_requirement), _list_chain_verdicts(timing_lookup)
         ),
         outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
         physical_types=_find_physical_types(architecture),
@@ -182,8 +194,23 @@ def make_lookup(
         ),
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
+        steps=UseCaseSteps(architecture),
         timing=timing_lookup,
     )
+
+
+def add_timing(lookup: Lookup, timing_lookup: TimingLookup) -> Lookup:
+    """Return look-ups with the results of the timing analysis: a requirement whose chain misses its deadline is missed."""
+    trace = trace_requirements(
+        lookup.architecture,
+        (*lookup.components_for_requirement, *lookup.chains_for_requirement),
+        _list_chain_verdicts(timing_lookup),
+    )
+    return replace(lookup, timing=timing_lookup, requirement_trace=trace)
+
+
+def _list_chain_verdicts(timing_lookup: TimingLookup | None) -> dict[str, str]:
+    return {result.id: result.verdict for result in (timing_lookup.chains if timing_lookup else ())}
 
 
 def _list_ends(

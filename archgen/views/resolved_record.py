@@ -8,17 +8,21 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from archgen.model.architecture import Architecture, Chain, Requirement
+from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
+from archgen.views.promise_record import record_life, record_words
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
 from archgen.views.shapes import Record
+from archgen.views.start_record import record_start
 from archgen.views.timing_record import record_timing
 from archgen.views.type_record import record_type
+from archgen.views.use_case_record import record_use_cases
 
 RECORD_VERSION = 1
 """Version of the format, written as `archgen_resolved`."""
@@ -35,7 +39,7 @@ def make_record(lookup: Lookup) -> Record:
         "partners": {
             p.id: pick_fields(p, "title", "description", "contact", "reviewers") for p in architecture.partners.values()
         },
-        "use_cases": {u.id: pick_fields(u, "title", "description") for u in architecture.use_cases.values()},
+        "use_cases": record_use_cases(lookup),
         "requirements": {r.id: _record_requirement(lookup, r) for r in architecture.requirements.values()},
         "groups": {name: _record_group(lookup, architecture.groups[name]) for name in lookup.shown_groups()},
         "components": {c.id: _record_component(lookup, c) for c in architecture.components.values() if is_shown(c.id)},
@@ -88,6 +92,7 @@ def _record_component_type(component_type: ComponentType) -> dict[str, object]:
         "is": component_type.base,
         "generic": list(component_type.generic),
         "abstract": component_type.is_abstract or None,
+        **record_life(component_type),
         "inputs": {name: kind or "" for name, kind in component_type.inputs.items()},
         "outputs": {name: kind or "" for name, kind in component_type.outputs.items()},
         "components": list(component_type.components),
@@ -104,8 +109,13 @@ def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, o
         "served_by": [component.id for component in lookup.components_for_requirement.get(requirement.id, ())],
         "served_by_chains": [chain.id for chain in lookup.chains_for_requirement.get(requirement.id, ())],
         "urls": dict(requirement.urls),
+        "parent": list(requirement.parents),
+        "verified_by": [{"kind": each.kind, "text": each.text} for each in requirement.verified_by],
     }
-    return pick_fields(requirement, "title", "description", "use_cases", "tags") | drop_unknown(dict(servers))
+    known_fields = pick_fields(
+        requirement, "title", "description", "kind", "priority", "rationale", "source", "use_cases", "tags"
+    )
+    return known_fields | drop_unknown(dict(servers))
 
 
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:
@@ -220,7 +230,9 @@ def _record_input(port: Input) -> dict[str, object]:
 def _record_output(lookup: Lookup, port: Output) -> dict[str, object]:
     readers = dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ()))
     return drop_unknown(
-        _record_port(port) | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
+        _record_port(port)
+        | record_words(port)
+        | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
     )
 
 
@@ -251,6 +263,8 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             **{key: getattr(node, key) for key in field_names},
             "full_name": node.full_name,
             "kind": list(node.kinds),
+            "command": list(node.command),
+            "start": record_start(node.start),
             "co_owners": list(node.co_owners),
             "implements": list(node.implements),
             "callback_groups": {name: list(members) for name, members in node.callback_groups.items()},

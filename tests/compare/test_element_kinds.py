@@ -17,13 +17,14 @@ import pytest
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
-from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
+from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, UseCase, View
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
+from archgen.model.requirement import Requirement
 from archgen.views.elements.element_card import kinds_by_id, make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.resolved_record import make_record
@@ -103,7 +104,8 @@ SCHEMA_ONLY = {
     **{
         f"component_type {key}": "what its instances have"
         for key in SCHEMA["$defs"]["component_type"]["properties"]
-        if key not in {"title", "functionality", "description", "owner", "is", "generic", "abstract"}
+        if key
+        not in {"title", "functionality", "description", "owner", "is", "generic", "abstract", "version", "deprecated"}
         and key not in {"inputs", "outputs", "components"} | READ_OFF_PATTERNS
     },
     "group components": "elements of their own",
@@ -155,6 +157,7 @@ MODEL_ONLY = {
     **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
     "chain unresolved": "only for rules",
+    "requirement parents": "the key `parent`",
     "link unresolved": "only for rules",
     "frame by_kind": "what the key `by` names",
     "frame component": "where it is written",
@@ -167,6 +170,7 @@ TABLE_ONLY_FOR_MODEL = {
     "component_type abstract": "the field `is_abstract`",
     **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
     "node kind": "the field `kinds`",
+    "requirement parent": "the field `parents`",
     "link latency": "the fields `best` and `worst`",
     "policy forbid": "the fields `forbid_from` and `forbid_to`",
     "component mapped": "follows from the nodes",
@@ -210,6 +214,7 @@ KINDS_NOT_IN_RECORD = {
     "policy": "a rule, not a part of the system",
 }
 CARD_ONLY = {
+    "state": "what serves and verifies it",
     "parent": "the beginning of the id",
     "ROS name": "made of name and namespace",
     "group": "the beginning of the id",
@@ -222,8 +227,8 @@ archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D}
 ros: {distro: jazzy, parameters: {use_sim_time: true}}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c"}, sssa: S}
-use_cases: {UC-1: {title: U, description: D}}
-requirements: {R-1: {title: R, description: D, use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
+use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}]}}
+requirements: {R-0: W, R-1: {title: R, description: D, parent: R-0, kind: k, priority: p, rationale: W, source: S, verified_by: [UC-1, c, t.py, by hand], use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
 groups:
   g:
     title: G
@@ -248,7 +253,7 @@ groups:
         open: [plugins]
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D}}
-        outputs: {o: {type: T, external: the world, frame: base, description: D}}
+        outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D}, o2: {external: the world}}
         frames: {base: {title: B, parent: map, rate: 10 Hz}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
@@ -257,11 +262,11 @@ groups:
       whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
       copy: {same_as: drum}
 component_types:
-  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
+  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, version: 3, deprecated: {until: 2999-01-01, use: spare}}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
   spare: {parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
 types:
-  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map}
+  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}}
   S: {request: T, response: T, feedback: T}
   F: {fields: {x: {type: float64, default: 0.5, unit: m, comment: C}, y: {type: "int8[]", default: [1, 2]}, t: T}, constants: {A: {type: int8, value: 1, comment: C}}}
   V: {values: [ON, OFF]}
@@ -289,6 +294,8 @@ nodes:
     parameters: {plugins.x: 1}
     parameter_commands: {plugins.y: [cat, z]}
     parameter_files: [p.yaml]
+    command: [stage, w]
+    start: {phase: components, after: m, ready: {port: 1, file: f, topic: t, service: s, log: l, wait: 1 s, within: 2 s}, respawn: true, respawn_delay: 1 s, environment: {A: b}, directory: /d, user: u, once: true, state: active, by: m}
     tags: [t]
     urls: {a: "https://a.eu"}
     publishes: {o: /o}
@@ -457,7 +464,8 @@ def test_no_key_is_listed_twice() -> None:
             (
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
                 "type comment, input external, output description, chapter text, "
-                "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
+                "view show, view colour, view level, use_case title, use_case actors.p, use_case steps, requirement title, requirement urls.x, project title, "
+                "requirement rationale, requirement source, "
                 "project layout, partner description, host tags, node urls.x, frame title"
             ),
         ),
@@ -466,12 +474,14 @@ def test_no_key_is_listed_twice() -> None:
             (
                 "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, component performance.p.accuracy, "
                 "component requirements, chain requirements, node package, node executable, node plugin, node status, "
-                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, project parameters.x, "
+                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, node command, node start.after, node start.ready.port, node start.environment.x, project parameters.x, "
                 "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
+                "requirement parent, requirement kind, requirement priority, requirement verified_by, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
-                "output frame, input frame, type frame"
+                "output frame, input frame, type frame, output promise.rate, output version, output deprecated.until, type version, "
+                "type deprecated.use, component_type version, component_type deprecated.until"
             ),
         ),
         (

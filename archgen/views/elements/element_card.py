@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, UseCase
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Container
 from archgen.model.node import Node, Topic
@@ -19,8 +19,10 @@ from archgen.views.elements.parameter_blocks import (
     list_operation_lines,
     list_parameter_lines,
 )
+from archgen.views.elements.requirement_facts import list_requirement_facts, list_requirement_parts
 from archgen.views.lookup import Lookup
-from archgen.views.requirement_servers import describe_chain_state, name_chain
+from archgen.views.requirement_servers import describe_chain_state
+from archgen.views.sequences.step_words import describe_total, list_step_lines
 from archgen.views.tables.type_fields import list_field_lines
 from archgen.views.timing.element_timing import make_whole_fact
 
@@ -352,6 +354,21 @@ def _topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
     return ElementCard(topic.flow, topic.name, topic.name, span, _known_facts(facts), lists)
 
 
+def _use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
+    facts = [
+        ("description", " ".join((use_case.description or "").split())),
+        ("actors", ", ".join(f"{actor.id} ({actor.title})" for actor in use_case.actors.values())),
+        ("time", describe_total(lookup, use_case.id)),
+    ]
+    requirement_ids = tuple(r.id for r in lookup.architecture.requirements.values() if use_case.id in r.use_cases)
+    lists = (
+        *_drop_empty_lists(("steps", tuple(list_step_lines(lookup, use_case)))),
+        ("requirements", requirement_ids),
+        *_drop_empty_lists(("findings", tuple(_format_findings(lookup, use_case.id)))),
+    )
+    return ElementCard("use case", use_case.id, use_case.title, use_case.at, _known_facts(facts), lists)
+
+
 def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     """Make the card of a kind without a card of its own: fields that exist, and who uses the element."""
     architecture = lookup.architecture
@@ -391,11 +408,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
         lists += [("fields", field_lines)] if field_lines else []
         lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
     elif kind == "requirement":
-        serving_components = lookup.components_for_requirement.get(element_id, ())
-        serving_chains = lookup.chains_for_requirement.get(element_id, ())
-        names = [component.id for component in serving_components]
-        names += [f"the chain {name_chain(lookup, chain)}" for chain in serving_chains]
-        lists.append(("served by", tuple(names)))
+        requirement = architecture.requirements[element_id]
+        facts += list_requirement_facts(lookup, requirement)
+        lists += list_requirement_parts(lookup, requirement)
     elif kind == "partner":
         facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
         elements_by_kind = (
@@ -468,5 +483,6 @@ _CARD_MAKERS: Mapping[str, Callable[[Lookup, Any], ElementCard]] = {
     "output": _port_card,
     "node": _node_card,
     "topic": _topic_card,
+    "use case": _use_case_card,
 }
 """What makes the card of an element; other kinds have a list of fields."""
