@@ -50,6 +50,7 @@ ELEMENTS = {
     "views": "view",
     "policies": "policy",
     "variants": "variant",
+    "properties": "property_declaration",
 }
 NAMES = {
     *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
@@ -145,6 +146,8 @@ def project(text: str) -> dict[str, Any]:
                 },
             }
         },
+        "properties": {"declared": {}, "chosen": {"of": ["component"], "choices": [text]}},
+        "glossary": {kind[:90].strip(): text, "functionality": text},
     }
     _fill(data["project"], "project", text)
     for section in ELEMENTS.keys() & data.keys():
@@ -186,7 +189,13 @@ def _fill(element: dict[str, Any], kind: str, text: str) -> None:
             for inner in element[key].values():
                 _fill(inner, ELEMENTS[key], text)
         elif key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
-            filled: dict[str, dict[str, Any]] = {"text": {key: text}, "prose": {key: text}, "texts": {key: [text]}}
+            filled: dict[str, dict[str, Any]] = {
+                "text": {key: text},
+                "prose": {key: text},
+                "texts": {key: [text]},
+                "properties": {key: {"free": text, "declared": text}},
+                "hints": {key: {"program": [text, {text[:60]: text}]}},
+            }
             element |= filled.get(sort, {})
 
 

@@ -113,6 +113,7 @@ _ROOT_FORM = ElementForm(
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
         "variants": ElementForm(("title",), frozenset({"of", "drop"}), raw_keys=frozenset({"changes"})),
+        "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
         "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
@@ -228,7 +229,7 @@ def _normalise_below(key: str, mapping: MappingNode, form: ElementForm) -> None:
         element_form = form.keyed_forms[key]
         for entry in mapping.entries.values():
             entry.value = _normalise_element(entry.value, element_form)
-    elif key not in form.raw_keys:
+    elif key not in form.raw_keys and key != "hints":
         _normalise_mapping(mapping, _PLAIN_FORM)
 
 
