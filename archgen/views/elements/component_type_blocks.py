@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from archgen.model.component import Component, ComponentType
 from archgen.views import inline_text
@@ -73,8 +72,7 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
     if component_type.version:
         yield "Version", inline_text.to_inlines(component_type.version)
     if component_type.deprecated:
-        badge = (*write_badges(replace(component_type, version=None)), Text(" "))
-        yield "Deprecated", (*badge[1:], *write_deprecation(architecture, "component_type", component_type))
+        yield "Deprecated", write_deprecation(architecture, "component_type", component_type)
     if component_type.generic:
         yield "Generic names", inline_text.join_inlines((Text(name, code=True),) for name in component_type.generic)
     derived = [each for each in architecture.component_types.values() if each.base_name == component_type.id]

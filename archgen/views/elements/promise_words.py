@@ -14,6 +14,8 @@ from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 from archgen.views.type_names import type_page_link
 
+_BADGE: Inlines = (Text(" "), Text("deprecated", status="warning"))
+
 
 def describe_promise(promise: Promise | None) -> str:
     """Return what is promised on one line: `10 Hz, gaps up to 150 ms, 0 to 30 m`; empty for nothing."""
@@ -48,8 +50,12 @@ def list_text_remarks(holder: Output | ConceptualType | ComponentType) -> Iterat
 def write_badges(holder: Output | ConceptualType | ComponentType) -> Inlines:
     """Return what stands behind a name: its version, and a badge where it is going away."""
     version = (Text(f" version {holder.version}", muted=True),) if holder.version else ()
-    badge = (Text(" "), Text("deprecated", status="warning")) if holder.deprecated else ()
-    return (*version, *badge)
+    return (*version, *write_badge(holder))
+
+
+def write_badge(holder: Output | ConceptualType | ComponentType) -> Inlines:
+    """Return a badge where something is going away."""
+    return _BADGE if holder.deprecated else ()
 
 
 def write_remarks(architecture: Architecture, port: Output) -> Iterator[Inlines]:
@@ -79,8 +85,9 @@ def write_deprecation(
         link = (type_page_link(component_type),) if component_type else link
     else:
         output = _find_output(architecture, replacement)
-        if output is not None:
-            link = inline_text.port_link(architecture, output)
+        if output is not None and isinstance(holder, Output):
+            is_near = output.component == holder.component
+            link = (Text(output.name, code=True),) if is_near else inline_text.port_link(architecture, output)
     return inline_text.to_inlines(f"deprecated {until}: use ".replace(" :", ":"), *link)
 
 
@@ -96,5 +103,5 @@ def mark_source(lookup: Lookup, connection: Connection) -> Inlines:
         leaf = architecture.outputs.get(output_id)
         port = find_counted_output(architecture, connection, leaf) if leaf else None
         if port is not None and port.deprecated is not None:
-            return (Text(" "), Text("deprecated", status="warning"))
+            return _BADGE
     return ()

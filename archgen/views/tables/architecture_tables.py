@@ -124,7 +124,7 @@ def make_type_table(lookup: Lookup) -> Table | None:
     """List conceptual types with the messages that carry them."""
     rows = tuple(
         (
-            (*inline_text.type_link(conceptual_type.name), *promise_words.write_badges(conceptual_type)),
+            (*inline_text.type_link(conceptual_type.name), *promise_words.write_badge(conceptual_type)),
             message_cell(lookup, conceptual_type),
             size_cell(lookup, conceptual_type),
             inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
