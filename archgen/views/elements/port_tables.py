@@ -6,6 +6,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
 from archgen.views.elements import promise_words
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Paragraph, Table, Text, drop_empty_columns
 
@@ -151,5 +152,7 @@ def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
         frame,
         *words,
         inline_text.to_inlines(port.description or ""),
+        inline_text.link_urls(port.urls.items(), lookup.repository),
+        *(facts for _, facts in list_annotation_facts(lookup, port)),
     ]
     return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")
