@@ -19,7 +19,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
+from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables, start_table
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -162,6 +162,13 @@ class _ChapterMaker:
         ]
         return [Section("page:hosts", "Hosts and links", tuple(blocks), page_break=True)] if blocks else []
 
+    def make_start_up(self) -> list[Section]:
+        """Make the chapter of the start-up."""
+        if self.edition.level == "functional":
+            return []
+        blocks = (*self._make_figures("start_up"), *start_table.make_start_blocks(self.lookup))
+        return [Section("page:start_up", "Start-up", blocks, page_break=True)] if blocks else []
+
     def make_timing(self) -> list[Section]:
         """Make the chapter of figures of timing."""
         timing_lookup = self.lookup.timing
@@ -243,6 +250,7 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,
     "deployment": _ChapterMaker.make_deployment,
+    "start_up": _ChapterMaker.make_start_up,
     "timing": _ChapterMaker.make_timing,
     "chains": _ChapterMaker.make_chains,
     "views": _ChapterMaker.make_views,

@@ -31,7 +31,7 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
+from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables, start_table
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
 
@@ -261,6 +261,8 @@ class PageMaker:
                 architecture_tables.make_link_table(self.lookup),
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
+            if start_blocks := start_table.make_start_blocks(self.lookup):
+                yield self._spanning_page("start_up", "Start-up", *self.make_figures("start_up"), *start_blocks)
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
