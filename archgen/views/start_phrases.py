@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitReason
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
+from archgen.model.node import Node
+from archgen.model.quantity import Quantity
 from archgen.model.start_up import ReadyConditions
 
 KIND_WORDS = {"program": "program", "node": "node", "container": "container", "composable": "loaded node"}
@@ -129,6 +131,27 @@ def describe_process(step: StartStep) -> list[str]:
     phrases = [f"in {step.directory}"] if step.directory else []
     phrases += [f"as the user {step.user}"] if step.user else []
     phrases += [f"with {name}={value}" for name, value in step.environment.items()]
-    if step.respawn:
-        phrases.append("started again" + (f" after {step.respawn_delay}" if step.respawn_delay else " at once"))
+    phrases += [_describe_respawn(step.respawn_delay)] if step.respawn else []
     return phrases
+
+
+def describe_start(node: Node) -> str:
+    """Return what a node says of its start-up, in a line; empty where it says nothing."""
+    start = node.start
+    if start is None:
+        return ""
+    within = f" within {start.ready.within}" if start.ready.within is not None else ""
+    signs = join_words(list(list_ready_phrases(start.ready)))
+    parts = [f"in the phase {start.phase}" if start.phase else ""]
+    parts.append(f"after {join_words([target.id for target in start.after])}" if start.after else "")
+    parts.append(f"once, to its end{within}" if start.once else f"up when {signs}{within}" if signs else "")
+    parts.append(f"brought into the state {start.wanted_state}" if start.wanted_state else "")
+    parts[-1] += f" by {start.by.id}" if start.by and start.wanted_state else ""
+    parts += [f"in {start.directory}" if start.directory else "", f"as the user {start.user}" if start.user else ""]
+    parts += [f"with {name}={value}" for name, value in start.environment.items()]
+    parts.append(_describe_respawn(start.respawn_delay) if start.respawn else "")
+    return "; ".join(part for part in parts if part)
+
+
+def _describe_respawn(delay: Quantity | None) -> str:
+    return f"started again after {delay}" if delay is not None else "started again at once"

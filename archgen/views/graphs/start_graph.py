@@ -55,7 +55,9 @@ def _box_id(step_id: str) -> str:
 def _make_box(step: StartStep) -> Box:
     name = step.container or step.id if step.kind == "container" else step.id
     ready = start_phrases.describe_ready(step)
-    lines = [line for line in (step.host or "", "runs to its end" if step.once else "") if line]
+    kind = start_phrases.KIND_WORDS[step.kind] if step.kind in {"program", "container"} else ""
+    place = f"{kind} on {step.host}" if kind and step.host else step.host or kind
+    lines = [line for line in (place, "runs to its end" if step.once else "") if line]
     lines += [start_phrases.describe_state(step)] if step.state else []
     return Box(
         _box_id(step.id),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
 from archgen.bringup.start_plan import describes_start, make_start_plan
@@ -31,24 +31,42 @@ def make_start_blocks(lookup: Lookup) -> list[Block]:
         return []
     plan = make_start_plan(lookup.architecture)
     steps = {step.id: step for step in plan.steps}
+    shown_steps = list_shown_steps(lookup, plan)
+    if not shown_steps:
+        return []
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(_LEAD))]
     for phase in PHASES:
-        numbered = [(number, step) for number, step in enumerate(plan.steps, start=1) if step.phase == phase]
+        numbered = [(number, step) for number, step in shown_steps if step.phase == phase]
         rows = tuple(_make_row(lookup, number, step, steps) for number, step in numbered)
         if rows:
             blocks.append(Table(f"table:start/{phase}", f"Start-up: phase {phase}", _COLUMNS, rows, wide=True))
-    return [*blocks, *_list_left_out(plan, steps)]
+    return [*blocks, *_list_left_out(plan, steps, {step.id for _, step in shown_steps})]
 
 
-def _list_left_out(plan: StartPlan, steps: Mapping[str, StartStep]) -> Iterator[Block]:
+def list_shown_steps(lookup: Lookup, plan: StartPlan) -> list[tuple[int, StartStep]]:
+    """Return the steps of the nodes that are shown, and of their containers, with their numbers in the whole plan."""
+    nodes = lookup.architecture.nodes
+    containers = {node.container for node in nodes.values() if lookup.scope.shows_node(node.id)}
+    return [
+        (number, step)
+        for number, step in enumerate(plan.steps, start=1)
+        if (
+            (lookup.scope.nodes is None or step.container in containers)
+            if step.kind == "container"
+            else lookup.scope.shows_node(step.id)
+        )
+    ]
+
+
+def _list_left_out(plan: StartPlan, steps: Mapping[str, StartStep], shown_ids: Collection[str]) -> Iterator[Block]:
     for lead, lines in (
         (
             "These waits were given up, so that nothing waits for itself:",
-            [start_phrases.describe_dropped(each, steps) for each in plan.dropped],
+            [start_phrases.describe_dropped(each, steps) for each in plan.dropped if each.wait.waiting in shown_ids],
         ),
         (
             "These contradict one another, and no plan can keep them:",
-            [start_phrases.describe_circle(each, steps) for each in plan.circles],
+            [start_phrases.describe_circle(each, steps) for each in plan.circles if each.wait.waiting in shown_ids],
         ),
     ):
         if lines:
