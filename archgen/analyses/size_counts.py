@@ -61,6 +61,8 @@ class ArchitectureSize:
     variants: int = 0
     steps: int = 0
     """The steps of all use cases."""
+    programs: int = 0
+    """Those among the nodes that are no ROS: simulators, registries, brokers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +127,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         frames=len(arch.frames),
         variants=len(arch.variants),
         steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
+        programs=sum("program" in node.kinds for node in arch.nodes.values()),
     )
 
 
