@@ -99,7 +99,7 @@ class CheckedProject:
     variants: Mapping[str, CheckedProject] = field(default_factory=dict)
     """The project as it stands in each of its variants, each with the findings that hold there."""
     own_findings: tuple[Diagnostic, ...] = ()
-    """The findings that hold in the project itself, whatever its variants give; of one without variants, none are here."""
+    """The findings that hold in the project itself, whatever its variants give; empty where it has no variants."""
     steps: tuple[str, ...] = ()
     """The variants that are laid over the project as it stands here, in order."""
 
@@ -296,8 +296,17 @@ def stand_in_variants(
     _refuse_unknown(checked_project, names)
     wanted_names = [name for name in names if name != BASE_NAME]
     if not wanted_names:
-        findings = checked_project.own_findings if checked_project.variants else checked_project.findings
-        return replace(checked_project, findings=findings, variants={})
+        if not checked_project.architecture.variants:
+            return checked_project
+        from archgen.link.variants.variant_laying import remove_variants
+
+        return replace(
+            checked_project,
+            architecture=replace(checked_project.architecture, variants={}),
+            merged_table=remove_variants(checked_project.merged_table),
+            findings=checked_project.own_findings,
+            variants={},
+        )
     if len(wanted_names) == 1 and wanted_names[0] in checked_project.variants:
         return checked_project.variants[wanted_names[0]]
     merged_project = _merge_project(checked_project.loaded_project)

@@ -34,6 +34,7 @@ SELECTOR_KEYS = (
     "library",
     "parameter",
     "property",
+    "variant",
 )
 ALL_STEPS = -1
 """Any number of steps."""

@@ -76,6 +76,16 @@ def link_message(architecture: Architecture, finding: Diagnostic) -> Inlines:
     return tuple(_link_run(architecture, finding, run) for run in inline_text.message_to_inlines(finding.message))
 
 
+def link_names(architecture: Architecture, sentence: str) -> Inlines:
+    """Return a sentence with a link at each name that it quotes and that is an element's."""
+    return tuple(
+        Text(run.text, ref=reference, code=True)
+        if run.code and (reference := find_reference(architecture, run.text))
+        else run
+        for run in inline_text.message_to_inlines(sentence)
+    )
+
+
 def link_help(architecture: Architecture, finding: Diagnostic) -> Inlines:
     """Return a finding's help, muted, with a link at each name that it quotes and that is an element's."""
     runs = inline_text.message_to_inlines(finding.help or "", muted=True)
