@@ -6,15 +6,17 @@ from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare import deployment_declaration, section_declaration
+from archgen.link.declare import deployment_declaration, property_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
+from archgen.link.declare.requirement_declaration import declare_requirements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
+from archgen.link.declare.variant_declaration import declare_variants
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
@@ -47,22 +49,24 @@ def link_project(  # noqa: PLR0913 - all by name
     # containers and components. Every step appends to the same list of diagnostics.
     root = expansion.root
     diagnostics: list[Diagnostic] = [*expansion.diagnostics, *declared_types.diagnostics]
-    diagnostics += diagnose_undeclared_inputs(element_outline)
+    diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
-    resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
+    resolver = make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     parameters = HandedParameters(element_outline, diagnostics)
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, parameters)
+    implemented = declare_component_nodes(
+        element_outline, expansion, written_targets, declared_groups, parameters, resolver
+    )
     implements = implemented.implements
     containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
         implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented
     )
-    requirements = section_declaration.declare_requirements(root, resolver)
+    requirements = declare_requirements(root, resolver)
     use_cases = declare_use_cases(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
@@ -70,6 +74,8 @@ def link_project(  # noqa: PLR0913 - all by name
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
     frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
     component_types = declare_component_types(expansion, resolver)
+    properties = property_declaration.declare_properties(root, diagnostics)
+    glossary = property_declaration.declare_glossary(root, diagnostics)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference
@@ -101,6 +107,9 @@ def link_project(  # noqa: PLR0913 - all by name
         chains=chains,
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),
+        variants=declare_variants(root),
+        properties=properties,
+        glossary=glossary,
         review=section_declaration.declare_review(root),
         repository=section_declaration.declare_repository(root),
         interfaces=interfaces,
@@ -112,13 +121,14 @@ def link_project(  # noqa: PLR0913 - all by name
     return architecture, tuple(diagnostics)
 
 
-def _make_resolver(
+def make_resolver(
     root: MappingNode,
     element_outline: ElementOutline,
     diagnostics: list[Diagnostic],
-    lost_keys: frozenset[str],
-    damaged_elements: frozenset[str],
+    lost_keys: frozenset[str] = frozenset(),
+    damaged_elements: frozenset[str] = frozenset(),
 ) -> ReferenceResolver:
+    """Return what resolves the references of a merged project in which all types are written out."""
     spans: dict[str, dict[str, Span]] = {
         "group": {name: entry.key_span for name, entry in element_outline.groups.items()},
         "component": {

@@ -46,8 +46,12 @@ _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
 _CONTAINER_FORM = ElementForm(("host",), raw_keys=frozenset({"parameters"}))
 _FRAME_FORM = ElementForm(("parent",))
+_START_FORM = ElementForm(("after",), frozenset({"after"}), part_forms={"ready": ElementForm(("wait",))})
 _COMPONENT_NODE_FORM = ElementForm(
-    list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})
+    list_keys=frozenset({"kind", "command"}),
+    keyed_forms=_USE_FORMS,
+    part_forms={"start": _START_FORM},
+    raw_keys=frozenset({"parameters"}),
 )
 
 _COMPONENT_PARTS = {
@@ -75,9 +79,9 @@ _COMPONENT_TYPE_FORM = ElementForm(
 )
 _NODE_FORM = ElementForm(
     ("implements",),
-    frozenset({"implements", "kind"}),
+    frozenset({"implements", "kind", "command"}),
     keyed_forms=_USE_FORMS,
-    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS)},
+    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS), "start": _START_FORM},
     raw_keys=frozenset({"parameters"}),
 )
 # One latency is both the best and the worst: a constant.
@@ -94,7 +98,7 @@ _ROOT_FORM = ElementForm(
     keyed_forms={
         "partners": _TITLED_FORM,
         "use_cases": ElementForm(("title",), keyed_forms={"actors": _TITLED_FORM}),
-        "requirements": _TITLED_FORM,
+        "requirements": ElementForm(("title",), frozenset({"parent", "verified_by"})),
         "component_types": _COMPONENT_TYPE_FORM,
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
         "nodes": _NODE_FORM,
@@ -108,6 +112,8 @@ _ROOT_FORM = ElementForm(
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
+        "variants": ElementForm(("title",), frozenset({"of", "drop"}), raw_keys=frozenset({"changes"})),
+        "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
         "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
@@ -118,7 +124,7 @@ _ROOT_FORM = ElementForm(
 
 def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Bring a validated document into the normal form. Its tree is changed in place."""
-    library_diagnostics = tuple(_normalise_libraries(document))
+    inner_diagnostics = (*_normalise_libraries(document), *_normalise_changes(document))
     # Types and indicators first: both look at short forms that _normalise_mapping expands.
     types = document.root.get("types")
     type_diagnostics = tuple(_fold_type_names(types)) if isinstance(types, MappingNode) else ()
@@ -135,7 +141,7 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
-    return library_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
+    return inner_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
 
 
 def _drop_empty_step_keys(root: MappingNode) -> None:
@@ -154,6 +160,15 @@ def _normalise_libraries(document: YamlDocument) -> Iterator[Diagnostic]:
     for library in libraries if isinstance(libraries, MappingNode) else ():
         if isinstance(library.value, MappingNode):
             yield from normalise_document(replace(document, root=library.value))
+
+
+def _normalise_changes(document: YamlDocument) -> Iterator[Diagnostic]:
+    """Normalise what each variant writes over the project, each as if it were a file of its own."""
+    variants = document.root.get("variants")
+    for variant in variants if isinstance(variants, MappingNode) else ():
+        changes = variant.value.get("changes") if isinstance(variant.value, MappingNode) else None
+        if isinstance(changes, MappingNode):
+            yield from normalise_document(replace(document, root=changes))
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:
@@ -214,7 +229,7 @@ def _normalise_below(key: str, mapping: MappingNode, form: ElementForm) -> None:
         element_form = form.keyed_forms[key]
         for entry in mapping.entries.values():
             entry.value = _normalise_element(entry.value, element_form)
-    elif key not in form.raw_keys:
+    elif key not in form.raw_keys and key != "hints":
         _normalise_mapping(mapping, _PLAIN_FORM)
 
 

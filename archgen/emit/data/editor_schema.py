@@ -52,10 +52,16 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "output.frame": ("frames",),
     "owners": ("partners",),
     "port_list": ("inputs",),
+    "promise.frame": ("frames",),
     "resource": ("hosts",),
     "resource.host": ("hosts",),
+    "requirement.parent": ("requirements",),
     "requirement.use_cases": ("use_cases",),
+    "requirement.verified_by": ("use_cases", "chains"),
     "ros.distro": ("distros",),
+    "start": ("implemented",),
+    "start.after": ("implemented",),
+    "start.by": ("implemented",),
     "step.from": ("step_ends",),
     "step.to": ("step_ends",),
     "tags": ("tags",),
@@ -67,6 +73,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "type.frame": ("frames",),
     "type.message": ("topic_messages", "call_messages"),
     "type_name": ("types",),
+    "variant.of": ("variants",),
+    "variant.without": ("selectors",),
     "view": ("selectors",),
     "view.show": ("selectors",),
 }
@@ -89,7 +97,7 @@ _SECTIONS = (
         "links",
         "chains",
     ),
-    *("resources", "frames", "views", "policies"),
+    *("resources", "frames", "views", "policies", "variants"),
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 

@@ -1,4 +1,4 @@
-"""Declare the sections of small elements: project, partners, requirements, chains, views, review and so on."""
+"""Declare the sections of small elements: project, partners, chains, views, review and so on."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, View, Waypoint
+from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, View, Waypoint
 from archgen.model.path_resolver import ElementRef
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
@@ -39,25 +39,10 @@ def declare_partners(root: MappingNode) -> dict[str, Partner]:
             mapping_values.get_text(body, "description"),
             mapping_values.get_text(body, "contact"),
             mapping_values.get_texts(body, "reviewers"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "partners")
-    }
-
-
-def declare_requirements(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Requirement]:
-    """Declare the requirements, with the use cases that are declared."""
-    return {
-        name: Requirement(
-            id=name,
-            title=mapping_values.get_text(body, "title") or name,
-            description=mapping_values.get_text(body, "description"),
-            use_cases=resolver.resolve_plain_ids(mapping_values.get_scalars(body, "use_cases"), "use case", name),
-            tags=mapping_values.get_texts(body, "tags"),
-            urls=mapping_values.get_text_mapping(body, "urls"),
-            at=entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "requirements")
     }
 
 
@@ -84,6 +69,7 @@ def declare_chains(
             through=tuple(_make_waypoint(target, scalar, list_leaf_ports) for target, scalar in waypoints if target),
             deadline=sanity_checks.read_positive(body, "deadline", "duration", name, resolver.diagnostics),
             requirements=mapping_values.get_texts(body, "requirements"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             unresolved=tuple(scalar.text for target, scalar in waypoints if target is None),
             requirement_places=tuple(scalar.span for scalar in mapping_values.get_scalars(body, "requirements")),
@@ -118,6 +104,7 @@ def declare_views(root: MappingNode) -> dict[str, View]:
             level="implementation" if level == "implementation" else "functional",
             depth=mapping_values.get_integer(body, "depth"),
             layout=mapping_values.get_layout(body),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             show_at=mapping_values.get_span(body, "show"),
         )
@@ -179,6 +166,7 @@ def declare_policies(root: MappingNode) -> dict[str, Policy]:
                 title=mapping_values.get_title(body, name),
                 forbid_from=mapping_values.get_text(forbid, "from") or "",
                 forbid_to=mapping_values.get_text(forbid, "to") or "",
+                annotations=mapping_values.get_annotations(body),
                 at=entry.key_span,
                 from_at=mapping_values.get_span(forbid, "from"),
                 to_at=mapping_values.get_span(forbid, "to"),

@@ -14,6 +14,8 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
+from archgen.model.property_conditions import find_component_properties, find_node_properties
+from archgen.model.requirement_tree import add_above
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -34,12 +36,13 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("type", name) for name in types[component.id]),
                     *(("medium", "physical" if port.physical else "digital") for port in _list_ports(component)),
                     *((("role", component.role),) if component.role else ()),
-                    *(("requirement", use.text) for use in component.requirements if use.is_id),
+                    *(("requirement", name) for name in _list_requirements(architecture, component)),
                     *_list_behaviours((component.timing,)),
                     *(("finding", rule) for rule in rules[component.id]),
                     *(("is", name) for name in architecture.list_types_of(component)),
                     *(("library", name) for name in architecture.list_libraries_of(component)),
                     *(("parameter", name) for name in component.parameters),
+                    *_list_properties(find_component_properties(architecture, component)),
                 )
             )
         )
@@ -47,7 +50,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
     }
 
 
-def list_composed_keys(shell: Component) -> tuple[Key, ...]:
+def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Key, ...]:
     """Return what is said of a composed component itself. No selector finds it by that: what flows, flows between leaves."""
     return tuple(
         dict.fromkeys(
@@ -55,7 +58,8 @@ def list_composed_keys(shell: Component) -> tuple[Key, ...]:
                 *(("tag", tag) for tag in shell.tags),
                 *(("owner", owner) for owner in shell.owners),
                 *((("role", shell.role),) if shell.role else ()),
-                *(("requirement", use.text) for use in shell.requirements if use.is_id),
+                *(("requirement", name) for name in _list_requirements(architecture, shell)),
+                *_list_properties(shell.annotations.properties),
             )
         )
     )
@@ -75,9 +79,21 @@ def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
                 *_list_behaviours(node.timing.values()),
                 *(("finding", rule) for rule in rules),
                 *(("parameter", name) for name in find_effective_parameters(lookup.architecture, node)),
+                *_list_properties(find_node_properties(lookup.architecture, node)),
             )
         )
     )
+
+
+def _list_properties(properties: Mapping[str, str]) -> Iterator[Key]:
+    """Yield properties as one text each, `sil=2`: the page takes them apart."""
+    return (("property", f"{name}={text}") for name, text in properties.items())
+
+
+def _list_requirements(architecture: Architecture, component: Component) -> Iterator[str]:
+    """Yield the requirements that a component serves, and what these are part of, each once."""
+    served_ids = [use.text for use in component.requirements if use.is_id]
+    yield from dict.fromkeys([*served_ids, *sorted(add_above(architecture.requirements, served_ids))])
 
 
 def _list_behaviours(timings: Iterable[Timing | None]) -> Iterator[Key]:

@@ -1,4 +1,4 @@
-"""The site's pages around components and nodes: topics, types, requirements, use cases, hosts."""
+"""The site's pages around components and nodes: topics, types, use cases, hosts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
-from archgen.model.architecture import Requirement
 from archgen.model.component import Component
 from archgen.model.deployment import Container, Host
 from archgen.model.message_types import ConceptualType, flow_of
@@ -14,9 +13,8 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
-from archgen.views.elements.functional_level import make_component_table
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
-from archgen.views.requirement_servers import chain_link
 from archgen.views.sequences.sequence_blocks import make_sequence_blocks
 from archgen.views.shapes import (
     Block,
@@ -32,7 +30,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
 )
-from archgen.views.tables import architecture_tables, type_fields
+from archgen.views.tables import architecture_tables, requirement_tables, type_fields
 from archgen.views.timing import element_timing
 from archgen.views.timing.host_waterfall import make_host_waterfall
 
@@ -44,11 +42,9 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
-    """Make a page for each type, requirement, use case, host and container."""
+    """Make a page for each type, use case, host and container."""
     for conceptual_type in sorted(architecture_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
         yield _type_page(lookup, conceptual_type)
-    for requirement in architecture_tables.shown_requirements(lookup):
-        yield _requirement_page(lookup, requirement)
     for name in lookup.architecture.use_cases:
         yield _use_case_page(lookup, name, keep_drawn)
     for host in lookup.architecture.hosts.values():
@@ -198,6 +194,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
         ("Message", architecture_tables.message_cell(lookup, conceptual_type)),
         ("Size", _size_cell(lookup, conceptual_type)),
         ("Remarks", inline_text.to_inlines(architecture_tables.describe_mapping(conceptual_type))),
+        *list_annotation_facts(lookup, conceptual_type),
     ]
     # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
@@ -233,41 +230,12 @@ def _size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
     )
 
 
-def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
-    facts = [
-        (
-            "Use cases",
-            inline_text.join_inlines(architecture_tables.use_case_link(lookup, name) for name in requirement.use_cases),
-        ),
-        ("Tags", inline_text.to_inlines(", ".join(requirement.tags)) if requirement.tags else ()),
-        ("Links", inline_text.link_urls(requirement.urls.items())),
-    ]
-    blocks: list[Block] = [Paragraph(inline_text.to_inlines(requirement.title))]
-    blocks += [Facts(known_facts)] if (known_facts := tuple((name, value) for name, value in facts if value)) else []
-    blocks += [Markdown(requirement.description)] if requirement.description else []
-    serving_components = list(lookup.components_for_requirement.get(requirement.id, ()))
-    if serving_components:
-        blocks.append(
-            make_component_table(
-                lookup, f"table:serving/{requirement.id}", "Components that serve it", serving_components
-            )
-        )
-    serving_chains = lookup.chains_for_requirement.get(requirement.id, ())
-    if serving_chains:
-        blocks.append(Paragraph(inline_text.to_inlines(Text("Chains that serve it", strong=True))))
-        blocks.append(Bullets(tuple(chain_link(lookup, chain) for chain in serving_chains)))
-    if not serving_components and not serving_chains:
-        blocks.append(Paragraph(inline_text.to_inlines("No component serves this requirement yet."), "warning"))
-    crumb = ("Requirements and use cases", "page:requirements")
-    section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))
-    return make_page(section, "requirements", crumb, "Requirement")
-
-
 def _use_case_page(lookup: Lookup, use_case_id: str, keep_drawn: FigureFilter) -> Page:
     use_case = lookup.architecture.use_cases[use_case_id]
     serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
-    table = architecture_tables.make_requirement_table(lookup, serving_requirements)
+    table = requirement_tables.make_requirement_table(lookup, serving_requirements)
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
+    blocks += [Facts(facts)] if (facts := tuple(list_annotation_facts(lookup, use_case))) else []
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += keep_drawn(make_sequence_blocks(lookup, use_case))
     blocks += [table] if table else []
@@ -282,6 +250,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        *list_annotation_facts(lookup, host),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
         (
             "Links",

@@ -189,6 +189,73 @@ groups:
   b: {owner: sssa, components: {z: {title: Z, requirements: [R-2]}}}
 """
 )
+TOLD = (
+    BASE.replace("tracker: {inputs", "tracker: {outputs: {tracks: Tracks}, inputs").replace(
+        ", outputs: {tracks: Tracks}}\n", "}\n"
+    )
+    + """\
+  acting:
+    owner: tum
+    components:
+      arm: {inputs: {tracks: tracker.tracks, stop: {external: Somebody presses}}}
+use_cases:
+  UC-1:
+    actors: {who: Somebody}
+    steps: [{from: camera, to: tracker}, {from: tracker, to: arm}, {from: who, to: arm}, {from: arm, to: camera}]
+"""
+)
+CUT = "cuts step 1 of the use case `UC-1`; `acting.arm` of TUM and `tracking.tracker` of SSSA are part of it"
+STEPS = {
+    "a step whose output is gone": (
+        TOLD,
+        [OUTPUT, DANGLING],
+        [
+            f"sensing.camera.image sssa: {TAKEN}",
+            f"sensing.camera.image sssa: {CUT}",
+            f"sensing.camera.image tum: {CUT}",
+        ],
+    ),
+    "a step whose reader turns away": (
+        TOLD,
+        [("tracks: tracker.tracks, ", "")],
+        [
+            "acting.arm.tracks certh: cuts step 2 of the use case `UC-1`; `sensing.camera` of CERTH and `tracking.tracker` of SSSA are part of it",
+            "acting.arm.tracks sssa: cuts step 2 of the use case `UC-1`; `sensing.camera` of CERTH and `tracking.tracker` of SSSA are part of it",
+        ],
+    ),
+    "a step that is dropped along with its connection": (
+        TOLD,
+        [("tracks: tracker.tracks, ", ""), ("{from: tracker, to: arm}, ", "")],
+        [
+            "acting.arm.tracks certh: cuts step 2 of the use case `UC-1`; `sensing.camera` of CERTH and `tracking.tracker` of SSSA are part of it",
+            "acting.arm.tracks sssa: cuts step 2 of the use case `UC-1`; `sensing.camera` of CERTH and `tracking.tracker` of SSSA are part of it",
+        ],
+    ),
+    "a step that goes over another component now": (
+        TOLD,
+        [
+            (
+                "arm: {inputs: {tracks: tracker.tracks",
+                "new: {inputs: {t: tracker.tracks}, outputs: {u: Tracks}}\n      arm: {inputs: {tracks: new.u",
+            ),
+            ("{from: tracker, to: arm}", "{from: tracker, to: new}, {from: new, to: arm}"),
+        ],
+        [],
+    ),
+    "a step of which an end is called otherwise": (
+        TOLD,
+        [("camera", "front_camera")],
+        [f"sensing.front_camera sssa: {RENAMED.format('sensing.camera.image', 'sensing.front_camera.image')}"],
+    ),
+    "a step that nobody from outside can take any more": (
+        TOLD,
+        [(", stop: {external: Somebody presses}", ", stop: ")],
+        [
+            "acting.arm.stop/external certh: cuts step 3 of the use case `UC-1`; `sensing.camera` of CERTH and `tracking.tracker` of SSSA are part of it",
+            "acting.arm.stop/external sssa: cuts step 3 of the use case `UC-1`; `sensing.camera` of CERTH and `tracking.tracker` of SSSA are part of it",
+        ],
+    ),
+}
 REQUIREMENTS = {
     "a requirement that another component serves": (SERVING, [("[R-1, R-3]", "[R-3]")], []),
     "a requirement of a shared use case": (
@@ -216,7 +283,9 @@ REQUIREMENTS = {
 
 
 @pytest.mark.parametrize(
-    ("project", "edits", "said"), (FUNCTIONS | REQUIREMENTS).values(), ids=(FUNCTIONS | REQUIREMENTS).keys()
+    ("project", "edits", "said"),
+    (FUNCTIONS | STEPS | REQUIREMENTS).values(),
+    ids=(FUNCTIONS | STEPS | REQUIREMENTS).keys(),
 )
 def test_functions(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
     assert broken(compared, project, edits) == said
