@@ -6,6 +6,7 @@ Columns are as far apart as the words between them need. All lengths are in poin
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Literal
 
 from archgen.emit.graphviz import arrow_styles, palette
 from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes, style_box
@@ -14,7 +15,7 @@ from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart, ScenePoint
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.views.graph_shapes import Arrow, Box, Graph
-from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.views.sequence_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
 
 _HEAD_GAP = 10.0
 _TEXT_GAP = 14.0
@@ -29,6 +30,16 @@ _HEAD_LENGTHS = {"action": 12.0}
 """How long the head of an arrow is, where it is not that of most."""
 _HEAD_LENGTH = 6.0
 _BOX_STYLES = {"actor": "external", "component": "component", "composed": "composed", "unknown": "external"}
+
+
+_ARROW_STYLES: dict[MessageStyle, Literal["data", "physical", "service", "action", "internal"]] = {
+    "data": "data",
+    "service": "service",
+    "action": "action",
+    "physical": "physical",
+    "inner": "internal",
+    "broken": "data",
+}
 
 
 def lay_out_sequence(chart: SequenceChart, resolve_link: LinkResolver) -> Scene:
@@ -167,13 +178,11 @@ def _walk_loop(left: float, right: float, middle: float) -> Iterator[ScenePoint]
 
 def _make_arrow(message: SequenceMessage) -> Arrow:
     """Return a step as the arrow that stands for such a flow in all pictures; one without a connection as one that is gone."""
-    style = message.style if message.style in {"service", "action", "physical", "internal"} else "data"
-    style = "internal" if message.style == "inner" else style
     return Arrow(
         f"m{message.number}",
         "",
         "",
-        style=style,  # type: ignore[arg-type]
+        style=_ARROW_STYLES[message.style],
         ref=message.ref,
         flows=(message.tooltip or message.text or " ",),
         change="removed" if message.style == "broken" else None,

@@ -153,7 +153,7 @@ def _choose_style(lookup: Lookup, connected: ConnectedStep) -> MessageStyle:
         port_id = connected.connections[0].output or connected.connections[0].input or ""
         port = lookup.architecture.outputs.get(port_id) or lookup.architecture.inputs.get(port_id)
         return "physical" if port is not None and port.physical else "data"
-    return connected.way if connected.way in {"service", "action", "physical"} else "data"  # type: ignore[return-value]
+    return connected.way if connected.way in {"service", "action", "physical"} else "data"
 
 
 def find_carrier_ref(lookup: Lookup, connected: ConnectedStep) -> str | None:

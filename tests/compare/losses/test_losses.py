@@ -204,7 +204,7 @@ use_cases:
     steps: [{from: camera, to: tracker}, {from: tracker, to: arm}, {from: who, to: arm}, {from: arm, to: camera}]
 """
 )
-CUT = "cuts step 1 of the use case `UC-1`; `acting.arm` of TUM and `tracking.tracker` of SSSA are part of it"
+CUT = "cuts step 1 of the use case `UC-1`; `tracking.tracker` of SSSA and `acting.arm` of TUM are part of it"
 STEPS = {
     "a step whose output is gone": (
         TOLD,
