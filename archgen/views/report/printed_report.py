@@ -106,14 +106,12 @@ class _ReportPrinter:
         """Yield a sequence as the pieces that it is drawn in."""
         pieces = [each for each in self.drawings.values() if each.id == figure.graph or is_piece_of(each, figure.graph)]
         for piece in pieces:
-            is_whole = piece.id == figure.graph
-            yield (
-                figure
-                if is_whole
-                else dataclasses.replace(
-                    figure, anchor=f"figure:{piece.id}", graph=piece.id, caption=piece.title, alt=piece.alt
-                )
-            )
+            if piece.id == figure.graph:
+                yield figure
+            else:
+                caption = f"{figure.caption}: {piece.title.rpartition(': ')[2]}"
+                anchor = f"figure:{piece.id}"
+                yield dataclasses.replace(figure, anchor=anchor, graph=piece.id, caption=caption)
 
     def _print_group(self, section: Section) -> Section:
         blocks = list(_flatten(self._keep_legible(section.blocks)))
