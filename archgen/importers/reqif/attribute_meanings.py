@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 from archgen.importers.reqif.reqif_document import ReqifDocument, ReqifObject
 
@@ -45,6 +46,7 @@ PART_RELATIONS = frozenset(
 """Relations from a part to what it is part of."""
 
 
+@lru_cache(4096)
 def fold_attribute_name(name: str) -> str:
     """Return a name as names are compared: `ReqIF.ForeignID` is `foreignid`."""
     folded = "".join(letter for letter in name.casefold() if letter.isalnum())

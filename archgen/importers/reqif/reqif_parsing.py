@@ -19,6 +19,7 @@ _NAMED_ELEMENTS = frozenset(
         for sort in ("XHTML", "STRING", "ENUMERATION", "INTEGER", "REAL", "BOOLEAN", "DATE")
     }
 )
+_ENCODING_HELP = "save it as UTF-8, and let its first line say so"
 _WRONG_ENCODINGS = frozenset({expat.errors.XML_ERROR_UNKNOWN_ENCODING, expat.errors.XML_ERROR_INCORRECT_ENCODING})
 _UNENDED = frozenset(
     {
@@ -76,19 +77,20 @@ class _ReqifParser:
             self._parser.Parse(b"", True)  # noqa: FBT003
         except expat.ExpatError as error:
             raise self._explain(error) from None
+        except (LookupError, ValueError) as error:
+            # What expat asks Python for: an encoding of the file's first line.
+            words = f"its encoding cannot be read ({error})"
+            raise ReqifError(words, self._span(), _ENCODING_HELP) from None
 
     def _explain(self, error: expat.ExpatError) -> ReqifError:
         message = expat.ErrorString(error.code)
         if message in _UNENDED:
-            words = (
-                "the file ends before its elements do: it is empty"
-                if not self._is_root_seen
-                else ("the file ends before its elements do: it is only the first part of one")
-            )
+            words = "only the first part of a file is there: it ends before its elements do"
+            words = words if self._is_root_seen else "it is empty, or no XML: there is no element in it"
             return ReqifError(words, self._span(), "export it again, or copy it again as a whole")
         if message in _WRONG_ENCODINGS:
             words = f"its encoding cannot be read ({message})"
-            return ReqifError(words, self._span(), "save it as UTF-8")
+            return ReqifError(words, self._span(), _ENCODING_HELP)
         words = f"this is not XML as it should be ({message})"
         return ReqifError(words, self._span(error), "a ReqIF file is XML in UTF-8; export it again")
 

@@ -25,6 +25,7 @@ _MAX_TITLE = 160
 _PLAIN_SORTS = frozenset({"", "requirement", "req", "anforderung"})
 """Types of objects that say no more than that it is a requirement."""
 _SENTENCE_END = re.compile(r"(?<=[.!?])\s")
+_MARKS = re.compile(r"\*\*|`")
 _WORD_SIGNS = re.compile(r'[\s,:"]+')
 
 
@@ -112,7 +113,9 @@ class _RequirementTaker:
         elif self._is_heading(values):
             self._headings[entry.id] = _fold(values.get("heading") or values.get("name") or values.get("text", ""))
             reason = "a heading" if values.get("heading") else f"no requirement ({_fold(values.get('sort', ''))})"
-            self._account("left out", entry, reason=reason, name=name or self._headings[entry.id])
+            self._account(
+                "left out", entry, reason=reason, name=" ".join(filter(None, [name, self._headings[entry.id]]))
+            )
         else:
             self._take_requirement(entry, values)
             derived_names = _DERIVED_ATTRIBUTES if type_name == REQUIREMENT_TYPE else frozenset()
@@ -195,10 +198,11 @@ class _RequirementTaker:
 def _describe(name: str, text: str, more: str) -> dict[str, Any]:
     """Return title and description of an object from its name and its texts."""
     if not name:
-        first_line = _fold(text.partition("\n\n")[0])
+        # A title is plain text.
+        first_line = _MARKS.sub("", _fold(text.partition("\n\n")[0]))
         if len(first_line) <= _MAX_TITLE and first_line == _fold(text):
             return {"title": first_line, **({"description": more} if more else {})}
-        name = _SENTENCE_END.split(first_line)[0]
+        name = _SENTENCE_END.split(first_line, maxsplit=1)[0]
         name = name if len(name) <= _MAX_TITLE else f"{name[: _MAX_TITLE - 3].rstrip()}..."
     description = "\n\n".join(part for part in (text, more) if part and _fold(part) != name)
     return {"title": name, **({"description": description} if description else {})}

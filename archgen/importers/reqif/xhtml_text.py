@@ -30,7 +30,7 @@ class XhtmlText:
         elif name in _MARKS:
             self._parts.append(_MARKS[name])
         elif name in {"ul", "ol"}:
-            self._parts.append("\n" if self._lists else "\n\n")
+            self._parts.append("" if self._lists else "\n\n")
             self._lists.append(0 if name == "ol" else None)
         elif name == "li":
             self._start_item()
@@ -48,13 +48,13 @@ class XhtmlText:
             self._parts.append(_MARKS[name])
         elif name in {"ul", "ol"} and self._lists:
             self._lists.pop()
-            self._parts.append("\n" if self._lists else "\n\n")
+            self._parts.append("" if self._lists else "\n\n")
         elif name in {"td", "th"}:
             self._parts.append(" | ")
 
     def add(self, text: str) -> None:
         """Take a piece of text."""
-        self._parts.append(_BLANKS.sub(" ", text))
+        self._parts.append(_fold_blanks(text))
 
     def _start_item(self) -> None:
         number = self._lists[-1] if self._lists else None
@@ -65,6 +65,12 @@ class XhtmlText:
 
     def finish(self) -> str:
         """Return the text, without blanks at its ends."""
-        text = _EMPTY_LINES.sub("\n\n", "".join(self._parts))
-        lines = (line.strip(" \t").removesuffix(" |") for line in text.split("\n"))
+        text = "".join(self._parts).strip("\n")
+        lines = (_fold_blanks(line).strip(" ").removesuffix(" |") for line in text.split("\n"))
         return _EMPTY_LINES.sub("\n\n", "\n".join(lines)).strip("\n").replace(NO_BREAK_SPACE, " ").strip()
+
+
+def _fold_blanks(text: str) -> str:
+    """Fold runs of blanks to one; most texts have none, and need no search by a pattern."""
+    has_runs = "\n" in text or "  " in text or "\t" in text or "\r" in text
+    return _BLANKS.sub(" ", text) if has_runs else text
