@@ -25,12 +25,13 @@ from archgen.findings import (
     option_settings,
     rule_table,
 )
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import (
     chapter_pictures,
     element_outline,
     interface_sources,
     library_merging,
+    named_files,
     parameter_files,
     parameter_reading,
     report_chapters,
@@ -46,6 +47,7 @@ from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
+from archgen.project.commit_days import find_commit_day
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
@@ -260,11 +262,17 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     for path, text in read_parameters.texts.items():
         loaded_project.sources.add_text(path, text)
     architecture = transform.transform_architecture(read_parameters.architecture)
+    commit_day = find_commit_day(loaded_project.files, architecture)
+    if commit_day is not None:
+        architecture = replace(architecture, commit_day=commit_day)
     analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     missing_pictures = chapter_pictures.find_missing_pictures(
         project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
     )
+    files_by_element = tuple(named_files.list_named_files(merged_table))
+    project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
+    named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
     missing_files = (
         tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
     )
@@ -285,6 +293,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *chapter_findings,
         *missing_pictures,
         *missing_files,
+        *named_file_findings,
         *missing_verifications,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(

@@ -49,6 +49,7 @@ ELEMENTS = {
     "chains": "chain",
     "views": "view",
     "policies": "policy",
+    "properties": "property_declaration",
 }
 NAMES = {
     *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
@@ -91,10 +92,14 @@ def project(text: str) -> dict[str, Any]:
             },
         },
         "groups": {
-            "a": {"owner": "p", "urls": {text[:60]: "https://example.org/"}, "components": {"x": _component({}, kind)}},
+            "a": {
+                "owner": "p",
+                "urls": {text[:60]: "https://example.org/"},
+                "components": {"x": _component({}, kind, text)},
+            },
             "b": {
                 "components": {
-                    "y": _component({"in": {"from": "a.x.out"}}, kind),
+                    "y": _component({"in": {"from": "a.x.out"}}, kind, text),
                     "z": {},
                     "s": _compose(),
                     "w": {"is": "lib.u"},
@@ -104,6 +109,18 @@ def project(text: str) -> dict[str, Any]:
         "nodes": {
             "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
             "m": {"implements": "b.y", "host": "h"},
+            "s": {
+                "kind": ["program"],
+                "host": "h",
+                "command": ["stage", text, f"-{text}"],
+                "start": {
+                    "after": ["n"],
+                    "environment": {"WORLD": text},
+                    "directory": text,
+                    "user": "robot",
+                    "ready": {"file": text, "topic": text, "service": text, "log": text, "within": "1 s"},
+                },
+            },
         },
         "types": {
             kind: {"message": "std_msgs/msg/String"},
@@ -119,6 +136,8 @@ def project(text: str) -> dict[str, Any]:
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
         "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},
+        "properties": {"declared": {}, "chosen": {"of": ["component"], "choices": [text]}},
+        "glossary": {kind[:90].strip(): text, "functionality": text},
     }
     _fill(data["project"], "project", text)
     for section in ELEMENTS.keys() & data.keys():
@@ -135,13 +154,21 @@ def _compose() -> dict[str, Any]:
     return {"inputs": {"in": {"from": "a.x.out"}}, "outputs": {"made": {"from": "i.made"}}, "components": inner}
 
 
-def _component(inputs: dict[str, Any], kind: str) -> dict[str, Any]:
+def _component(inputs: dict[str, Any], kind: str, text: str) -> dict[str, Any]:
     outside = {"medium": "physical"}
     return {
         "requirements": ["R-1", f"{kind} {kind}"],
         "performance": {"overall": {}},
         "inputs": {**inputs, "felt": {**outside}},
-        "outputs": {"out": {"type": kind, "frame": "map"}, "seen": {**outside, "type": kind}},
+        "outputs": {
+            "out": {
+                "type": kind,
+                "frame": "map",
+                "promise": {"rate": "1 Hz", "unit": text, "frame": "map", "range": [0, "1"]},
+                "deprecated": {"until": "2999-01-01", "use": "seen"},
+            },
+            "seen": {**outside, "type": kind},
+        },
     }
 
 
@@ -152,7 +179,13 @@ def _fill(element: dict[str, Any], kind: str, text: str) -> None:
             for inner in element[key].values():
                 _fill(inner, ELEMENTS[key], text)
         elif key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
-            filled: dict[str, dict[str, Any]] = {"text": {key: text}, "prose": {key: text}, "texts": {key: [text]}}
+            filled: dict[str, dict[str, Any]] = {
+                "text": {key: text},
+                "prose": {key: text},
+                "texts": {key: [text]},
+                "properties": {key: {"free": text, "declared": text}},
+                "hints": {key: {"program": [text, {text[:60]: text}]}},
+            }
             element |= filled.get(sort, {})
 
 

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from archgen.compose import ExpandedProject
 from archgen.compose.project_expansion import ComponentShell
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
+from archgen.link.promise_reading import read_deprecation, read_promise
 from archgen.model.component import Output
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+_PROMISING_KEYS = frozenset({"promise", "version", "deprecated"})
 
 
 @dataclass(slots=True)
@@ -31,6 +35,10 @@ class ElementOutline:
     """By component id and name, those of composed components included."""
     undeclared_inputs: list[tuple[str, MappingEntry]] = field(default_factory=list)
     """Inputs that `to` at an output names and nobody declares, with their components."""
+    promises_something: bool = False
+    """Whether an output has a promise, a version, or is deprecated."""
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    """What is wrong with promises."""
     members: dict[str, list[str]] = field(default_factory=dict)
     """The components that stand directly in each group, leaves first, by complete ids."""
 
@@ -113,13 +121,19 @@ def _outline_ports(element_outline: ElementOutline, component_id: str, body: Map
         )
         element_outline.undeclared_inputs += [(component_id, entry) for entry in undeclared_entries]
     element_outline.outputs[component_id] = {
-        e.key: _declare_output(component_id, e) for e in mapping_values.get_mapping(body, "outputs")
+        e.key: _declare_output(element_outline, component_id, e) for e in mapping_values.get_mapping(body, "outputs")
     }
 
 
-def _declare_output(component: str, entry: MappingEntry) -> Output:
+def _declare_output(element_outline: ElementOutline, component: str, entry: MappingEntry) -> Output:
     body = mapping_values.get_body(entry)
     type_text = mapping_values.get_text(body, "type")
+    said: dict[str, Any] = {}
+    if not _PROMISING_KEYS.isdisjoint(body.entries):
+        element_outline.promises_something = True
+        said["promise"] = read_promise(body, component, element_outline.diagnostics)
+        said["version"] = mapping_values.get_text(body, "version")
+        said["deprecated"] = read_deprecation(body, component, element_outline.diagnostics)
     return Output(
         id=f"{component}.{entry.key}",
         name=entry.key,
@@ -129,7 +143,10 @@ def _declare_output(component: str, entry: MappingEntry) -> Output:
         physical=mapping_values.get_text(body, "medium") == "physical",
         frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
+        urls=mapping_values.get_text_mapping(body, "urls"),
+        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
         type_at=mapping_values.get_span(body, "type"),
         frame_at=mapping_values.get_span(body, "frame"),
+        **said,
     )

@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -43,6 +44,7 @@ class Partner:
     contact: str | None = None
     reviewers: tuple[str, ...] = ()
     """The reviewers of its files as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -55,6 +57,7 @@ class UseCase:
     description: str | None = None
     actors: Mapping[str, Actor] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -76,6 +79,7 @@ class Chain:
     through: tuple[Waypoint, ...] = ()
     deadline: Quantity | None = None
     requirements: tuple[str, ...] = ()
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
     """The entries of `through` that name no element: such a chain is not judged."""
@@ -95,6 +99,7 @@ class View:
     depth: int | None = None
     """How many levels of composed components it opens; None where it does not say."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     show_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
@@ -107,9 +112,19 @@ class Policy:
     title: str
     forbid_from: str
     forbid_to: str
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     to_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class GlossaryTerm:
+    """What a term means."""
+
+    term: str
+    text: str
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +169,8 @@ class Architecture:
     project: ProjectInfo
     repository: SourceRepository | None = None
     """Where its files are on the web; None where the project does not say."""
+    commit_day: str | None = None
+    """The day of the newest commit, as YYYY-MM-DD; None where nothing ends on a day, and where git does not say."""
     distro: str | None = None
     distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()
@@ -189,6 +206,10 @@ class Architecture:
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
+    properties: Mapping[str, PropertyDeclaration] = field(default_factory=dict)
+    """What the project says of properties, by id; others are free."""
+    glossary: Mapping[str, GlossaryTerm] = field(default_factory=dict)
+    """What terms mean, by the term as written."""
     review: ReviewSettings = field(default_factory=ReviewSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)

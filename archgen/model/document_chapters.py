@@ -9,14 +9,17 @@ GENERATED_CHAPTERS = (
     "groups",
     "frames",
     "deployment",
+    "start_up",
     "timing",
     "chains",
     "views",
     "types",
     "connections",
     "requirements",
+    "properties",
     "open_points",
     "statistics",
+    "glossary",
 )
 """The generated chapters by their names in `report.chapters`, in their default order."""
 

@@ -46,8 +46,12 @@ _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
 _CONTAINER_FORM = ElementForm(("host",), raw_keys=frozenset({"parameters"}))
 _FRAME_FORM = ElementForm(("parent",))
+_START_FORM = ElementForm(("after",), frozenset({"after"}), part_forms={"ready": ElementForm(("wait",))})
 _COMPONENT_NODE_FORM = ElementForm(
-    list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})
+    list_keys=frozenset({"kind", "command"}),
+    keyed_forms=_USE_FORMS,
+    part_forms={"start": _START_FORM},
+    raw_keys=frozenset({"parameters"}),
 )
 
 _COMPONENT_PARTS = {
@@ -75,9 +79,9 @@ _COMPONENT_TYPE_FORM = ElementForm(
 )
 _NODE_FORM = ElementForm(
     ("implements",),
-    frozenset({"implements", "kind"}),
+    frozenset({"implements", "kind", "command"}),
     keyed_forms=_USE_FORMS,
-    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS)},
+    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS), "start": _START_FORM},
     raw_keys=frozenset({"parameters"}),
 )
 # One latency is both the best and the worst: a constant.
@@ -108,6 +112,7 @@ _ROOT_FORM = ElementForm(
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
+        "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
         "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
@@ -214,7 +219,7 @@ def _normalise_below(key: str, mapping: MappingNode, form: ElementForm) -> None:
         element_form = form.keyed_forms[key]
         for entry in mapping.entries.values():
             entry.value = _normalise_element(entry.value, element_form)
-    elif key not in form.raw_keys:
+    elif key not in form.raw_keys and key != "hints":
         _normalise_mapping(mapping, _PLAIN_FORM)
 
 

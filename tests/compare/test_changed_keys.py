@@ -66,6 +66,14 @@ project: {id: robot, title: Robot}
         ("get: T", "get: {response: T, call: synchronous}", "component g.p", "operations.get:call", None, "synchronous", "`g.p`: call of the operation `get` set to `synchronous`"),
         ("open: [x]", "open: [x, y]", "component g.p", "open", ["x"], ["x", "y"], "`g.p`: open sets `y` added"),
         ("{deep: {on: true, level: 1}}", "{deep: {on: true, level: 1}}\n    parameter_commands: {d: [cat, x]}", "node na", "parameter_commands.d", None, "cat x", "node `na`: command for the parameter `d` set to `cat x`"),
+        ("open: [x]", "open: [x], properties: {trl: 5}", "component g.p", "properties.trl", None, "5", "`g.p`: property `trl` set to `5`"),
+        ("open: [x]", "open: [x], hints: {orca: {tag: [a, b]}}", "component g.p", "hints.orca.tag", None, "[a, b]", "`g.p`: hint `orca.tag` set to `[a, b]`"),
+        ("open: [x]", "open: [x], status: adapted", "component g.p", "status", None, "adapted", None),
+        ("open: [x]", "open: [x], contact: x@y.eu", "component g.p", "contact", None, "x@y.eu", "`g.p`: contact set to `x@y.eu`"),
+        ("open: [x]", "open: [x], image: x.png", "component g.p", "image", None, "x.png", "`g.p`: picture set to `x.png`"),
+        ("cores: 4", "cores: 4, properties: {ram: 8 GB}", "host pc", "properties.ram", None, "8 GB", "host `pc`: property `ram` set to `8 GB`"),
+        ("partners: {certh: CERTH", "properties: {trl: {}}\npartners: {certh: CERTH", "project robot", "properties.trl", None, "declared", "the project: property `trl` set to `declared`"),
+        ("partners: {certh: CERTH", "glossary: {MCI: x}\npartners: {certh: CERTH", "project robot", "glossary.MCI", None, "x", "the project: term `MCI` set to `x`"),
         ("title: Robot", "title: Car", "project robot", "title", "Robot", "Car", "the project: title `Robot` → `Car`"),
         ("inputs: {x: a.x}", "inputs: {x: {from: a.x, optional: true}}", "input g.b.x", "optional", None, True, "`g.b.x` is optional now"),
         ("partners: {certh: CERTH", "rules: {unread-output: off}\npartners: {certh: CERTH", "project robot", "rules.unread-output", None, "off", "the project: severity of the rule `unread-output` set to `off`"),
@@ -206,3 +214,40 @@ def test_an_option_that_is_written_in_another_way_has_not_changed(told: Told) ->
     assert told("rules: {late-chain: {margin: 20 %}}\n", "rules: {late-chain: {margin: 2.5 %}}\n") == [
         "changed project robot: the project: `margin` of the rule `late-chain` `20 %` → `2.5 %`"
     ]
+
+
+START = """\
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes:
+  na: {implements: a, kind: lifecycle, command: [run, it], start: {phase: core, by: m, ready: {topic: up, within: 2 s}, environment: {A: b}}}
+  nb: {implements: b, start: {after: na, user: robot}}
+  m: {kind: program, command: [m]}
+"""
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "phase of its start `core` → `network`"),
+        ("after: na", "after: [na, m]", "nb", "start.after", ["na"], ["m", "na"], " now starts after `m`"),
+        ("topic: up", "topic: /up", "na", "start.ready.topic", None, None, None),
+        ("topic: up", "topic: ~/up", "na", "start.ready.topic", "/up", "/na/up", "topic that shows it is up `/up` → `/na/up`"),
+        ("within: 2 s", "within: 3 s", "na", "start.ready.within", "2 s", "3 s", "longest time until it is up `2 s` → `3 s`"),
+        ("A: b", "A: c", "na", "start.environment.A", "b", "c", "environment variable `A` `b` → `c`"),
+        (", user: robot", "", "nb", "start.user", "robot", None, "user as whom it runs no longer given (it was `robot`)"),
+        ("by: m", "state: inactive, by: m", "na", "start.state", None, "inactive", "state that it is brought into set to `inactive`"),
+        ("[run, it]", '[run, "it all"]', "na", "command", "run it", "run 'it all'", None),
+    ],
+)  # fmt: skip
+def test_keys_of_the_start_up(compared: Compared, case: tuple[str, str, str, str, object, object, str | None]) -> None:
+    old, new, element, key, before, after, text = case
+    assert old in START
+    changes = compared(START, START.replace(old, new, 1)).changes
+    if before is after is None:
+        assert changes == ()
+        return
+    (change,) = changes
+    assert (f"{change.element_kind} {change.element_id}", change.key) == (f"node {element}", key)
+    assert (change.before, change.after) == (before, after)
+    if text is not None:
+        assert change.text == (f"node `{element}`{text}" if text.startswith(" ") else f"node `{element}`: {text}")

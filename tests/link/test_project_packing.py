@@ -69,6 +69,7 @@ def packed_again(checked: CheckedProject, folder: Path) -> CheckedProject:
         "examples/cleaning_robot",
         "examples/arm",
         "examples/vehicle/two_lasers",
+        "examples/bringup",
         "example_ramcip",
     ],
 )
@@ -252,7 +253,25 @@ WORDS = st.text(
     | st.sampled_from("\n:#-'\"\\ {}[]&*!|>%@`,?~0123456789"),
     max_size=20,
 )
-OUTPUTS = st.dictionaries(IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"type": WORDS, "external": WORDS})))
+DATA = st.recursive(
+    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), WORDS),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS.filter(bool), inner, max_size=3),
+    max_leaves=6,
+)
+PROMISES = st.fixed_dictionaries(
+    {},
+    optional={
+        "rate": st.sampled_from(["10 Hz", "0.5 kHz", "0 Hz"]),
+        "unit": WORDS,
+        "frame": IDS,
+        "range": st.lists(st.sampled_from([0, 1.5, -2, "3 m", ".inf", "1e3"]), max_size=3),
+    },
+)
+DEPRECATIONS = st.fixed_dictionaries({}, optional={"until": st.sampled_from(["2999-01-01", "2999-02-30"]), "use": IDS})
+SAID = {"promise": PROMISES, "version": WORDS, "deprecated": DEPRECATIONS}
+OUTPUTS = st.dictionaries(
+    IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"type": WORDS, "external": WORDS, **SAID}))
+)
 INPUTS = st.dictionaries(
     IDS, st.one_of(IDS, st.lists(IDS), st.fixed_dictionaries({}, optional={"from": IDS, "description": WORDS}))
 )
@@ -268,14 +287,25 @@ COMPONENT = st.one_of(
             "inputs": INPUTS,
             "outputs": OUTPUTS,
             "tags": st.lists(WORDS, max_size=2),
+            "properties": st.dictionaries(IDS, st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), WORDS)),
+            "hints": st.dictionaries(IDS, DATA),
+            "status": st.sampled_from(["planned", "existing"]),
             "requirements": st.lists(WORDS, max_size=2),
         },
     ),
 )
-DATA = st.recursive(
-    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), WORDS),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS.filter(bool), inner, max_size=3),
-    max_leaves=6,
+START = st.fixed_dictionaries(
+    {},
+    optional={
+        "phase": st.sampled_from(["core", "cores"]),
+        "after": st.one_of(IDS, st.lists(IDS, max_size=2)),
+        "ready": st.one_of(
+            st.just("2 s"), st.fixed_dictionaries({}, optional={"port": st.integers(0, 90000), "log": WORDS})
+        ),
+        "respawn": st.booleans(),
+        "environment": st.dictionaries(st.sampled_from(["port", "once", "A"]), st.one_of(WORDS, st.integers())),
+        "by": IDS,
+    },
 )
 PROJECTS = st.fixed_dictionaries(
     {"archgen": st.just(1)},
@@ -283,11 +313,24 @@ PROJECTS = st.fixed_dictionaries(
         "project": st.fixed_dictionaries({}, optional={"title": WORDS, "description": WORDS}),
         "groups": st.dictionaries(IDS, st.fixed_dictionaries({"components": st.dictionaries(IDS, COMPONENT)})),
         "nodes": st.dictionaries(
-            IDS, st.fixed_dictionaries({}, optional={"implements": IDS, "parameters": st.dictionaries(IDS, DATA)})
+            IDS,
+            st.fixed_dictionaries(
+                {},
+                optional={
+                    "implements": IDS,
+                    "parameters": st.dictionaries(IDS, DATA),
+                    "command": st.one_of(st.just("stage"), st.lists(WORDS, max_size=2)),
+                    "start": st.one_of(IDS, st.lists(IDS, max_size=2), START),
+                },
+            ),
         ),
         "frames": st.dictionaries(
             IDS, st.one_of(st.none(), IDS, st.fixed_dictionaries({"by": IDS, "static": st.booleans()}))
         ),
+        "properties": st.dictionaries(
+            IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"range": st.lists(st.integers(), max_size=3)}))
+        ),
+        "glossary": st.dictionaries(WORDS, WORDS),
         "requirements": st.dictionaries(
             IDS,
             st.one_of(
@@ -337,6 +380,8 @@ def check_fixed_point(tmp_path_factory: pytest.TempPathFactory, data: object) ->
     assert again.architecture.components == checked.architecture.components
     assert again.architecture.nodes == checked.architecture.nodes
     assert again.architecture.types == checked.architecture.types
+    assert again.architecture.properties == checked.architecture.properties
+    assert again.architecture.glossary == checked.architecture.glossary
     # A reading error keeps what it may explain quiet; packed, the wrong value is gone, and then it is told.
     if not checked.has_errors:
         assert [d for d in again.findings if d.severity == "error"] == []
@@ -379,6 +424,34 @@ resources: {gpu: pc, npu: {scheduling: fixed_priority}}
         assert getattr(again.architecture, name) == getattr(checked.architecture, name)
 
 
+def test_promises_pack_to_the_same(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "p",
+        archgen_yaml="archgen: 1\nsources: ['*.yaml']\nproject: {id: r, title: R}\nlibraries: {lib: {component_types: {x: {deprecated: {use: y}}, y: {version: 2}, z: }, types: {L: {deprecated: {use: M}}, M: std_msgs/msg/Bool}}}\n",
+        a_yaml="groups: {g: {components: {a: {outputs: {o: {type: L, promise: {rate: 10 Hz, range: [0, 1.50]}}, p: {type: T, version: 1.10, deprecated: {until: 2999-01-01, use: o}}}}, b: {is: lib.x}}}}\n",
+        b_yaml="groups: {g: {components: {a: {outputs: {o: {promise: {unit: m, max_age: 1 s}}, p: {deprecated: {}}}}}}}\n"
+        "types: {T: {message: std_msgs/msg/Bool, version: 2, deprecated: {use: S}}, S: std_msgs/msg/String}\nnodes: {a: a}\n",
+    )
+    data = yaml.safe_load(text_of(checked))
+    assert data["groups"]["g"]["components"]["a"]["outputs"] == {
+        "o": {"type": "L", "promise": {"rate": "10 Hz", "range": [0, 1.5], "unit": "m", "max_age": "1 s"}},
+        "p": {"type": "T", "version": "1.10", "deprecated": {"until": "2999-01-01", "use": "o"}},
+    }
+    # What replaces something of a library belongs to what is used of it.
+    assert list(data["libraries"]["lib"]["component_types"]) == ["x", "y"]
+    assert list(data["libraries"]["lib"]["types"]) == ["L", "M"]
+    again = packed_again(checked, tmp_path)
+    for name in ("types", "outputs", "component_types"):
+        assert getattr(again.architecture, name) == getattr(checked.architecture, name)
+    deprecated, type_deprecated = (
+        checked.architecture.component_types["lib.x"].deprecated,
+        checked.architecture.types["L"].deprecated,
+    )
+    assert deprecated
+    assert type_deprecated
+    assert (deprecated.target, type_deprecated.target) == ("lib.y", "M")
+
+
 def test_frames_pack_to_the_same(tmp_path: Path) -> None:
     slices = {
         "archgen_yaml": "archgen: 1\nsources: ['*.yaml']\nproject: {id: r, title: R}\n",
@@ -396,3 +469,24 @@ def test_frames_pack_to_the_same(tmp_path: Path) -> None:
     again = packed_again(checked, tmp_path)
     for name in ("frames", "types", "outputs"):
         assert getattr(again.architecture, name) == getattr(checked.architecture, name)
+
+
+def test_what_is_written_of_the_start_up_is_packed_as_it_was_written(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+project: {id: r, title: R}
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes:
+  a: {implements: a, package: p, executable: e, start: {phase: core, ready: {topic: /g/a/x, within: 2 s}, environment: {port: "1", once: no}}}
+  b: {implements: b, command: run, start: [a, stage]}
+  stage: {kind: program, command: [stage, 1.10, --fast], start: {phase: simulators, ready: {port: 6665}, respawn: true, respawn_delay: 1 s}}
+"""
+    checked = project(tmp_path / "p", archgen_yaml=text)
+    nodes = yaml.safe_load(text_of(checked))["nodes"]
+    assert nodes["a"]["start"]["environment"] == {"port": "1", "once": "no"}
+    assert (nodes["b"]["command"], nodes["b"]["start"]) == (["run"], {"after": ["a", "stage"]})
+    assert nodes["stage"]["command"] == ["stage", "1.10", "--fast"]
+    assert nodes["stage"]["start"]["ready"] == {"port": 6665}
+    assert nodes["stage"]["start"]["respawn"] is True
+    again = packed_again(checked, tmp_path)
+    assert again.architecture.nodes == checked.architecture.nodes

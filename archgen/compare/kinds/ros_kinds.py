@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import NamedTuple
@@ -9,6 +10,7 @@ from typing import NamedTuple
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.message_kind import MESSAGE
 from archgen.compare.kinds.shared_keys import (
+    ANNOTATIONS,
     CO_OWNERS,
     DESCRIPTION,
     NAME_FEATURES,
@@ -23,6 +25,7 @@ from archgen.compare.kinds.shared_keys import (
     text_feature,
     timing_key,
 )
+from archgen.compare.kinds.start_keys import START_KEYS, read_start
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
 from archgen.diagnostics.source_span import NO_SPAN
@@ -111,6 +114,7 @@ NODE = KindSpec(
         KeySpec("package", effect=Effect.SYSTEM),
         KeySpec("executable", effect=Effect.SYSTEM),
         KeySpec("plugin", effect=Effect.SYSTEM),
+        KeySpec("command", lambda node, _: " ".join(map(shlex.quote, node.command)) or None, Effect.SYSTEM),
         KeySpec(
             "container",
             lambda node, context: context.common_id("container", node.container),
@@ -131,6 +135,7 @@ NODE = KindSpec(
         KeySpec("scheduling", worsening=Worsening.ALWAYS),
         KeySpec("reentrant", lambda node, _: node.reentrant or None, worsening=Worsening.ALWAYS),
         KeySpec("callback_groups.", _read_callback_groups, worsening=Worsening.ALWAYS),
+        KeySpec("start.", read_start, Effect.SYSTEM, inner=START_KEYS),
         KeySpec("status", effect=Effect.SYSTEM, verb="is"),
         KeySpec("parameter_files", effect=Effect.SYSTEM),
         TAGS,
@@ -138,6 +143,7 @@ NODE = KindSpec(
         KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
         KeySpec("parameter_commands.", _read_commands, Effect.SYSTEM),
         timing_key(_read_timing),
+        *ANNOTATIONS,
     ),
     # Of a node that is planned since its component says where it will run, that is written: it has a place in the files.
     elements=lambda version: {

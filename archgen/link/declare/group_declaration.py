@@ -11,6 +11,7 @@ from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.parameter_declaration import declare_operations
+from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
@@ -22,6 +23,7 @@ from archgen.model.architecture import PortEdge, list_leaf_ports
 from archgen.model.component import (
     Component,
     ComponentRole,
+    ComponentStatus,
     Connection,
     Group,
     Input,
@@ -34,6 +36,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _Port = TypeVar("_Port", Input, Output)
 _ROLES = frozenset(get_args(ComponentRole))
+_STATUSES = frozenset(get_args(ComponentStatus))
 
 
 class DeclaredGroups(NamedTuple):
@@ -74,6 +77,7 @@ def declare_groups(
         resolver,
         wiring,
         parameters,
+        promised_outputs=PromisedOutputs(outline, sources, parameters, resolver),
         outside_readers=sources.list_given_outside() if sources else {},
     )
     open_shells = OpenShells(outline, sources) if sources else None
@@ -98,6 +102,7 @@ class _GroupDeclarer:
     resolver: ReferenceResolver
     wiring: InputWiring
     parameters: HandedParameters
+    promised_outputs: PromisedOutputs
     owners: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """The owners of groups and composed components, by complete id."""
     outside_readers: Mapping[str, MappingNode] = field(default_factory=dict)
@@ -124,6 +129,7 @@ class _GroupDeclarer:
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
             layout=mapping_values.get_layout(body),
+            annotations=mapping_values.get_annotations(body),
             components=components,
             at=entry.key_span,
         )
@@ -226,7 +232,10 @@ class _GroupDeclarer:
             inputs={port_name: self._fill_in_frame(port) for port_name, port in inputs.items()},
             # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=body.get("inputs") is not None,
-            outputs={port_name: self._fill_in_frame(port) for port_name, port in outputs.items()},
+            outputs={
+                port_name: self.promised_outputs.complete_output(self._fill_in_frame(port))
+                for port_name, port in outputs.items()
+            },
             outputs_known=body.get("outputs") is not None,
             parameters=self.parameters.find_parameters(component_id),
             open=mapping_values.get_texts(body, "open"),
@@ -238,7 +247,11 @@ class _GroupDeclarer:
             ),
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
+            status=_read_status(body),
+            contact=mapping_values.get_text(body, "contact"),
+            image=mapping_values.get_text(body, "image"),
             layout=mapping_values.get_layout(body),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             role_at=mapping_values.get_span(body, "role"),
         )
@@ -247,6 +260,11 @@ class _GroupDeclarer:
 def _read_role(body: MappingNode) -> ComponentRole | None:
     role = mapping_values.get_text(body, "role")
     return role if role in _ROLES else None  # type: ignore[return-value]
+
+
+def _read_status(body: MappingNode) -> ComponentStatus | None:
+    status = mapping_values.get_text(body, "status")
+    return status if status in _STATUSES else None  # type: ignore[return-value]
 
 
 def _read_requirements(body: MappingNode) -> Iterator[RequirementUse]:

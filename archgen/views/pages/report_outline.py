@@ -19,7 +19,14 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
+from archgen.views.tables import (
+    architecture_tables,
+    frame_table,
+    project_growth,
+    property_tables,
+    requirement_tables,
+    start_table,
+)
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -162,6 +169,13 @@ class _ChapterMaker:
         ]
         return [Section("page:hosts", "Hosts and links", tuple(blocks), page_break=True)] if blocks else []
 
+    def make_start_up(self) -> list[Section]:
+        """Make the chapter of the start-up."""
+        if self.edition.level == "functional":
+            return []
+        blocks = (*self._make_figures("start_up"), *start_table.make_start_blocks(self.lookup))
+        return [Section("page:start_up", "Start-up", blocks, page_break=True)] if blocks else []
+
     def make_timing(self) -> list[Section]:
         """Make the chapter of figures of timing."""
         timing_lookup = self.lookup.timing
@@ -214,6 +228,17 @@ class _ChapterMaker:
             requirement_tables.make_free_requirement_table(self.lookup),
         )
 
+    def make_properties(self) -> list[Section]:
+        """Make the appendix of properties."""
+        sections = property_tables.make_property_sections(self.lookup)
+        return (
+            [Section("page:properties", "Properties", (), sections, appendix=True, page_break=True)] if sections else []
+        )
+
+    def make_glossary(self) -> list[Section]:
+        """Make the appendix of terms."""
+        return self._make_appendix("glossary", "Glossary", property_tables.make_glossary_table(self.lookup))
+
     def make_open_points(self) -> list[Section]:
         """Make the appendix of findings."""
         summary = Paragraph(
@@ -243,14 +268,17 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,
     "deployment": _ChapterMaker.make_deployment,
+    "start_up": _ChapterMaker.make_start_up,
     "timing": _ChapterMaker.make_timing,
     "chains": _ChapterMaker.make_chains,
     "views": _ChapterMaker.make_views,
     "types": _ChapterMaker.make_types,
     "connections": _ChapterMaker.make_connections,
     "requirements": _ChapterMaker.make_requirements,
+    "properties": _ChapterMaker.make_properties,
     "open_points": _ChapterMaker.make_open_points,
     "statistics": _ChapterMaker.make_statistics,
+    "glossary": _ChapterMaker.make_glossary,
 }
 """What makes each of the generated chapters, by its name in `GENERATED_CHAPTERS`."""
 
