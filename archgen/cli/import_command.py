@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.edit.requirement_slice import RequirementSlice
     from archgen.importers.reqif import ImportedRequirements
+    from archgen.importers.reqif.reqif_document import ReqifDocument
     from archgen.pipeline import CheckedProject
 
 DEFAULT_SLICE = "requirements.yaml"
@@ -62,7 +63,7 @@ def _refuse_single_file(checked_project: CheckedProject) -> None:
         raise click.UsageError(msg)
 
 
-def _read_file(file: Path):  # noqa: ANN202 - the class is imported where it is needed
+def _read_file(file: Path) -> ReqifDocument:
     from archgen.diagnostics.diagnostic import Diagnostic, Severity
     from archgen.importers.reqif import read_reqif_file
     from archgen.importers.reqif.reqif_parsing import ReqifError
