@@ -251,3 +251,30 @@ def test_keys_of_the_start_up(compared: Compared, case: tuple[str, str, str, str
     assert (change.before, change.after) == (before, after)
     if text is not None:
         assert change.text == (f"node `{element}`{text}" if text.startswith(" ") else f"node `{element}`: {text}")
+
+
+TREE = """\
+use_cases: {UC-1: Walks}
+requirements:
+  R-1: {title: Safe, priority: must, verified_by: [UC-1, a.py]}
+  R-2: Quiet
+  R-3: {title: Slow, parent: R-1, kind: safety, rationale: Because, source: D1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("parent: R-1", "parent: R-2", "requirement `R-3`: parent `R-1` → `R-2`"),
+        ("parent: R-1", "parent: [R-2, R-1]", "requirement `R-3` is now part of `R-2`"),
+        ("must", "should", "requirement `R-1`: priority `must` → `should`"),
+        (", kind: safety", "", "requirement `R-3`: kind no longer given (it was `safety`)"),
+        ("Because", "Since", "requirement `R-3`: rationale `Because` → `Since`"),
+        ("[UC-1, a.py]", "UC-1", "requirement `R-1` is no longer verified by `a.py`"),
+        ("[UC-1, a.py]", "[a.py, UC-1]", None),
+    ],
+)
+def test_keys_of_requirements(compared: Compared, old: str, new: str, text: str | None) -> None:
+    assert old in TREE
+    changes = compared(TREE, TREE.replace(old, new, 1)).changes
+    assert [change.text for change in changes] == ([text] if text else [])
