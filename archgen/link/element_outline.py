@@ -143,6 +143,8 @@ def _declare_output(element_outline: ElementOutline, component: str, entry: Mapp
         physical=mapping_values.get_text(body, "medium") == "physical",
         frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
+        urls=mapping_values.get_text_mapping(body, "urls"),
+        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
         type_at=mapping_values.get_span(body, "type"),
         frame_at=mapping_values.get_span(body, "frame"),

@@ -6,7 +6,7 @@ from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare import deployment_declaration, section_declaration
+from archgen.link.declare import deployment_declaration, property_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.frame_declaration import declare_frames
@@ -16,6 +16,7 @@ from archgen.link.declare.node_declaration import NodeContext, declare_nodes, re
 from archgen.link.declare.requirement_declaration import declare_requirements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
+from archgen.link.declare.variant_declaration import declare_variants
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
@@ -51,7 +52,7 @@ def link_project(  # noqa: PLR0913 - all by name
     diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
-    resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
+    resolver = make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     parameters = HandedParameters(element_outline, diagnostics)
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
@@ -73,6 +74,8 @@ def link_project(  # noqa: PLR0913 - all by name
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
     frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
     component_types = declare_component_types(expansion, resolver)
+    properties = property_declaration.declare_properties(root, diagnostics)
+    glossary = property_declaration.declare_glossary(root, diagnostics)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference
@@ -104,6 +107,9 @@ def link_project(  # noqa: PLR0913 - all by name
         chains=chains,
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),
+        variants=declare_variants(root),
+        properties=properties,
+        glossary=glossary,
         review=section_declaration.declare_review(root),
         repository=section_declaration.declare_repository(root),
         interfaces=interfaces,
@@ -115,13 +121,14 @@ def link_project(  # noqa: PLR0913 - all by name
     return architecture, tuple(diagnostics)
 
 
-def _make_resolver(
+def make_resolver(
     root: MappingNode,
     element_outline: ElementOutline,
     diagnostics: list[Diagnostic],
-    lost_keys: frozenset[str],
-    damaged_elements: frozenset[str],
+    lost_keys: frozenset[str] = frozenset(),
+    damaged_elements: frozenset[str] = frozenset(),
 ) -> ReferenceResolver:
+    """Return what resolves the references of a merged project in which all types are written out."""
     spans: dict[str, dict[str, Span]] = {
         "group": {name: entry.key_span for name, entry in element_outline.groups.items()},
         "component": {

@@ -8,15 +8,19 @@ GENERATED_CHAPTERS = (
     "overview",
     "groups",
     "frames",
+    "variants",
     "deployment",
+    "start_up",
     "timing",
     "chains",
     "views",
     "types",
     "connections",
     "requirements",
+    "properties",
     "open_points",
     "statistics",
+    "glossary",
 )
 """The generated chapters by their names in `report.chapters`, in their default order."""
 

@@ -28,6 +28,7 @@ nodes:
 chains: {c: {through: [a, b], deadline: 500 ms}}
 views: {v: {show: "g.a+"}}
 policies: {p: {forbid: {from: g.a, to: "role:sink"}}}
+variants: {low: Low, sim: {without: "tag:t g.a", drop: [links.lan], changes: {hosts: {pc: {cores: 2}}}}}
 project: {id: robot, title: Robot}
 """
 
@@ -54,6 +55,10 @@ project: {id: robot, title: Robot}
         ('show: "g.a+"', 'show: "g.a+", depth: 2', "view v", "depth", None, 2, "view `v`: depth set to 2"),
         ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
         ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
+        ("without: ", "of: [low], without: ", "variant sim", "of", None, ["low"], "variant `sim` is now built on `low`"),
+        ("tag:t g.a", "tag:u", "variant sim", "without", "tag:t g.a", "tag:u", "variant `sim` now is without `tag:u` instead of `tag:t g.a`"),
+        ("[links.lan]", "[links.lan.title]", "variant sim", "drop", ["links.lan"], ["links.lan.title"], None),
+        ("pc: {cores: 2}", "pc: {cores: 3}", "variant sim", "changes", ["hosts.pc.cores: 2"], ["hosts.pc.cores: 3"], None),
         ("topic: /x", "topic: /y", "port na.publishes.x", "topic", ["/x"], ["/y"], "`na.publishes.x`: topic `/x` → `/y`"),
         ("on: true", "on: false", "node na", "parameters.deep.on", True, False, "node `na`: parameter `deep.on` true → false"),
         ("level: 1", 'level: "1"', "node na", "parameters.deep.level", 1, "1", None),
@@ -66,6 +71,14 @@ project: {id: robot, title: Robot}
         ("get: T", "get: {response: T, call: synchronous}", "component g.p", "operations.get:call", None, "synchronous", "`g.p`: call of the operation `get` set to `synchronous`"),
         ("open: [x]", "open: [x, y]", "component g.p", "open", ["x"], ["x", "y"], "`g.p`: open sets `y` added"),
         ("{deep: {on: true, level: 1}}", "{deep: {on: true, level: 1}}\n    parameter_commands: {d: [cat, x]}", "node na", "parameter_commands.d", None, "cat x", "node `na`: command for the parameter `d` set to `cat x`"),
+        ("open: [x]", "open: [x], properties: {trl: 5}", "component g.p", "properties.trl", None, "5", "`g.p`: property `trl` set to `5`"),
+        ("open: [x]", "open: [x], hints: {orca: {tag: [a, b]}}", "component g.p", "hints.orca.tag", None, "[a, b]", "`g.p`: hint `orca.tag` set to `[a, b]`"),
+        ("open: [x]", "open: [x], status: adapted", "component g.p", "status", None, "adapted", None),
+        ("open: [x]", "open: [x], contact: x@y.eu", "component g.p", "contact", None, "x@y.eu", "`g.p`: contact set to `x@y.eu`"),
+        ("open: [x]", "open: [x], image: x.png", "component g.p", "image", None, "x.png", "`g.p`: picture set to `x.png`"),
+        ("cores: 4", "cores: 4, properties: {ram: 8 GB}", "host pc", "properties.ram", None, "8 GB", "host `pc`: property `ram` set to `8 GB`"),
+        ("partners: {certh: CERTH", "properties: {trl: {}}\npartners: {certh: CERTH", "project robot", "properties.trl", None, "declared", "the project: property `trl` set to `declared`"),
+        ("partners: {certh: CERTH", "glossary: {MCI: x}\npartners: {certh: CERTH", "project robot", "glossary.MCI", None, "x", "the project: term `MCI` set to `x`"),
         ("title: Robot", "title: Car", "project robot", "title", "Robot", "Car", "the project: title `Robot` → `Car`"),
         ("inputs: {x: a.x}", "inputs: {x: {from: a.x, optional: true}}", "input g.b.x", "optional", None, True, "`g.b.x` is optional now"),
         ("partners: {certh: CERTH", "rules: {unread-output: off}\npartners: {certh: CERTH", "project robot", "rules.unread-output", None, "off", "the project: severity of the rule `unread-output` set to `off`"),

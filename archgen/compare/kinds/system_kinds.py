@@ -10,6 +10,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.frame_kind import FRAME
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.shared_keys import (
+    ANNOTATIONS,
     DESCRIPTION,
     LAYOUT,
     NAME_FEATURES,
@@ -19,6 +20,7 @@ from archgen.compare.kinds.shared_keys import (
     requirements_key,
     text_feature,
 )
+from archgen.compare.kinds.variant_kind import VARIANT
 from archgen.compare.normal_values import parameter_leaves
 from archgen.model.architecture import Chain
 from archgen.model.deployment import Container, Host, Resource
@@ -52,6 +54,7 @@ HOST = KindSpec(
         ),
         DESCRIPTION,
         TAGS,
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.hosts,
     features=(
@@ -85,6 +88,7 @@ CONTAINER = KindSpec(
         KeySpec("package", effect=Effect.SYSTEM),
         KeySpec("executable", effect=Effect.SYSTEM),
         KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.containers,
     features=(
@@ -109,7 +113,7 @@ def _mark_users(relations: ElementRelations, resource: Resource) -> frozenset[st
 RESOURCE = KindSpec(
     "resource",
     "Resources",
-    (TITLE, _HOST_OF, _SCHEDULING),
+    (TITLE, _HOST_OF, _SCHEDULING, *ANNOTATIONS),
     elements=lambda version: version.architecture.resources,
     features=(
         *NAME_FEATURES,
@@ -133,6 +137,7 @@ LINK = KindSpec(
         KeySpec("bandwidth", worsening=Worsening.LESS),
         KeySpec("latency.best", lambda link, _: link.best, worsening=Worsening.MORE, noun="best latency"),
         KeySpec("latency.worst", lambda link, _: link.worst, worsening=Worsening.MORE, noun="worst latency"),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.links,
     features=(
@@ -167,6 +172,7 @@ CHAIN = KindSpec(
         ),
         KeySpec("deadline", worsening=Worsening.LESS, verb="must end within", new_verb="must end within"),
         requirements_key(lambda chain: chain.requirements),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.chains,
     features=(
@@ -189,6 +195,7 @@ POLICY = KindSpec(
         TITLE,
         KeySpec("forbid.from", _read_selector(lambda policy: policy.forbid_from), noun="forbidden source"),
         KeySpec("forbid.to", _read_selector(lambda policy: policy.forbid_to), noun="forbidden target"),
+        *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     lambda version: version.architecture.policies,
@@ -207,9 +214,10 @@ VIEW = KindSpec(
         KeySpec("level", lambda view, _: None if view.level == "functional" else view.level),
         KeySpec("depth"),
         LAYOUT,
+        *ANNOTATIONS,
     ),
     Effect.TEXT,
     lambda version: version.architecture.views,
     (*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
 )
-SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VIEW)
+SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VARIANT, VIEW)

@@ -7,9 +7,11 @@ from collections.abc import Iterable
 from archgen.model.component import Component, ComponentType
 from archgen.views import inline_text
 from archgen.views.element_references import place_run
+from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.elements.instance_values import OwnValue, TypeTexts
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
+from archgen.views.elements.promise_words import write_badges, write_deprecation
 from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns
@@ -24,7 +26,7 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
     architecture = lookup.architecture
     rows = tuple(
         (
-            (type_page_link(each),),
+            (type_page_link(each), *write_badges(each)),
             _make_code_cell(each.library),
             inline_text.value_or_unknown(first_sentence(each.functionality)),
             _make_base_cell(lookup, each),
@@ -53,6 +55,7 @@ def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Blo
     known_texts = {base.functionality, base.description} if base else set()
     texts = (component_type.functionality, component_type.description)
     blocks += [Markdown(text) for text in texts if text and text not in known_texts]
+    blocks += make_image_blocks(lookup, component_type)
     blocks += _make_port_table(component_type)
     blocks += make_parameter_blocks(component_type)
     blocks += _make_frame_table(component_type)
@@ -68,6 +71,10 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
         yield "Owner", inline_text.owner_links(architecture, [component_type.owner])
     if component_type.base:
         yield "Made from", _make_base_cell(lookup, component_type)
+    if component_type.version:
+        yield "Version", inline_text.to_inlines(component_type.version)
+    if component_type.deprecated:
+        yield "Deprecated", write_deprecation(architecture, "component_type", component_type)
     if component_type.generic:
         yield "Generic names", inline_text.join_inlines((Text(name, code=True),) for name in component_type.generic)
     derived = [each for each in architecture.component_types.values() if each.base_name == component_type.id]
@@ -76,6 +83,8 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
     if component_type.components:
         yield "Inside", inline_text.join_inlines((Text(name, code=True),) for name in component_type.components)
     words = "abstract: it has no instance of its own" if component_type.is_abstract else ""
+    yield from list_contact_facts(component_type)
+    yield from list_annotation_facts(lookup, component_type)
     count = inline_text.count_noun(len(_shown_instances(lookup, component_type)), "instance")
     yield "Instances", inline_text.to_inlines(", ".join(filter(None, (count, words))))
 

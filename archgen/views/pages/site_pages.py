@@ -24,6 +24,7 @@ from archgen.views.pages import (
     requirement_pages,
     timing_chapter,
     undrawn_pictures,
+    variant_chapter,
 )
 from archgen.views.pages.component_pages import ComponentPages, drop_facts
 from archgen.views.pages.context_pages import HOME_CRUMB
@@ -31,7 +32,14 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
+from archgen.views.tables import (
+    architecture_tables,
+    frame_table,
+    project_growth,
+    property_tables,
+    requirement_tables,
+    start_table,
+)
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
 
@@ -244,8 +252,13 @@ class PageMaker:
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
+        yield from self.variant_pages()
         if frames := frame_table.make_frame_table(self.lookup):
             yield self._spanning_page("frames", "Frames", *self.make_figures("frames"), frames)
+        if sections := property_tables.make_property_sections(self.lookup):
+            yield self._listing_page("properties", "Properties", sections)
+        if glossary_table := property_tables.make_glossary_table(self.lookup):
+            yield self._spanning_page("glossary", "Glossary", glossary_table)
         if self.edition.level == "implementation":
             yield self._spanning_page(
                 "nodes",
@@ -261,6 +274,20 @@ class PageMaker:
                 architecture_tables.make_link_table(self.lookup),
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
+            if start_blocks := start_table.make_start_blocks(self.lookup):
+                yield self._spanning_page("start_up", "Start-up", *self.make_figures("start_up"), *start_blocks)
+
+    def variant_pages(self) -> Iterator[Page]:
+        """Make a page of all variants, and one for each."""
+        table = variant_chapter.make_variant_table(self.architecture, self.edition.variants)
+        if table is None:
+            return
+        lead = Paragraph(inline_text.to_inlines(variant_chapter.LEAD))
+        yield self._spanning_page("variants", "Variants", lead, table)
+        crumbs = (HOME_CRUMB, ("Variants", "page:variants"))
+        for section in variant_chapter.make_variant_sections(self.architecture, self.edition.variants):
+            name = section.anchor.partition(":")[2]
+            yield Page(f"variants/{name}.html", section.anchor, section.title, "variants", section, crumbs, "Variant")
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
@@ -302,6 +329,11 @@ class PageMaker:
             shown_section = replace(section, blocks=shown_blocks)
             lead = "Chain of effect"
             yield Page(path, section.anchor, section.title, "chains", shown_section, crumbs, lead, waterfall=waterfall)
+
+    def _listing_page(self, name: str, title: str, sections: tuple[Section, ...]) -> Page:
+        """Make a page of sections, without anything before them."""
+        section = Section(f"page:{name}", title, (), sections)
+        return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME_CRUMB,))
 
     def _spanning_page(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
         """Make a page for the whole architecture."""

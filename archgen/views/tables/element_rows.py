@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
+from archgen.model.annotated_elements import Annotated
+from archgen.model.component import Connection
+from archgen.model.counted_outputs import find_counted_output
 from archgen.model.parameter_values import find_effective_parameters
-from archgen.views.elements import parameter_blocks
+from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables, requirement_tables
+from archgen.views.tables.start_rows import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
+_ANNOTATED_TABLES = frozenset({"nodes", "groups", "types", "requirements", "chains", "hosts", "frames"})
+"""Tables of elements that may have properties; that of components has composed ones, too."""
 
 
 def list_element_rows(lookup: Lookup, kind: str) -> tuple[tuple[str, ...], list[TextRow]]:
     """Return the column names and rows for one kind of element (a key of `_TABLES_BY_KIND`)."""
     columns, make_rows = _TABLES_BY_KIND[kind]
     rows = list(make_rows(lookup))
-    for name, values in _list_further_columns(lookup, kind):
+    for name, values in (*_list_further_columns(lookup, kind), *_list_property_columns(lookup, kind, rows)):
         # A column that no row has a word in is that of a project without composition: its table stays as it was.
         if any(values):
             columns = (*columns, name)
@@ -38,7 +44,43 @@ def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list
     if kind == "connections":
         connections = architecture_tables.shown_connections(lookup)
         yield "through", [connection.shell_port or "" for connection in connections]
+        words = [_describe_words(lookup, connection) for connection in connections]
+        yield from (
+            (name, [each[index] for each in words]) for index, name in enumerate(("promise", "version", "deprecated"))
+        )
         yield "made_by", ["autoconnect" if connection.is_made else "" for connection in connections]
+
+
+def _describe_words(lookup: Lookup, connection: Connection) -> tuple[str, str, str]:
+    """Return what the outputs that a connection names promise, their versions, and until when they may be used."""
+    architecture = lookup.architecture
+    leaves = (architecture.outputs[output] for output in connection.outputs)
+    ports = {port.id: port for leaf in leaves for port in (find_counted_output(architecture, connection, leaf),)}
+    facts = [tuple(value for _, value in promise_words.list_card_facts(port)) for port in ports.values()]
+    promises, versions, deprecations = (
+        ("; ".join(dict.fromkeys(filter(None, values))) for values in zip(*facts, strict=True))
+        if facts
+        else ("", "", "")
+    )
+    return promises, versions, deprecations
+
+
+def _list_property_columns(lookup: Lookup, kind: str, rows: list[TextRow]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a column for each property that a listed element has, declared ones first. Rows begin with the id."""
+    architecture = lookup.architecture
+    elements_by_id: Mapping[str, Annotated] = (
+        {**architecture.components, **architecture.shells}
+        if kind == "components"
+        else getattr(architecture, kind, {})
+        if kind in _ANNOTATED_TABLES
+        else {}
+    )
+    properties = [
+        each.annotations.properties if (each := elements_by_id.get(row[0])) is not None else {} for row in rows
+    ]
+    names = dict.fromkeys((*architecture.properties, *(name for each in properties for name in each)))
+    # Behind a word of its own: a property may be called as another column.
+    yield from ((f"property:{name}", [each.get(name, "") for each in properties]) for name in names)
 
 
 def _component_rows(lookup: Lookup) -> Iterator[TextRow]:
@@ -212,6 +254,19 @@ def _frame_rows(lookup: Lookup) -> Iterator[TextRow]:
         yield (frame.id, frame.title, frame.parent or "", frame.by or "", rate, ports, str(frame.at))
 
 
+def _variant_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for each in lookup.architecture.variants.values():
+        yield (
+            each.id,
+            each.title,
+            ", ".join(each.of),
+            each.without or "",
+            ", ".join(each.drop),
+            str(len(each.changes)),
+            str(each.at),
+        )
+
+
 # The column names are the header of what `archgen list` writes, so they are visible to users.
 _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
@@ -237,5 +292,7 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     ),
     "operations": (("id", "component", "request", "response", "call", "visibility", "place"), _operation_rows),
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
+    "start_up": (START_COLUMNS, list_start_rows),
     "frames": (("id", "title", "parent", "by", "rate", "ports", "place"), _frame_rows),
+    "variants": (("id", "title", "of", "without", "drop", "changes", "place"), _variant_rows),
 }
