@@ -28,6 +28,7 @@ _NAMED_SECTIONS = {
     "properties": "property",
     "hints": "hint",
     "glossary": "term",
+    "accepted": "accepted input",
 }
 """What sentences call the keys of a section, by the section."""
 _PARTS_OF: Mapping[str, frozenset[str]] = {

@@ -335,7 +335,7 @@ links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best
 frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1], properties: {q: 1}, hints: {x: {a: 1}}}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}, properties: {q: 1}, hints: {x: {a: 1}}}}
-policies: {p: {title: P, forbid: {from: g, to: g}, properties: {q: 1}, hints: {x: {a: 1}}}}
+policies: {p: {title: P, forbid: {from: g, to: g}, require: {of: b, inputs_from: "g.*", guarded_by: q}, accepted: {b.i: because}, properties: {q: 1}, hints: {x: {a: 1}}}}
 """
 """A project in which every kind has every field."""
 

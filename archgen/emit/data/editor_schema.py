@@ -58,6 +58,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "requirement.parent": ("requirements",),
     "requirement.use_cases": ("use_cases",),
     "requirement.verified_by": ("use_cases", "chains"),
+    "require.inputs_from": ("selectors",),
+    "require.of": ("selectors",),
     "ros.distro": ("distros",),
     "start": ("implemented",),
     "start.after": ("implemented",),
