@@ -53,7 +53,7 @@ project: {id: robot, title: Robot}
         ('show: "g.a+"', "show: g", "view v", "show", "g.a+", "g", "view `v`: selector `g.a+` → `g`"),
         ('show: "g.a+"', 'show: "g.a+", depth: 2', "view v", "depth", None, 2, "view `v`: depth set to 2"),
         ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
-        ("from: g.a, to: \"role:sink\"}", "from: g.a, to: \"role:sink\"}, accepted: {b.x: why}", "policy p", "accepted.g.b.x", None, "why", "policy `p`: accepted input `g.b.x` set to `why`"),
+        ('from: g.a, to: "role:sink"}', 'from: g.a, to: "role:sink"}, accepted: {b.x: why}', "policy p", "accepted.g.b.x", None, "why", "policy `p`: accepted input `g.b.x` set to `why`"),
         ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
         ("topic: /x", "topic: /y", "port na.publishes.x", "topic", ["/x"], ["/y"], "`na.publishes.x`: topic `/x` → `/y`"),
         ("on: true", "on: false", "node na", "parameters.deep.on", True, False, "node `na`: parameter `deep.on` true → false"),
