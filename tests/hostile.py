@@ -136,7 +136,7 @@ def project(text: str) -> dict[str, Any]:
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
         "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},
-        "properties": {"declared": {}, "chosen": {"of": ["component"], "choices": [text]}},
+        "properties": {"declared": {"type": "string"}, "chosen": {"of": ["component"], "choices": [text]}},
         "glossary": {kind[:90].strip(): text, "functionality": text},
     }
     _fill(data["project"], "project", text)
