@@ -11,6 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
 from archgen.model.component import Output
+from archgen.model.port_media import ROS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 
@@ -31,6 +32,8 @@ class ElementOutline:
     """By component id and name, those of composed components included."""
     undeclared_inputs: list[tuple[str, MappingEntry]] = field(default_factory=list)
     """Inputs that `to` at an output names and nobody declares, with their components."""
+    middleware: str = ROS
+    """What digital ports travel over where they do not say."""
     members: dict[str, list[str]] = field(default_factory=dict)
     """The components that stand directly in each group, leaves first, by complete ids."""
 
@@ -69,7 +72,11 @@ class ElementOutline:
 
 def build_outline(expansion: ExpandedProject) -> ElementOutline:
     """Return the outline of a merged project in which all types are written out, by complete ids."""
-    element_outline = ElementOutline(expansion=None if expansion.is_plain else expansion)
+    project = mapping_values.get_mapping(expansion.root, "project")
+    element_outline = ElementOutline(
+        expansion=None if expansion.is_plain else expansion,
+        middleware=mapping_values.get_medium(project, "middleware") or ROS,
+    )
     members = element_outline.members
     for group_id, entry, body in mapping_values.iterate_elements(expansion.root, "groups"):
         element_outline.groups[group_id] = entry
@@ -113,11 +120,12 @@ def _outline_ports(element_outline: ElementOutline, component_id: str, body: Map
         )
         element_outline.undeclared_inputs += [(component_id, entry) for entry in undeclared_entries]
     element_outline.outputs[component_id] = {
-        e.key: _declare_output(component_id, e) for e in mapping_values.get_mapping(body, "outputs")
+        e.key: _declare_output(component_id, e, element_outline.middleware)
+        for e in mapping_values.get_mapping(body, "outputs")
     }
 
 
-def _declare_output(component: str, entry: MappingEntry) -> Output:
+def _declare_output(component: str, entry: MappingEntry, middleware: str) -> Output:
     body = mapping_values.get_body(entry)
     type_text = mapping_values.get_text(body, "type")
     return Output(
@@ -126,10 +134,12 @@ def _declare_output(component: str, entry: MappingEntry) -> Output:
         component=component,
         type=mapping_values.normalise_type_name(type_text) if type_text else None,
         external=mapping_values.get_text(body, "external"),
-        physical=mapping_values.get_text(body, "medium") == "physical",
+        medium=mapping_values.get_medium(body, "medium") or middleware,
+        medium_written=mapping_values.get_medium(body, "medium") is not None,
         frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
         at=entry.key_span,
+        medium_at=mapping_values.get_span(body, "medium"),
         type_at=mapping_values.get_span(body, "type"),
         frame_at=mapping_values.get_span(body, "frame"),
     )

@@ -13,6 +13,7 @@ from archgen.model.component import Component, ComponentType, Group, Input, Outp
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.port_media import is_physical, word_of_medium
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
@@ -198,7 +199,7 @@ def _record_port(port: Input | Output) -> dict[str, object]:
     return {
         "id": port.id,
         "type": port.type,
-        "medium": "physical" if port.physical else "digital",
+        "medium": word_of_medium(port),
         "external": port.external,
         "frame": port.frame,
         "description": port.description,
@@ -227,7 +228,7 @@ def _record_output(lookup: Lookup, port: Output) -> dict[str, object]:
 def _record_flow(lookup: Lookup, output_id: str) -> dict[str, object]:
     """Return what flows along an edge: type and message of the output, and whether it is physical."""
     port = lookup.architecture.outputs[output_id]
-    return {"type": port.type, "message": lookup.architecture.message_of(port), "physical": port.physical or None}
+    return {"type": port.type, "message": lookup.architecture.message_of(port), "physical": is_physical(port) or None}
 
 
 def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:

@@ -31,8 +31,13 @@ from archgen.model.component import Component, Connection, Group, Input, Output,
 from archgen.model.declared_timing import Timing
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, PortUse, Topic
+from archgen.model.port_media import uses_ros
 
 Words = dict[str, str]
+
+
+def _read_medium(options: Words) -> str:
+    return "physical" if "physical" in options else "ros"
 
 
 @dataclass
@@ -76,7 +81,15 @@ class _Sketch:
         self.component(component, at)["outputs_known"] = True
         external = "somebody" if "external" in options else None
         output = Output(
-            words[0], name, component, options.get("type"), external, "physical" in options, at=at, type_at=at
+            words[0],
+            name,
+            component,
+            options.get("type"),
+            external,
+            _read_medium(options),
+            medium_written="physical" in options,
+            at=at,
+            type_at=at,
         )
         self.outputs[words[0]] = output
 
@@ -146,7 +159,7 @@ class _Sketch:
 
     def carries(self, output: Output) -> bool:
         mapped = self.types.get(output.type or "")
-        return not output.physical and flow_of(mapped.message if mapped else None) == "topic"
+        return uses_ros(output) and flow_of(mapped.message if mapped else None) == "topic"
 
     def connection(self, port: str, reference: str, at: Span) -> Connection:
         own = port.rpartition(".")[0]
@@ -165,10 +178,11 @@ class _Sketch:
             component,
             tuple(self.connection(port, reference, at) for reference in references),
             "somebody" if "external" in options else None,
-            "physical" in options,
+            _read_medium(options),
             options.get("type"),
             "optional" in options,
             from_written="from" in options,
+            medium_written="physical" in options,
             at=at,
             type_at=at,
         )

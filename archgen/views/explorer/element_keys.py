@@ -14,6 +14,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
+from archgen.model.port_media import list_medium_words
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -32,7 +33,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("tag", tag) for tag in _list_tags(architecture, component)),
                     *(("owner", owner) for owner in component.owners),
                     *(("type", name) for name in types[component.id]),
-                    *(("medium", "physical" if port.physical else "digital") for port in _list_ports(component)),
+                    *(("medium", word) for port in _list_ports(component) for word in list_medium_words(port)),
                     *((("role", component.role),) if component.role else ()),
                     *(("requirement", use.text) for use in component.requirements if use.is_id),
                     *_list_behaviours((component.timing,)),
