@@ -13,7 +13,7 @@ from archgen.model.component import Component, ComponentType, Group, Input, Outp
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
-from archgen.model.port_media import is_physical, word_of_medium
+from archgen.model.port_media import ROS, is_physical, word_of_medium
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
@@ -31,7 +31,13 @@ def make_record(lookup: Lookup) -> Record:
     return {
         "archgen_resolved": RECORD_VERSION,
         "project": pick_fields(architecture.project, "id", "title", "version", "description")
-        | drop_unknown({"distro": architecture.distro, "parameters": record_values(architecture.ros_parameters)}),
+        | drop_unknown(
+            {
+                "middleware": None if architecture.project.middleware == ROS else architecture.project.middleware,
+                "distro": architecture.distro,
+                "parameters": record_values(architecture.ros_parameters),
+            }
+        ),
         # Groups, components, connections, edges, nodes and topics are cut to the scope; all else is given in full.
         "partners": {
             p.id: pick_fields(p, "title", "description", "contact", "reviewers") for p in architecture.partners.values()
@@ -149,7 +155,7 @@ def _record_frame(frame: Frame) -> dict[str, object]:
 def _record_link(link: Link) -> dict[str, object]:
     bandwidth = {"bandwidth": record_quantity(link.bandwidth, "bit/s")}
     latency = {"best": record_quantity(link.best, "ns"), "worst": record_quantity(link.worst, "ns")}
-    return pick_fields(link, "title", "connects") | drop_unknown({**bandwidth, **latency})
+    return pick_fields(link, "title", "connects", "devices", "protocol") | drop_unknown({**bandwidth, **latency})
 
 
 def _record_chain(chain: Chain) -> dict[str, object]:

@@ -17,6 +17,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
+from archgen.model.port_media import ROS
 from archgen.model.review_settings import ReviewSettings
 
 
@@ -68,6 +69,7 @@ PROJECT = KindSpec(
         KeySpec("title", lambda project, context: _read_named("title", context, project.title), Effect.TEXT),
         KeySpec("version", verb="is version"),
         DESCRIPTION,
+        KeySpec("middleware", lambda project, _: None if project.middleware == ROS else project.middleware, Effect.TIMING),
         KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
         KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
         KeySpec("parameters.", _read_parameters),
