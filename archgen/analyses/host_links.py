@@ -56,7 +56,9 @@ def unlinked_hosts(architecture: Architecture) -> Iterator[Diagnostic]:
     # Each pair in alphabetical order, as in `_list_topics`.
     joined_pairs = {pair for link in architecture.links.values() for pair in combinations(sorted(link.connects), 2)}
     # Which host a link of one end was to join is open: `half-written` reports it.
-    open_hosts = {link.connects[0] for link in architecture.links.values() if len(link.connects) == 1 and not link.devices}
+    open_hosts = {
+        link.connects[0] for link in architecture.links.values() if len(link.connects) == 1 and not link.devices
+    }
     for (host, other_host), topics in _list_topics(architecture).items():
         if (host, other_host) not in joined_pairs and open_hosts.isdisjoint((host, other_host)):
             yield Diagnostic(

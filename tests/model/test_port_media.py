@@ -45,7 +45,15 @@ def test_a_port_that_says_nothing_is_ros() -> None:
 
 @pytest.mark.parametrize(
     ("text", "word"),
-    [(None, None), ("", None), ("digital", None), ("Digital", None), ("MQTT", "mqtt"), (" ros ", "ros"), ("x/y", "x/y")],
+    [
+        (None, None),
+        ("", None),
+        ("digital", None),
+        ("Digital", None),
+        ("MQTT", "mqtt"),
+        (" ros ", "ros"),
+        ("x/y", "x/y"),
+    ],
 )
 def test_capitals_do_not_count_and_digital_names_no_way(text: str | None, word: str | None) -> None:
     assert normalise_medium(text) == word

@@ -69,7 +69,9 @@ PROJECT = KindSpec(
         KeySpec("title", lambda project, context: _read_named("title", context, project.title), Effect.TEXT),
         KeySpec("version", verb="is version"),
         DESCRIPTION,
-        KeySpec("middleware", lambda project, _: None if project.middleware == ROS else project.middleware, Effect.TIMING),
+        KeySpec(
+            "middleware", lambda project, _: None if project.middleware == ROS else project.middleware, Effect.TIMING
+        ),
         KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
         KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
         KeySpec("parameters.", _read_parameters),
