@@ -471,7 +471,7 @@ def test_no_key_is_listed_twice() -> None:
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
-                "output frame, input frame, type frame, link protocol"
+                "output frame, input frame, type frame, link protocol, project middleware"
             ),
         ),
         (
@@ -483,7 +483,7 @@ def test_no_key_is_listed_twice() -> None:
                 "container host, container threads, link connects, link bandwidth, link latency.worst, chain through, "
                 "chain deadline, component inputs, node threads, node scheduling, node callback_groups.x, node reentrant, "
                 "host scheduling, host scheduling.0, container scheduling, resource host, resource scheduling, "
-                "component timing.uses.gpu, component timing.inputs.x.wcet, component timing.cores, input freshness, project middleware, link devices"
+                "component timing.uses.gpu, component timing.inputs.x.wcet, component timing.cores, input freshness, link devices"
             ),
         ),
     ],
