@@ -30,6 +30,7 @@ TEXTS = {
 ELEMENTS = {
     "partners": "partner",
     "use_cases": "use_case",
+    "actors": "actor",
     "requirements": "requirement",
     "groups": "group",
     "component_types": "component_type",
@@ -68,7 +69,16 @@ def project(text: str) -> dict[str, Any]:
             "texts": {"docs/evil.md": f"{text}\n\n> {text}\n\n- {text}\n"},
         },
         "partners": {"p": {}},
-        "use_cases": {"UC-1": {}},
+        "use_cases": {
+            "UC-1": {
+                "actors": {"who": {}},
+                "steps": [
+                    {"from": "who", "to": "a.x", "say": text},
+                    {"from": "a.x", "to": "b.y", "say": text},
+                    {"from": "b.y", "to": "b.y", "say": text},
+                ],
+            }
+        },
         "requirements": {"R-1": {"use_cases": ["UC-1"]}},
         "component_types": {"t": {"inputs": {"in": {"type": kind}}, "outputs": {"made": {"type": kind}}}},
         "libraries": {

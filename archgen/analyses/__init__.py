@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from archgen.analyses import (
     answer_times,
     broken_chains,
+    broken_steps,
     chain_latency,
     completeness,
     component_roles,
@@ -79,6 +80,7 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *topic_messages.RULES,
     *type_mapping.RULES,
     *broken_chains.RULES,
+    *broken_steps.RULES,
     *half_written.RULES,
     *host_links.RULES,
     *timing_plausibility.RULES,

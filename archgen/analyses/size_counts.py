@@ -59,6 +59,8 @@ class ArchitectureSize:
     made_connections: int = 0
     """Those among `connections` that `autoconnect` made."""
     frames: int = 0
+    steps: int = 0
+    """The steps of all use cases."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +123,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         component_types=len(arch.component_types),
         made_connections=sum(connection.is_made for connection in arch.connections),
         frames=len(arch.frames),
+        steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
     )
 
 

@@ -25,6 +25,8 @@ LISTABLE_KINDS = (
     "topics",
     "types",
     "requirements",
+    "use_cases",
+    "steps",
     "chains",
     "parameters",
     "operations",

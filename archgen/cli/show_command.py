@@ -38,7 +38,9 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
     timed_kinds = {kind for word in words for kind, _ in element_card.find_elements(lookup, word)}
-    if checked_project.analysis is not None and not timed_kinds.isdisjoint({"requirement", "chain", "composed"}):
+    if checked_project.analysis is not None and not timed_kinds.isdisjoint(
+        {"requirement", "chain", "composed", "use case"}
+    ):
         # Only these say whether they are in time; the bounds of chains take longer than all else here.
         from archgen.views.timing.timing_lookup import bound_chains
 

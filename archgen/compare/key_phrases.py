@@ -21,6 +21,7 @@ _NAMED_SECTIONS = {
     "defaults": "default of",
     "comments": "what is said of",
     "callback_groups": "callback group",
+    "actors": "actor",
     "scheduling": "order on core",
 }
 """What sentences call the keys of a section, by the section."""

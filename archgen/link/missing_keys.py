@@ -22,6 +22,9 @@ _NEEDED_KEYS: dict[_KeyPath, tuple[_KeyPath, ...]] = {
 }
 
 
+_STEP_ENDS = ("from", "to")
+
+
 def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
     """Report elements that lack a key without which they mean nothing, in all slices together."""
     for section, needed_paths in _NEEDED_KEYS.items():
@@ -34,6 +37,20 @@ def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
                     yield Diagnostic(
                         "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
                     )
+    yield from _find_open_steps(root)
+
+
+def _find_open_steps(root: MappingNode) -> Iterator[Diagnostic]:
+    """Report the steps of use cases that do not say where they begin or end."""
+    use_cases = _node_at(root, ("use_cases",))
+    for entry in use_cases if isinstance(use_cases, MappingNode) else ():
+        steps = _node_at(entry.value, ("steps",))
+        for number, step in enumerate(steps.items if isinstance(steps, SequenceNode) else (), 1):
+            for key in _STEP_ENDS:
+                if not _has_path(step, (key,)):
+                    message = f"step {number} of `{entry.key}` lacks `{key}`"
+                    help_line = "say between whom it happens: `{from: speech, to: dialogue, say: passes on the words}`"
+                    yield Diagnostic("missing-key", message, step.span, help=help_line, element=entry.key)
 
 
 _MISSING_KEY_HELP = {

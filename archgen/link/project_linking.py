@@ -14,6 +14,7 @@ from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.type_declaration import DeclaredTypes
+from archgen.link.declare.use_case_declaration import declare_use_cases
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
@@ -62,6 +63,7 @@ def link_project(  # noqa: PLR0913 - all by name
         implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented
     )
     requirements = section_declaration.declare_requirements(root, resolver)
+    use_cases = declare_use_cases(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
@@ -78,7 +80,7 @@ def link_project(  # noqa: PLR0913 - all by name
         ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
         layout=mapping_values.get_layout(root),
         partners=section_declaration.declare_partners(root),
-        use_cases=section_declaration.declare_use_cases(root),
+        use_cases=use_cases,
         requirements=requirements,
         groups=declared_groups.groups,
         components=components,

@@ -19,6 +19,7 @@ from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
+from archgen.model.use_case_steps import Actor, Step
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -47,11 +48,13 @@ class Partner:
 
 @dataclass(frozen=True, slots=True)
 class UseCase:
-    """A use case that requirements serve."""
+    """A use case that requirements serve, with the steps in which it happens."""
 
     id: str
     title: str
     description: str | None = None
+    actors: Mapping[str, Actor] = field(default_factory=dict)
+    steps: tuple[Step, ...] = ()
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 

@@ -31,6 +31,7 @@ _HOMES = {
     "chain": "`chains: {{CHAIN: {{{key}: ...}}}}`",
     "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
     "frame": "`frames: {{FRAME: {{{key}: ...}}}}`",
+    "use_case": "`use_cases: {{USE-CASE: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
 _READER_KEYS = frozenset({"freshness", "optional"})
@@ -53,6 +54,7 @@ _ELEMENT_SECTIONS = {
     "partners": "partner",
     "requirements": "requirement",
     "frames": "frame",
+    "use_cases": "use_case",
 }
 
 

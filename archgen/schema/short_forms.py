@@ -93,7 +93,7 @@ _TYPE_FORM = ElementForm(
 _ROOT_FORM = ElementForm(
     keyed_forms={
         "partners": _TITLED_FORM,
-        "use_cases": _TITLED_FORM,
+        "use_cases": ElementForm(("title",), keyed_forms={"actors": _TITLED_FORM}),
         "requirements": _TITLED_FORM,
         "component_types": _COMPONENT_TYPE_FORM,
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
@@ -130,11 +130,22 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     )
     parameter_diagnostics = tuple(expand_parameters(document.root))
     _normalise_mapping(document.root, _ROOT_FORM)
+    _drop_empty_step_keys(document.root)
     review = document.root.get("review")
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
     return library_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
+
+
+def _drop_empty_step_keys(root: MappingNode) -> None:
+    """Drop the empty keys in the steps of use cases, in place: these are no elements by id."""
+    use_cases = root.get("use_cases")
+    for entry in use_cases if isinstance(use_cases, MappingNode) else ():
+        steps = entry.value.get("steps") if isinstance(entry.value, MappingNode) else None
+        for step in steps.items if isinstance(steps, SequenceNode) else ():
+            if isinstance(step, MappingNode):
+                _normalise_mapping(step, _PLAIN_FORM)
 
 
 def _normalise_libraries(document: YamlDocument) -> Iterator[Diagnostic]:

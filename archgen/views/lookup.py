@@ -21,6 +21,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS
 from archgen.model.source_repository import SourceRepository
+from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -82,6 +83,9 @@ class Lookup:
     """Size of a message on the wire, by message and type."""
     repository: SourceRepository | None = None
     """Where the project's files are on the web, with the project's folder in it."""
+    # Computed when somebody asks: most views show no use case.
+    steps: UseCaseSteps = field(kw_only=True, compare=False, repr=False)
+    """The steps of use cases, with what they run along."""
     timing: TimingLookup | None = None
     """Results of the timing analysis; None for the many views that need no timing."""
 
@@ -183,6 +187,7 @@ def make_lookup(
         ),
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
+        steps=UseCaseSteps(architecture),
         timing=timing_lookup,
     )
 

@@ -79,6 +79,11 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
         ),
         "sources": _add_short_forms((*outputs, *components, *groups)),
         "implemented": _add_short_forms((*components, *composed)),
+        "step_ends": (
+            *_list_actors(architecture),
+            *_add_short_forms((*components, *composed)),
+            *outputs,
+        ),
         "waypoints": _add_short_forms((*nodes, *components, *composed, *outputs)),
         "inputs": tuple(_list_inputs(architecture.components.values())),
         "tags": tuple(OfferedName(tag, "") for tag in sorted(_list_tags(architecture))),
@@ -107,6 +112,16 @@ def keep_plain_names(names: Iterable[OfferedName]) -> tuple[OfferedName, ...]:
 def _list_titles(elements: Mapping[str, HasTitle]) -> Iterator[OfferedName]:
     for id_, element in elements.items():
         yield OfferedName(id_, _shorten_text(element.title))
+
+
+def _list_actors(architecture: Architecture) -> Iterator[OfferedName]:
+    """Return the actors of all use cases, each id once."""
+    seen_ids = set[str]()
+    for use_case in architecture.use_cases.values():
+        for actor in use_case.actors.values():
+            if actor.id not in seen_ids:
+                seen_ids.add(actor.id)
+                yield OfferedName(actor.id, _shorten_text(actor.title))
 
 
 def _list_outputs(architecture: Architecture) -> Iterator[OfferedName]:

@@ -20,6 +20,7 @@ from archgen.views.record_values import drop_unknown, pick_fields, record_quanti
 from archgen.views.shapes import Record
 from archgen.views.timing_record import record_timing
 from archgen.views.type_record import record_type
+from archgen.views.use_case_record import record_use_cases
 
 RECORD_VERSION = 1
 """Version of the format, written as `archgen_resolved`."""
@@ -42,7 +43,7 @@ def make_record(lookup: Lookup) -> Record:
         "partners": {
             p.id: pick_fields(p, "title", "description", "contact", "reviewers") for p in architecture.partners.values()
         },
-        "use_cases": {u.id: pick_fields(u, "title", "description") for u in architecture.use_cases.values()},
+        "use_cases": record_use_cases(lookup),
         "requirements": {r.id: _record_requirement(lookup, r) for r in architecture.requirements.values()},
         "groups": {name: _record_group(lookup, architecture.groups[name]) for name in lookup.shown_groups()},
         "components": {c.id: _record_component(lookup, c) for c in architecture.components.values() if is_shown(c.id)},

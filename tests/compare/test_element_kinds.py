@@ -222,7 +222,7 @@ archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
 ros: {distro: jazzy, parameters: {use_sim_time: true}}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c"}, sssa: S}
-use_cases: {UC-1: {title: U, description: D}}
+use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}]}}
 requirements: {R-1: {title: R, description: D, use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
 groups:
   g:
@@ -457,7 +457,7 @@ def test_no_key_is_listed_twice() -> None:
             (
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
                 "type comment, input external, output description, chapter text, "
-                "view show, view colour, view level, use_case title, requirement title, requirement urls.x, project title, "
+                "view show, view colour, view level, use_case title, use_case actors.p, use_case steps, requirement title, requirement urls.x, project title, "
                 "project layout, partner description, host tags, node urls.x, frame title"
             ),
         ),

@@ -16,9 +16,10 @@ from archgen.compare.kinds.shared_keys import (
     text_feature,
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
-from archgen.model.architecture import ProjectInfo
+from archgen.model.architecture import ProjectInfo, UseCase
 from archgen.model.port_media import ROS
 from archgen.model.review_settings import ReviewSettings
+from archgen.model.use_case_steps import StepEnd
 
 
 def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
@@ -120,10 +121,35 @@ _NUMBERED_FEATURES = (
     FeatureSpec("title", 4, lambda _, element: word_set(element.title), lambda element: element.title == element.id),
     text_feature(2, "description"),
 )
+
+
+def _read_steps(use_case: UseCase, context: ReadContext) -> tuple[str, ...]:
+    """Return the steps as one line each, with the ids of the second version."""
+    return tuple(
+        f"{_name_end(step.source, context)} → {_name_end(step.target, context)}"
+        + (f": {' '.join(step.say.split())}" if step.say else "")
+        for step in use_case.steps
+    )
+
+
+def _name_end(end: StepEnd, context: ReadContext) -> str:
+    is_element = end.kind in {"component", "output"}
+    return context.matched_ids.common_id(end.kind, end.id) if is_element else end.id
+
+
 USE_CASE = KindSpec(
     "use_case",
     "Use cases",
-    (TITLE, DESCRIPTION),
+    (
+        TITLE,
+        DESCRIPTION,
+        KeySpec(
+            "actors.",
+            lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
+            noun="actor",
+        ),
+        KeySpec("steps", _read_steps, list_verbs=("now has the step", "no longer has the step"), noun="steps"),
+    ),
     Effect.TEXT,
     lambda version: version.architecture.use_cases,
     (

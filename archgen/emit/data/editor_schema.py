@@ -56,6 +56,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "resource.host": ("hosts",),
     "requirement.use_cases": ("use_cases",),
     "ros.distro": ("distros",),
+    "step.from": ("step_ends",),
+    "step.to": ("step_ends",),
     "tags": ("tags",),
     "topic_names": ("topics",),
     "topic_use": ("topics",),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View, Waypoint
+from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, View, Waypoint
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import ROS
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
@@ -44,19 +44,6 @@ def declare_partners(root: MappingNode) -> dict[str, Partner]:
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "partners")
-    }
-
-
-def declare_use_cases(root: MappingNode) -> dict[str, UseCase]:
-    """Declare the use cases. One without a title has its id as title: `UC-4` cannot be turned into words."""
-    return {
-        name: UseCase(
-            name,
-            mapping_values.get_text(body, "title") or name,
-            mapping_values.get_text(body, "description"),
-            entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "use_cases")
     }
 
 

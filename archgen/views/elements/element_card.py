@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, UseCase
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Container
 from archgen.model.node import Node, Topic
@@ -22,6 +22,7 @@ from archgen.views.elements.parameter_blocks import (
 )
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state, name_chain
+from archgen.views.sequences.step_words import describe_total, list_step_lines
 from archgen.views.tables.type_fields import list_field_lines
 from archgen.views.timing.element_timing import make_whole_fact
 
@@ -353,6 +354,21 @@ def _topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
     return ElementCard(topic.flow, topic.name, topic.name, span, _known_facts(facts), lists)
 
 
+def _use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
+    facts = [
+        ("description", " ".join((use_case.description or "").split())),
+        ("actors", ", ".join(f"{actor.id} ({actor.title})" for actor in use_case.actors.values())),
+        ("time", describe_total(lookup, use_case.id)),
+    ]
+    requirement_ids = tuple(r.id for r in lookup.architecture.requirements.values() if use_case.id in r.use_cases)
+    lists = (
+        *_drop_empty_lists(("steps", tuple(list_step_lines(lookup, use_case)))),
+        ("requirements", requirement_ids),
+        *_drop_empty_lists(("findings", tuple(_format_findings(lookup, use_case.id)))),
+    )
+    return ElementCard("use case", use_case.id, use_case.title, use_case.at, _known_facts(facts), lists)
+
+
 def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     """Make the card of a kind without a card of its own: fields that exist, and who uses the element."""
     architecture = lookup.architecture
@@ -469,5 +485,6 @@ _CARD_MAKERS: Mapping[str, Callable[[Lookup, Any], ElementCard]] = {
     "output": _port_card,
     "node": _node_card,
     "topic": _topic_card,
+    "use case": _use_case_card,
 }
 """What makes the card of an element; other kinds have a list of fields."""

@@ -134,7 +134,11 @@ def make_requirement_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             f"{use_case.id} {use_case.title}",
             "use case",
             (f"use_case:{use_case.id}",),
-            text=to_plain_text(use_case.description),
+            text=to_plain_text(
+                use_case.description,
+                *(actor.title for actor in use_case.actors.values()),
+                *(step.say for step in use_case.steps),
+            ),
         )
     for requirement in architecture.requirements.values():
         servers = lookup.components_for_requirement.get(requirement.id, ())

@@ -129,6 +129,27 @@ def _requirement_rows(lookup: Lookup) -> Iterator[TextRow]:
         yield (r.id, r.title, ", ".join(r.use_cases), ", ".join(server_ids), str(r.at))
 
 
+def _use_case_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for use_case in lookup.architecture.use_cases.values():
+        actors = ", ".join(use_case.actors)
+        yield (use_case.id, use_case.title, actors, str(len(use_case.steps)), str(use_case.at))
+
+
+def _step_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for use_case_id, steps in lookup.steps.by_use_case.items():
+        for each in steps:
+            ports = dict.fromkeys(connection.output or connection.input or "" for connection in each.connections)
+            yield (
+                use_case_id,
+                str(each.number),
+                each.step.source.id,
+                each.step.target.id,
+                each.step.say or "",
+                ", ".join(ports),
+                str(each.step.at),
+            )
+
+
 def _chain_rows(lookup: Lookup) -> Iterator[TextRow]:
     for chain in lookup.architecture.chains.values():
         yield (
@@ -194,6 +215,8 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     "topics": (("name", "flow", "messages", "writers", "readers"), _topic_rows),
     "types": (("type", "message", "size", "remarks"), _type_rows),
     "requirements": (("id", "title", "use_cases", "served_by", "place"), _requirement_rows),
+    "use_cases": (("id", "title", "actors", "steps", "place"), _use_case_rows),
+    "steps": (("use_case", "number", "from", "to", "says", "along", "place"), _step_rows),
     "chains": (("id", "title", "through", "deadline", "place"), _chain_rows),
     "parameters": (
         ("parameter", "node", "components", "type", "value", "unit", "may_be", "from", "place"),

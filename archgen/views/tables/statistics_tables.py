@@ -43,9 +43,10 @@ _FIGURE_LABELS = {
     "component_types": "Component types",
     "made_connections": "Connections made by themselves",
     "frames": "Coordinate frames",
+    "steps": "Steps of use cases",
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
-_RARE_FIGURES = frozenset({"composed", "component_types", "made_connections", "frames"})
+_RARE_FIGURES = frozenset({"composed", "component_types", "made_connections", "frames", "steps"})
 """Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""
 PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")
 """The steps that progress counts, in order; each is a field of `Progress` and of the history's `Row`."""

@@ -13,6 +13,7 @@ from archgen.views.timing import chain_status, value_format
 
 if TYPE_CHECKING:
     from archgen.timing.chains.fused_inputs import FusedInputs
+    from archgen.timing.chains.use_case_times import UseCaseTimes
     from archgen.timing.chains.whole_bounds import WholeBound
 
 
@@ -31,6 +32,8 @@ class TimingLookup:
     """What uses messages of several inputs together."""
     whole_bounds: Mapping[str, WholeBound] = field(default_factory=dict)
     """The worst ways through composed components that say how long they take, by id."""
+    use_cases: Mapping[str, UseCaseTimes] = field(default_factory=dict)
+    """How long the steps of use cases take, by id."""
 
 
 def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> TimingLookup:
@@ -72,7 +75,10 @@ def complete_with_chains(analysis: Analysis | None, architecture: Architecture) 
 def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
     """Build the look-ups of a timing analysis, with the bounds of all chains, and of the composed components that have limits."""
     from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.timing.chains.use_case_times import bound_use_cases
     from archgen.timing.chains.whole_bounds import bound_wholes
 
     lookup = make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
-    return replace(lookup, whole_bounds=bound_wholes(analysis, architecture))
+    return replace(
+        lookup, whole_bounds=bound_wholes(analysis, architecture), use_cases=bound_use_cases(analysis, architecture)
+    )

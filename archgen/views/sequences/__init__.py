@@ -1,0 +1,1 @@
+"""Use cases as sequences: who says what to whom, along which connection, and how soon."""
