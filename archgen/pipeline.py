@@ -36,6 +36,7 @@ from archgen.link import (
     report_chapters,
     slice_merging,
     title_guesses,
+    verification_files,
 )
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.interface_sources import TypeMessages
@@ -267,6 +268,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     missing_files = (
         tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
     )
+    missing_verifications = verification_files.find_missing_verifications(
+        linked_architecture, loaded_project.files if is_folder else None
+    )
     linking_errors = _list_structural_errors((*merge_findings, *interface_findings, *link_findings))
     waiting_rules = error_aftermath.list_waiting_rules(
         (*reading_errors, *linking_errors), loaded_project.lost_keys, is_partial=loaded_project.partial
@@ -281,6 +285,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *chapter_findings,
         *missing_pictures,
         *missing_files,
+        *missing_verifications,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules

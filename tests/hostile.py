@@ -79,7 +79,10 @@ def project(text: str) -> dict[str, Any]:
                 ],
             }
         },
-        "requirements": {"R-1": {"use_cases": ["UC-1"]}},
+        "requirements": {
+            "R-0": {},
+            "R-1": {"parent": ["R-0"], "verified_by": [f"{kind} {kind}"], "use_cases": ["UC-1"]},
+        },
         "component_types": {"t": {"inputs": {"in": {"type": kind}}, "outputs": {"made": {"type": kind}}}},
         "libraries": {
             "lib": {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 ROBOT = """
 partners: {certh: , tum: }
-requirements: {R-1: {title: Safe, tags: [law]}, R-2: }
+requirements: {R-1: {title: Safe, tags: [law]}, R-2: , R-0: All, R-1a: {parent: R-0}, R-1b: {parent: [R-1a, R-1]}}
 hosts: {pc: , board: {tags: [gpu]}}
 groups:
   sensing:
@@ -19,7 +19,7 @@ groups:
   planning:
     owner: tum
     components:
-      detector: {inputs: {image: camera.image}, outputs: {objects: T}, timing: {behaviour: event}}
+      detector: {inputs: {image: camera.image}, outputs: {objects: T}, requirements: [R-1b], timing: {behaviour: event}}
       fusion: {inputs: {any_of: [lidar, detector, camera.info]}, outputs: {world: T}}
       solver: {inputs: {world: fusion}, outputs: {solve: std_srvs/srv/Trigger}}
       executor: {inputs: {ask: solver.solve}, outputs: {command: T}, requirements: [R-2, "R-2 in the dark"]}
@@ -84,6 +84,9 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ("host:pc", "detector fusion"),
     ("package:usb_*", "camera"),
     ("requirement:R-2", "executor"),
+    ("requirement:R-1", "lidar detector"),  # what is part of it, too
+    ("requirement:R-0", "detector"),
+    ("requirement:R-1*", "lidar detector"),
     ("behaviour:event", "detector fusion"),
     ("finding:unread-output", "detector fusion d.base"),
     ("node:eyes", "detector fusion"),

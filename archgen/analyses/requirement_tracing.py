@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
+from archgen.model.requirement_tree import add_wholes, index_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture, Requirement
+    from archgen.model.architecture import Architecture
     from archgen.model.component import Component
+    from archgen.model.requirement import Requirement
 
 
 def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -128,7 +130,8 @@ def _report_unknown_requirement(
 def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     """No component and no chain serves a requirement.
 
-    Why: What was promised is nobody's task yet.
+    Why: What was promised is nobody's task yet. A requirement whose parts (those that name it as `parent`) are all served is
+    served, too; else the parts are reported.
 
     Bad:
         requirements:
@@ -169,8 +172,12 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     misspelt_ids = {
         find_closest(text, architecture.requirements) for text in named_ids if text not in architecture.requirements
     }
+    parts = index_parts(architecture.requirements)
+    served_ids = add_wholes(architecture.requirements, named_ids) if parts else named_ids
     for requirement in architecture.requirements.values():
-        if requirement.id not in named_ids and requirement.id not in misspelt_ids:
+        # Of a whole, those of its parts are reported that nobody serves.
+        is_open = requirement.id not in served_ids and requirement.id not in parts
+        if is_open and requirement.id not in misspelt_ids:
             yield Diagnostic(
                 "uncovered-requirement",
                 f"no component and no chain serves the requirement `{requirement.id}`{_title_suffix(requirement)}",

@@ -92,6 +92,12 @@ def _list_elements(
 
     selection = command_support.select_or_exit(checked_project, selector_text or None)
     lookup = project_views.make_scoped_lookup(checked_project, OutputOptions(selection, selector_text))
+    if kind == "requirements" and checked_project.analysis is not None and lookup.chains_for_requirement:
+        from archgen.views.lookup import add_timing
+        from archgen.views.timing.timing_lookup import bound_chains
+
+        # Whether a requirement is met may hang on a chain's deadline.
+        lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
     return element_rows.list_element_rows(lookup, kind)
 
 

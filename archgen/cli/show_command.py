@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,7 +32,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     from archgen.diagnostics.safe_text import make_visible
     from archgen.timing.chains.word_resolution import unknown_name_text
     from archgen.views.elements import element_card
-    from archgen.views.lookup import make_lookup
+    from archgen.views.lookup import add_timing, make_lookup
 
     checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
@@ -44,7 +43,7 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
         # Only these say whether they are in time; the bounds of chains take longer than all else here.
         from archgen.views.timing.timing_lookup import bound_chains
 
-        lookup = replace(lookup, timing=bound_chains(checked_project.analysis, checked_project.architecture))
+        lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
     unknown_words = []
     for word in words:
         matches = element_card.find_elements(lookup, word)

@@ -39,6 +39,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "unset-parameter",
         "unsubscribed-input",
         "unused-type",
+        "unverified-requirement",
     }
 )
 """Rules that judge the model as a whole: they wait until everything is read and linked."""

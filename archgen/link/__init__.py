@@ -9,6 +9,7 @@ from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
+from archgen.link.verification_files import MISSING_VERIFICATION
 
 RULES = (
     *slice_merging.RULES,
@@ -19,6 +20,7 @@ RULES = (
     MISSING_CHAPTER,
     MISSING_PICTURE,
     MISSING_PARAMETER_FILE,
+    MISSING_VERIFICATION,
 )
 
 __all__ = ["RULES", "link_project"]

@@ -13,6 +13,7 @@ from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
+from archgen.link.declare.requirement_declaration import declare_requirements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
@@ -62,7 +63,7 @@ def link_project(  # noqa: PLR0913 - all by name
     nodes = declare_nodes(
         implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented
     )
-    requirements = section_declaration.declare_requirements(root, resolver)
+    requirements = declare_requirements(root, resolver)
     use_cases = declare_use_cases(root, resolver)
     resources = deployment_declaration.declare_resources(root, resolver)
     links = deployment_declaration.declare_links(root, resolver)

@@ -24,6 +24,8 @@ PLAIN_SECTIONS = {
     "container": "containers",
     "resource": "resources",
     "use case": "use_cases",
+    "requirement": "requirements",
+    "chain": "chains",
 }
 """The sections that declare what is named by its id alone."""
 _NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})

@@ -59,6 +59,8 @@ def _index_titles(architecture: Architecture, kind: str) -> dict[str, _TitledEle
         "container": (architecture.containers.values(),),
         "resource": (architecture.resources.values(),),
         "use case": (architecture.use_cases.values(),),
+        "requirement": (architecture.requirements.values(),),
+        "chain": (architecture.chains.values(),),
     }
     index: dict[str, _TitledElement] = {}
     for element in chain.from_iterable(tables[kind]):

@@ -15,6 +15,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
 _GATHERING_KEYS = frozenset(
     {"backends", "interfaces", "open", "requirements", "reviewers", "shared_topics", "sources", "tags", "use_cases"}
+    | {"parent", "verified_by"}
 )
 """Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""
 UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "owner", "to"}

@@ -17,6 +17,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
+from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
 from archgen.model.use_case_steps import Actor, Step
@@ -55,19 +56,6 @@ class UseCase:
     description: str | None = None
     actors: Mapping[str, Actor] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
-    at: Span = field(default=NO_SPAN, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A declared requirement, and the ids of its use cases."""
-
-    id: str
-    title: str
-    description: str | None = None
-    use_cases: tuple[str, ...] = ()
-    tags: tuple[str, ...] = ()
-    urls: Mapping[str, str] = field(default_factory=dict)
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 

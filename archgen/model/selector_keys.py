@@ -11,6 +11,7 @@ from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import list_medium_words
+from archgen.model.requirement_tree import add_below
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +61,8 @@ def find_by_key(
             c.id for c in architecture.components.values() if _matches_any(value, list_origins(architecture, c))
         )
         return SelectorHit(frozenset(instances), frozenset())
-    if key == "tag":
-        return _find_tagged(architecture, value)
-    if key == "parameter":
-        return _find_by_parameter(architecture, value)
+    if key in _ELEMENT_FINDERS:
+        return _ELEMENT_FINDERS[key](architecture, value)
     if key == "finding":
         return _hit_of_findings(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
@@ -93,7 +92,6 @@ _COMPONENT_KEYS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
     "owner": lambda component: component.owners,
     "medium": _port_media,
     "role": lambda component: (component.role,),
-    "requirement": lambda component: (use.text for use in component.requirements if use.is_id),
     "behaviour": lambda component: (component.timing.behaviour if component.timing else None,),
 }
 _ORIGIN_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str]]] = {
@@ -139,6 +137,19 @@ def _find_by_type(architecture: Architecture, pattern: str) -> Iterable[str]:
     yield from (architecture.inputs[edge.input].component for edge in architecture.edges if edge.output in sent_outputs)
 
 
+def _find_by_requirement(architecture: Architecture, pattern: str) -> SelectorHit:
+    """Find the components that serve a requirement, or what is part of it."""
+    matching_ids = (each for each in architecture.requirements if matches_wildcard(pattern, each))
+    declared_ids = add_below(architecture.requirements, matching_ids)
+    components = (
+        c.id
+        for c in architecture.components.values()
+        # What nobody declares can be asked for, too.
+        if any(r.is_id and (r.text in declared_ids or matches_wildcard(pattern, r.text)) for r in c.requirements)
+    )
+    return SelectorHit(frozenset(components), frozenset())
+
+
 def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
     """Find the components that declare a parameter, and the nodes that have it, whoever gives it to them."""
     components = (c.id for c in architecture.components.values() if _matches_any(pattern, c.parameters))
@@ -174,3 +185,11 @@ def _find_holder(architecture: Architecture, element_id: str) -> str:
     shell = architecture.shells.get(holder)
     is_child = shell is not None and element_id in shell.children
     return holder if shell and not is_child and (name in shell.inputs or name in shell.outputs) else element_id
+
+
+_ELEMENT_FINDERS: Mapping[str, Callable[[Architecture, str], SelectorHit]] = {
+    "tag": _find_tagged,
+    "requirement": _find_by_requirement,
+    "parameter": _find_by_parameter,
+}
+"""The keys whose values stand at other elements than the components and nodes that they select."""

@@ -26,7 +26,7 @@ from archgen.views import drawing_set
 from archgen.views.agreement import SignedTag
 from archgen.views.changes.site_changes import mark_drawings
 from archgen.views.chart_shapes import Drawing
-from archgen.views.lookup import DocumentScope, Lookup, make_lookup
+from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.tables import project_growth, statistics_tables
 from archgen.views.timing.timing_lookup import complete_with_chains
@@ -82,9 +82,9 @@ def make_views(
 
     There is no drawing of the `undrawn_kinds`.
     """
+    timing_lookup = complete_with_chains(checked_project.analysis, checked_project.architecture)
     lookup = replace(
-        make_scoped_lookup(checked_project, options),
-        timing=complete_with_chains(checked_project.analysis, checked_project.architecture),
+        add_timing(make_scoped_lookup(checked_project, options), timing_lookup),
         repository=locate_repository(checked_project),
     )
     project_history = read_history(checked_project, options)

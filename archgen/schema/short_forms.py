@@ -94,7 +94,7 @@ _ROOT_FORM = ElementForm(
     keyed_forms={
         "partners": _TITLED_FORM,
         "use_cases": ElementForm(("title",), keyed_forms={"actors": _TITLED_FORM}),
-        "requirements": _TITLED_FORM,
+        "requirements": ElementForm(("title",), frozenset({"parent", "verified_by"})),
         "component_types": _COMPONENT_TYPE_FORM,
         "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
         "nodes": _NODE_FORM,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -23,6 +23,7 @@ from archgen.model.port_media import ROS
 from archgen.model.source_repository import SourceRepository
 from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
+from archgen.views.requirement_trace import RequirementTrace, trace_requirements
 from archgen.views.timing.timing_lookup import TimingLookup
 
 T = TypeVar("T")
@@ -70,6 +71,8 @@ class Lookup:
     """Components that serve a requirement, by the requirement's id."""
     chains_for_requirement: Mapping[str, tuple[Chain, ...]] = field(default_factory=dict)
     """Chains that serve a requirement, by the requirement's id."""
+    requirement_trace: RequirementTrace = field(default_factory=RequirementTrace)
+    """Which requirements are served, verified and met."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
     """Outputs by the name of their conceptual type."""
     other_types: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -158,8 +161,14 @@ def make_lookup(
 ) -> Lookup:
     """Build all look-ups, each in one pass over the architecture."""
     all_findings = tuple(findings)
-    components, nodes = architecture.components.values(), architecture.nodes.values()
+    nodes = architecture.nodes.values()
     written_connections = tuple(list_written_connections(architecture))
+    components_for_requirement = _group_values(
+        (use.text, c) for c in architecture.list_described_components() for use in c.requirements if use.is_id
+    )
+    chains_for_requirement = _group_values(
+        (r, chain) for chain in architecture.chains.values() for r in chain.requirements
+    )
     return Lookup(
         architecture,
         all_findings,
@@ -172,11 +181,10 @@ def make_lookup(
         nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
         endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.endpoints),
         findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
-        components_for_requirement=_group_values(
-            (use.text, c) for c in components for use in c.requirements if use.is_id
-        ),
-        chains_for_requirement=_group_values(
-            (r, chain) for chain in architecture.chains.values() for r in chain.requirements
+        components_for_requirement=components_for_requirement,
+        chains_for_requirement=chains_for_requirement,
+        requirement_trace=trace_requirements(
+            architecture, (*components_for_requirement, *chains_for_requirement), _list_chain_verdicts(timing_lookup)
         ),
         outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
         other_types=_find_other_types(architecture),
@@ -190,6 +198,20 @@ def make_lookup(
         steps=UseCaseSteps(architecture),
         timing=timing_lookup,
     )
+
+
+def add_timing(lookup: Lookup, timing_lookup: TimingLookup) -> Lookup:
+    """Return look-ups with the results of the timing analysis: a requirement whose chain misses its deadline is missed."""
+    trace = trace_requirements(
+        lookup.architecture,
+        (*lookup.components_for_requirement, *lookup.chains_for_requirement),
+        _list_chain_verdicts(timing_lookup),
+    )
+    return replace(lookup, timing=timing_lookup, requirement_trace=trace)
+
+
+def _list_chain_verdicts(timing_lookup: TimingLookup | None) -> dict[str, str]:
+    return {result.id: result.verdict for result in (timing_lookup.chains if timing_lookup else ())}
 
 
 def _list_ends(

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from archgen.model.architecture import Architecture, Chain, Requirement
+from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.port_media import ROS, is_physical, word_of_medium
+from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
@@ -112,8 +113,13 @@ def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, o
         "served_by": [component.id for component in lookup.components_for_requirement.get(requirement.id, ())],
         "served_by_chains": [chain.id for chain in lookup.chains_for_requirement.get(requirement.id, ())],
         "urls": dict(requirement.urls),
+        "parent": list(requirement.parents),
+        "verified_by": [{"kind": each.kind, "text": each.text} for each in requirement.verified_by],
     }
-    return pick_fields(requirement, "title", "description", "use_cases", "tags") | drop_unknown(dict(servers))
+    known_fields = pick_fields(
+        requirement, "title", "description", "kind", "priority", "rationale", "source", "use_cases", "tags"
+    )
+    return known_fields | drop_unknown(dict(servers))
 
 
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:

@@ -26,12 +26,13 @@ import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
-from archgen.model.architecture import Architecture, Chain, Partner, PortEdge, ProjectInfo, Requirement, Waypoint
+from archgen.model.architecture import Architecture, Chain, Partner, PortEdge, ProjectInfo, Waypoint
 from archgen.model.component import Component, Connection, Group, Input, Output, RequirementUse
 from archgen.model.declared_timing import Timing
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, PortUse, Topic
 from archgen.model.port_media import uses_ros
+from archgen.model.requirement import Requirement
 
 Words = dict[str, str]
 

@@ -17,13 +17,14 @@ import pytest
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
-from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, Requirement, UseCase, View
+from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, UseCase, View
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
+from archgen.model.requirement import Requirement
 from archgen.views.elements.element_card import kinds_by_id, make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.resolved_record import make_record
@@ -156,6 +157,7 @@ MODEL_ONLY = {
     **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
     "chain unresolved": "only for rules",
+    "requirement parents": "the key `parent`",
     "link unresolved": "only for rules",
     "frame by_kind": "what the key `by` names",
     "frame component": "where it is written",
@@ -167,6 +169,7 @@ TABLE_ONLY_FOR_MODEL = {
     "component_type is": "the field `base`",
     "component_type abstract": "the field `is_abstract`",
     "node kind": "the field `kinds`",
+    "requirement parent": "the field `parents`",
     "link latency": "the fields `best` and `worst`",
     "policy forbid": "the fields `forbid_from` and `forbid_to`",
     "component mapped": "follows from the nodes",
@@ -210,6 +213,7 @@ KINDS_NOT_IN_RECORD = {
     "policy": "a rule, not a part of the system",
 }
 CARD_ONLY = {
+    "state": "what serves and verifies it",
     "parent": "the beginning of the id",
     "ROS name": "made of name and namespace",
     "group": "the beginning of the id",
@@ -223,7 +227,7 @@ project: {id: robot, title: Robot, version: "1", description: D, middleware: oro
 ros: {distro: jazzy, parameters: {use_sim_time: true}}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c"}, sssa: S}
 use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}]}}
-requirements: {R-1: {title: R, description: D, use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
+requirements: {R-0: W, R-1: {title: R, description: D, parent: R-0, kind: k, priority: p, rationale: W, source: S, verified_by: [UC-1, c, t.py, by hand], use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
 groups:
   g:
     title: G
@@ -458,6 +462,7 @@ def test_no_key_is_listed_twice() -> None:
                 "group title, group description, group tags, group layout, group urls.docs, component functionality, "
                 "type comment, input external, output description, chapter text, "
                 "view show, view colour, view level, use_case title, use_case actors.p, use_case steps, requirement title, requirement urls.x, project title, "
+                "requirement rationale, requirement source, "
                 "project layout, partner description, host tags, node urls.x, frame title"
             ),
         ),
@@ -470,6 +475,7 @@ def test_no_key_is_listed_twice() -> None:
                 "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
+                "requirement parent, requirement kind, requirement priority, requirement verified_by, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
                 "output frame, input frame, type frame, link protocol, project middleware"
             ),

@@ -288,6 +288,22 @@ PROJECTS = st.fixed_dictionaries(
         "frames": st.dictionaries(
             IDS, st.one_of(st.none(), IDS, st.fixed_dictionaries({"by": IDS, "static": st.booleans()}))
         ),
+        "requirements": st.dictionaries(
+            IDS,
+            st.one_of(
+                WORDS,
+                st.none(),
+                st.fixed_dictionaries(
+                    {},
+                    optional={
+                        "parent": st.one_of(IDS, st.lists(IDS, max_size=2)),
+                        "priority": st.one_of(IDS, st.integers(), st.sampled_from(["no", "1e3"])),
+                        "verified_by": st.one_of(IDS, WORDS, st.lists(WORDS, max_size=2)),
+                        "source": WORDS,
+                    },
+                ),
+            ),
+        ),
         "types": st.dictionaries(WORDS, st.sampled_from(["std_msgs/msg/Bool", "std_srvs/srv/Trigger", "Bool"])),
         "ros": st.fixed_dictionaries({"distro": st.sampled_from(["jazzy", "noetic", "jazy"])}),
     },

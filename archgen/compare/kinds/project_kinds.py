@@ -13,11 +13,13 @@ from archgen.compare.kinds.shared_keys import (
     TAGS,
     TITLE,
     URLS,
+    prose_key,
     text_feature,
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo, UseCase
 from archgen.model.port_media import ROS
+from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.use_case_steps import StepEnd
 
@@ -164,12 +166,39 @@ USE_CASE = KindSpec(
     ),
     word="use case",
 )
+
+
+def _read_verifications(requirement: Requirement, context: ReadContext) -> frozenset[str]:
+    """Return what verifies a requirement; use cases and chains by their common ids."""
+    return frozenset(
+        str(context.common_id(each.kind, each.text)) if each.kind in {"use_case", "chain"} else each.text
+        for each in requirement.verified_by
+    )
+
+
 REQUIREMENT = KindSpec(
     "requirement",
     "Requirements",
     (
         TITLE,
         DESCRIPTION,
+        KeySpec(
+            "parent",
+            lambda requirement, context: context.common_ids("requirement", requirement.parents),
+            refers_to="requirement",
+            list_verbs=("is now part of", "is no longer part of"),
+            new_verb="is part of",
+        ),
+        KeySpec("kind", noun="kind"),
+        KeySpec("priority", noun="priority"),
+        prose_key("rationale"),
+        KeySpec("source", effect=Effect.TEXT),
+        KeySpec(
+            "verified_by",
+            _read_verifications,
+            list_verbs=("is now verified by", "is no longer verified by"),
+            new_verb="is verified by",
+        ),
         KeySpec(
             "use_cases",
             lambda requirement, context: context.common_ids("use_case", requirement.use_cases),

@@ -1,4 +1,4 @@
-"""Declare the sections of small elements: project, partners, requirements, chains, views, review and so on."""
+"""Declare the sections of small elements: project, partners, chains, views, review and so on."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, Requirement, View, Waypoint
+from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, View, Waypoint
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import ROS
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
@@ -44,22 +44,6 @@ def declare_partners(root: MappingNode) -> dict[str, Partner]:
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "partners")
-    }
-
-
-def declare_requirements(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Requirement]:
-    """Declare the requirements, with the use cases that are declared."""
-    return {
-        name: Requirement(
-            id=name,
-            title=mapping_values.get_text(body, "title") or name,
-            description=mapping_values.get_text(body, "description"),
-            use_cases=resolver.resolve_plain_ids(mapping_values.get_scalars(body, "use_cases"), "use case", name),
-            tags=mapping_values.get_texts(body, "tags"),
-            urls=mapping_values.get_text_mapping(body, "urls"),
-            at=entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "requirements")
     }
 
 

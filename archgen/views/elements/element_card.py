@@ -20,8 +20,9 @@ from archgen.views.elements.parameter_blocks import (
     list_operation_lines,
     list_parameter_lines,
 )
+from archgen.views.elements.requirement_facts import list_requirement_facts, list_requirement_parts
 from archgen.views.lookup import Lookup
-from archgen.views.requirement_servers import describe_chain_state, name_chain
+from archgen.views.requirement_servers import describe_chain_state
 from archgen.views.sequences.step_words import describe_total, list_step_lines
 from archgen.views.tables.type_fields import list_field_lines
 from archgen.views.timing.element_timing import make_whole_fact
@@ -408,11 +409,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
         lists += [("fields", field_lines)] if field_lines else []
         lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
     elif kind == "requirement":
-        serving_components = lookup.components_for_requirement.get(element_id, ())
-        serving_chains = lookup.chains_for_requirement.get(element_id, ())
-        names = [component.id for component in serving_components]
-        names += [f"the chain {name_chain(lookup, chain)}" for chain in serving_chains]
-        lists.append(("served by", tuple(names)))
+        requirement = architecture.requirements[element_id]
+        facts += list_requirement_facts(lookup, requirement)
+        lists += list_requirement_parts(lookup, requirement)
     elif kind == "partner":
         facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
         elements_by_kind = (

@@ -41,7 +41,7 @@ def make_composed_rows(
             tuple(leaves[shell.id]),
             "".join(type_lines(lookup, shell)),
             shorten_text(shell.functionality, shell.description),
-            tuple(key_numbers[key] for key in list_composed_keys(shell)),
+            tuple(key_numbers[key] for key in list_composed_keys(architecture, shell)),
             worst_severity(lookup, shell.id) or "",
             places[shell.group, *list_surrounding(architecture, shell.id), shell.id],
             list_places(lookup, shell.at),

@@ -15,6 +15,7 @@ from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import list_medium_words
+from archgen.model.requirement_tree import add_above
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -35,7 +36,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("type", name) for name in types[component.id]),
                     *(("medium", word) for port in _list_ports(component) for word in list_medium_words(port)),
                     *((("role", component.role),) if component.role else ()),
-                    *(("requirement", use.text) for use in component.requirements if use.is_id),
+                    *(("requirement", name) for name in _list_requirements(architecture, component)),
                     *_list_behaviours((component.timing,)),
                     *(("finding", rule) for rule in rules[component.id]),
                     *(("is", name) for name in architecture.list_types_of(component)),
@@ -48,7 +49,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
     }
 
 
-def list_composed_keys(shell: Component) -> tuple[Key, ...]:
+def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Key, ...]:
     """Return what is said of a composed component itself. No selector finds it by that: what flows, flows between leaves."""
     return tuple(
         dict.fromkeys(
@@ -56,7 +57,7 @@ def list_composed_keys(shell: Component) -> tuple[Key, ...]:
                 *(("tag", tag) for tag in shell.tags),
                 *(("owner", owner) for owner in shell.owners),
                 *((("role", shell.role),) if shell.role else ()),
-                *(("requirement", use.text) for use in shell.requirements if use.is_id),
+                *(("requirement", name) for name in _list_requirements(architecture, shell)),
             )
         )
     )
@@ -79,6 +80,12 @@ def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
             )
         )
     )
+
+
+def _list_requirements(architecture: Architecture, component: Component) -> Iterator[str]:
+    """Yield the requirements that a component serves, and what these are part of, each once."""
+    served_ids = [use.text for use in component.requirements if use.is_id]
+    yield from dict.fromkeys([*served_ids, *sorted(add_above(architecture.requirements, served_ids))])
 
 
 def _list_behaviours(timings: Iterable[Timing | None]) -> Iterator[Key]:

@@ -109,7 +109,9 @@ class _MapMaker:
         """The position of each key and value, in order of appearance."""
         used_keys = [key for component in self.components for key in self.component_keys[component.id]]
         used_keys += [key for node in self.nodes for key in self.node_keys[node.id]]
-        used_keys += [key for shell in self.shells for key in element_keys.list_composed_keys(shell)]
+        used_keys += [
+            key for shell in self.shells for key in element_keys.list_composed_keys(self.lookup.architecture, shell)
+        ]
         return {key: number for number, key in enumerate(dict.fromkeys(used_keys))}
 
     @cached_property

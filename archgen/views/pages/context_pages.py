@@ -1,4 +1,4 @@
-"""The site's pages around components and nodes: topics, types, requirements, use cases, hosts."""
+"""The site's pages around components and nodes: topics, types, use cases, hosts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
-from archgen.model.architecture import Requirement
 from archgen.model.component import Component
 from archgen.model.deployment import Container, Host
 from archgen.model.message_types import ConceptualType, flow_of
@@ -14,9 +13,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
-from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
-from archgen.views.requirement_servers import chain_link
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -31,7 +28,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
 )
-from archgen.views.tables import architecture_tables, type_fields
+from archgen.views.tables import architecture_tables, requirement_tables, type_fields
 from archgen.views.timing import element_timing
 from archgen.views.timing.host_waterfall import make_host_waterfall
 
@@ -43,11 +40,9 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
-    """Make a page for each type, requirement, use case, host and container."""
+    """Make a page for each type, use case, host and container."""
     for conceptual_type in sorted(architecture_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
         yield _type_page(lookup, conceptual_type)
-    for requirement in architecture_tables.shown_requirements(lookup):
-        yield _requirement_page(lookup, requirement)
     for name in lookup.architecture.use_cases:
         yield _use_case_page(lookup, name)
     for host in lookup.architecture.hosts.values():
@@ -232,40 +227,10 @@ def _size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
     )
 
 
-def _requirement_page(lookup: Lookup, requirement: Requirement) -> Page:
-    facts = [
-        (
-            "Use cases",
-            inline_text.join_inlines(architecture_tables.use_case_link(lookup, name) for name in requirement.use_cases),
-        ),
-        ("Tags", inline_text.to_inlines(", ".join(requirement.tags)) if requirement.tags else ()),
-        ("Links", inline_text.link_urls(requirement.urls.items())),
-    ]
-    blocks: list[Block] = [Paragraph(inline_text.to_inlines(requirement.title))]
-    blocks += [Facts(known_facts)] if (known_facts := tuple((name, value) for name, value in facts if value)) else []
-    blocks += [Markdown(requirement.description)] if requirement.description else []
-    serving_components = list(lookup.components_for_requirement.get(requirement.id, ()))
-    if serving_components:
-        blocks.append(
-            make_component_table(
-                lookup, f"table:serving/{requirement.id}", "Components that serve it", serving_components
-            )
-        )
-    serving_chains = lookup.chains_for_requirement.get(requirement.id, ())
-    if serving_chains:
-        blocks.append(Paragraph(inline_text.to_inlines(Text("Chains that serve it", strong=True))))
-        blocks.append(Bullets(tuple(chain_link(lookup, chain) for chain in serving_chains)))
-    if not serving_components and not serving_chains:
-        blocks.append(Paragraph(inline_text.to_inlines("No component serves this requirement yet."), "warning"))
-    crumb = ("Requirements and use cases", "page:requirements")
-    section = Section(f"requirement:{requirement.id}", requirement.id, tuple(blocks))
-    return make_page(section, "requirements", crumb, "Requirement")
-
-
 def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
     use_case = lookup.architecture.use_cases[use_case_id]
     serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
-    table = architecture_tables.make_requirement_table(lookup, serving_requirements)
+    table = requirement_tables.make_requirement_table(lookup, serving_requirements)
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += [table] if table else []

@@ -27,7 +27,7 @@ from archgen.views.shapes import (
     Table,
     Text,
 )
-from archgen.views.tables import architecture_tables, project_growth
+from archgen.views.tables import architecture_tables, project_growth, requirement_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 from archgen.views.timing import chain_status, timing_tables, value_format
 
@@ -56,7 +56,7 @@ def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigur
     yield _point_figure(lookup)
     if lookup.timing and lookup.timing.chains:
         yield _chain_figure(lookup)
-    if requirements := architecture_tables.shown_requirements(lookup):
+    if requirements := requirement_tables.shown_requirements(lookup):
         free_ids = [r.id for r in requirements if not requirement_servers.is_served(lookup, r)]
         served_count = len(requirements) - len(free_ids)
         note = _list_some(free_ids, "has no component", "have none") if free_ids else "all of them"
@@ -194,12 +194,12 @@ def _on_new_line(runs: Inlines) -> Inlines:
 
 
 def _requirement_card(lookup: Lookup) -> DashboardCard | None:
-    requirements = architecture_tables.shown_requirements(lookup)
+    requirements = requirement_tables.shown_requirements(lookup)
     if not requirements:
         return None
     free_ids = {r.id for r in requirements if not requirement_servers.is_served(lookup, r)}
     cells = tuple(
-        Text(r.id, ref=f"requirement:{r.id}", status="uncovered" if r.id in free_ids else "met")
+        Text(r.id, ref=f"requirement:{r.id}", status=lookup.requirement_trace.judge(r.id))
         for r in sorted(requirements, key=lambda each: each.id not in free_ids)
     )
     served_count = len(requirements) - len(free_ids)

@@ -14,7 +14,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.shapes import Page, Section
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import requirement_tables
 
 Flow = tuple[str, str, str, str]
 """Who gives, who takes, what, and the page that this leads to; both by id."""
@@ -194,40 +194,42 @@ def _order_entries(
 
 
 def make_requirement_matrix(lookup: Lookup) -> Matrix:
-    """Make the matrix of requirements against the components that serve them; what nobody serves comes first."""
+    """Make the matrix of requirements against the components and chains that serve them; what nobody serves comes first."""
     architecture = lookup.architecture
-    requirements = architecture_tables.shown_requirements(lookup)
+    requirements = requirement_tables.shown_requirements(lookup)
+    requirements = sorted(requirements, key=lambda each: each.id in lookup.requirement_trace.served)
     servers = {r.id: lookup.components_for_requirement.get(r.id, ()) for r in requirements}
-    requirements = sorted(requirements, key=lambda each: bool(servers[each.id]))
+    chains = {r.id: lookup.chains_for_requirement.get(r.id, ()) for r in requirements}
     serving_ids = {component.id for served in servers.values() for component in served}
-    component_ids = [
-        component.id
-        for group in lookup.shown_groups()
-        for component in lookup.shown_components(group)
-        if component.id in serving_ids
-    ]
-    places = {name: place for place, name in enumerate(component_ids)}
-    group_places = {
-        name: place for place, name in enumerate(dict.fromkeys(architecture.components[c].group for c in component_ids))
-    }
-    flows = [
-        MatrixFlow(row, places[component.id], f"{requirement.id} by {component.title}", f"component:{component.id}")
+    components = [component for component in lookup.nested_components() if component.id in serving_ids]
+    serving_chains = {chain.id: chain for served in chains.values() for chain in served}
+    columns = [f"component:{component.id}" for component in components] + [f"chain:{name}" for name in serving_chains]
+    places = {anchor: place for place, anchor in enumerate(columns)}
+    group_places = {name: place for place, name in enumerate(dict.fromkeys(each.group for each in components))}
+    links = [
+        (row, requirement, f"{kind}:{server.id}", server.title)
         for row, requirement in enumerate(requirements)
-        for component in servers[requirement.id]
-        if component.id in places
+        for kind, served in (("component", servers[requirement.id]), ("chain", chains[requirement.id]))
+        for server in served
     ]
+    chain_group = (MatrixEntry("Chains", "page:timing"),) if serving_chains else ()
     return Matrix(
         "requirements",
         "Requirements and components",
         tuple(MatrixEntry(f"{r.id} {r.title}", f"requirement:{r.id}") for r in requirements),
-        tuple(flows),
         tuple(
-            MatrixEntry(
-                architecture.components[c].title, f"component:{c}", group=group_places[architecture.components[c].group]
-            )
-            for c in component_ids
+            MatrixFlow(row, places[anchor], f"{requirement.id} by {title}", anchor)
+            for row, requirement, anchor, title in links
+            if anchor in places
         ),
-        tuple(MatrixEntry(architecture.groups[name].title, f"group:{name}") for name in group_places),
+        (
+            *(MatrixEntry(each.title, f"component:{each.id}", group=group_places[each.group]) for each in components),
+            *(
+                MatrixEntry(chain.title, f"chain:{chain.id}", group=len(group_places))
+                for chain in serving_chains.values()
+            ),
+        ),
+        (*(MatrixEntry(architecture.groups[name].title, f"group:{name}") for name in group_places), *chain_group),
         row_word="requirement",
         flow_word="link",
         giver_word="columns serve rows",

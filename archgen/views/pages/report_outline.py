@@ -19,7 +19,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth
+from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -204,14 +204,14 @@ class _ChapterMaker:
 
     def make_requirements(self) -> list[Section]:
         """Make the appendix that traces requirements."""
-        requirement_table = architecture_tables.make_requirement_table(
-            self.lookup, architecture_tables.shown_requirements(self.lookup)
+        requirement_table = requirement_tables.make_requirement_table(
+            self.lookup, requirement_tables.shown_requirements(self.lookup)
         )
         return self._make_appendix(
             "requirements",
             "Requirements trace",
             requirement_table,
-            architecture_tables.make_free_requirement_table(self.lookup),
+            requirement_tables.make_free_requirement_table(self.lookup),
         )
 
     def make_open_points(self) -> list[Section]:

@@ -21,6 +21,7 @@ from archgen.views.pages import (
     page_marks,
     page_places,
     partner_pages,
+    requirement_pages,
     timing_chapter,
     undrawn_pictures,
 )
@@ -30,7 +31,7 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth
+from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
 
@@ -49,6 +50,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     ]
     surrounding_pages = [
         *page_maker.message_pages().make_pages(),
+        *requirement_pages.make_requirement_pages(lookup),
         *context_pages.make_context_pages(lookup, page_maker.keep_drawn),
         *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags),
     ]
@@ -213,14 +215,14 @@ class PageMaker:
         )
         yield self._spanning_page("types", "Types", architecture_tables.make_type_table(self.lookup))
         yield self._spanning_page("messages", "Messages", self.message_pages().make_list())
-        requirement_table = architecture_tables.make_requirement_table(
-            self.lookup, architecture_tables.shown_requirements(self.lookup)
+        requirement_table = requirement_tables.make_requirement_table(
+            self.lookup, requirement_tables.shown_requirements(self.lookup)
         )
         yield self._spanning_page(
             "requirements",
             "Requirements and use cases",
             requirement_table,
-            architecture_tables.make_free_requirement_table(self.lookup),
+            requirement_tables.make_free_requirement_table(self.lookup),
         )
         summary = Paragraph(
             inline_text.to_inlines(

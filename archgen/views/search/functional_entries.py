@@ -142,14 +142,21 @@ def make_requirement_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         )
     for requirement in architecture.requirements.values():
         servers = lookup.components_for_requirement.get(requirement.id, ())
-        served_by = f"served by {', '.join(component.title for component in servers)}" if servers else ""
+        names = [component.title for component in servers]
+        names += [chain.title for chain in lookup.chains_for_requirement.get(requirement.id, ())]
+        is_whole = not names and requirement.id in lookup.requirement_trace.served
+        served_by = f"served by {', '.join(names)}" if names else "served by its parts" if is_whole else ""
         yield SearchEntry(
             "requirement",
             f"{requirement.id} {requirement.title}",
-            join_words(", ".join(requirement.use_cases), served_by or "served by no component"),
+            join_words(
+                ", ".join(requirement.use_cases),
+                *(each for each in (requirement.kind, requirement.priority) if each),
+                served_by or "served by no component",
+            ),
             (f"requirement:{requirement.id}",),
             make_owner_keys((), requirement.tags),
-            to_plain_text(requirement.description),
+            " ".join(filter(None, map(to_plain_text, (requirement.description, requirement.rationale)))),
         )
     for _, component in _shown_components(lookup):
         for use in component.requirements:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
-from archgen.model.architecture import Chain, Requirement
+from archgen.model.architecture import Chain
 from archgen.model.component import Connection
 from archgen.model.component_nesting import find_component
 from archgen.model.deployment import Link
@@ -17,7 +17,7 @@ from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
 from archgen.model.port_media import label_of_medium, name_medium
-from archgen.views import element_references, inline_text, requirement_servers
+from archgen.views import element_references, inline_text
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text
@@ -181,66 +181,6 @@ def describe_mapping(conceptual_type: ConceptualType) -> str:
     comment = " ".join((conceptual_type.comment or "").split())
     content = type_fields.describe_content(conceptual_type)
     return "; ".join(part for part in (comment, planned_remark, frame_remark, *content, *inner_messages) if part)
-
-
-def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requirement]) -> Table | None:
-    """List requirements with the components and chains that serve them."""
-    rows = tuple(
-        (
-            inline_text.to_inlines(Text(requirement.id, ref=f"requirement:{requirement.id}")),
-            inline_text.to_inlines(requirement.title),
-            inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
-            inline_text.join_inlines(requirement_servers.list_servers(lookup, requirement))
-            or inline_text.to_inlines(Text("uncovered", status="uncovered"), Text(" no component yet", muted=True)),
-        )
-        # What nobody serves comes first.
-        for requirement in sorted(selected_requirements, key=lambda each: requirement_servers.is_served(lookup, each))
-    )
-    columns = (
-        Column("Id", 0.5),
-        Column("Requirement", 1.8),
-        Column("Use cases", 1.0),
-        Column("Served by", 1.8),
-    )
-    return Table("table:requirements", "Requirements and what serves them", columns, rows) if rows else None
-
-
-def use_case_link(lookup: Lookup, use_case_id: str) -> Inlines:
-    """Link to a use case; plain text where it is not declared."""
-    declared_use_case = lookup.architecture.use_cases.get(use_case_id)
-    return (
-        inline_text.to_inlines(Text(use_case_id, ref=f"use_case:{use_case_id}"))
-        if declared_use_case
-        else inline_text.to_inlines(use_case_id)
-    )
-
-
-def shown_requirements(lookup: Lookup) -> list[Requirement]:
-    """Return the requirements that shown components serve; without a scope all of them."""
-    architecture = lookup.architecture
-    if lookup.scope.components is None:
-        return list(architecture.requirements.values())
-    return [
-        requirement
-        for requirement in architecture.requirements.values()
-        if any(
-            lookup.scope.shows_component(component.id)
-            for component in lookup.components_for_requirement.get(requirement.id, ())
-        )
-    ]
-
-
-def make_free_requirement_table(lookup: Lookup) -> Table | None:
-    """List the requirements that components state in their own words instead of by id."""
-    rows = tuple(
-        (inline_text.to_inlines(inline_text.component_link(component)), inline_text.to_inlines(use.text))
-        for group in lookup.shown_groups()
-        for component in lookup.shown_components(group)
-        for use in component.requirements
-        if not use.is_id
-    )
-    columns = (Column("Component"), Column("Requirement", 2.5))
-    return Table("table:own_requirements", "Requirements in the components' own words", columns, rows) if rows else None
 
 
 def make_finding_table(

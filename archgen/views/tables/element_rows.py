@@ -9,7 +9,7 @@ from archgen.model.port_media import uses_ros
 from archgen.views.elements import parameter_blocks
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import architecture_tables, requirement_tables
 
 TextRow = tuple[str, ...]
 
@@ -123,10 +123,21 @@ def _type_rows(lookup: Lookup) -> Iterator[TextRow]:
 
 
 def _requirement_rows(lookup: Lookup) -> Iterator[TextRow]:
-    for r in architecture_tables.shown_requirements(lookup):
+    for r in requirement_tables.shown_requirements(lookup):
         server_ids = [component.id for component in lookup.components_for_requirement.get(r.id, ())]
         server_ids += [chain.id for chain in lookup.chains_for_requirement.get(r.id, ())]
-        yield (r.id, r.title, ", ".join(r.use_cases), ", ".join(server_ids), str(r.at))
+        yield (
+            r.id,
+            r.title,
+            ", ".join(r.parents),
+            r.kind or "",
+            r.priority or "",
+            ", ".join(r.use_cases),
+            ", ".join(server_ids),
+            ", ".join(each.text for each in r.verified_by),
+            lookup.requirement_trace.judge(r.id),
+            str(r.at),
+        )
 
 
 def _use_case_rows(lookup: Lookup) -> Iterator[TextRow]:
@@ -214,7 +225,10 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     "edges": (("output", "input", "type", "message", "place"), _edge_rows),
     "topics": (("name", "flow", "messages", "writers", "readers"), _topic_rows),
     "types": (("type", "message", "size", "remarks"), _type_rows),
-    "requirements": (("id", "title", "use_cases", "served_by", "place"), _requirement_rows),
+    "requirements": (
+        ("id", "title", "parent", "kind", "priority", "use_cases", "served_by", "verified_by", "state", "place"),
+        _requirement_rows,
+    ),
     "use_cases": (("id", "title", "actors", "steps", "place"), _use_case_rows),
     "steps": (("use_case", "number", "from", "to", "says", "along", "place"), _step_rows),
     "chains": (("id", "title", "through", "deadline", "place"), _chain_rows),
