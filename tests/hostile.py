@@ -104,6 +104,18 @@ def project(text: str) -> dict[str, Any]:
         "nodes": {
             "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
             "m": {"implements": "b.y", "host": "h"},
+            "s": {
+                "kind": ["program"],
+                "host": "h",
+                "command": ["stage", text, f"-{text}"],
+                "start": {
+                    "after": ["n"],
+                    "environment": {"WORLD": text},
+                    "directory": text,
+                    "user": "robot",
+                    "ready": {"file": text, "topic": text, "service": text, "log": text, "within": "1 s"},
+                },
+            },
         },
         "types": {
             kind: {"message": "std_msgs/msg/String"},

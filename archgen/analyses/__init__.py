@@ -37,6 +37,8 @@ from archgen.analyses import (
     ros_generations,
     ros_messages,
     selector_checks,
+    start_order,
+    start_settings,
     timing_plausibility,
     topic_messages,
     topic_sources,
@@ -92,6 +94,8 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *policy_violations.RULES,
     *selector_checks.RULES,
     *frame_tree.RULES,
+    *start_order.RULES,
+    *start_settings.RULES,
     *completeness.RULES,
 )
 

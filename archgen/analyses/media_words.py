@@ -87,7 +87,7 @@ def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
               station: {inputs: {pose: drone.pose}, outputs: {}}
         nodes:
           drone: {implements: drone, publishes: {pose: {topic: fleet/drone_1/pose, qos: sensor_data}}}
-          station: {implements: station, kind: program}
+          station: {implements: station, kind: program, command: [station]}
 
     Good:
         groups:
@@ -97,7 +97,7 @@ def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
               station: {inputs: {pose: drone.pose}, outputs: {}}
         nodes:
           drone: {implements: drone, publishes: {pose: {topic: fleet/drone_1/pose}}}
-          station: {implements: station, kind: program}
+          station: {implements: station, kind: program, command: [station]}
     """
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):

@@ -70,7 +70,8 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
 def unjustified_node(architecture: Architecture) -> Iterator[Diagnostic]:
     """A node implements no component.
 
-    Why: A node that serves no function of the design is left over, or a component is missing.
+    Why: A node that serves no function of the design is left over, or a component is missing. Programs that are no ROS, what
+    runs once at the start and who activates other nodes are there for the start-up.
 
     Bad:
         groups:
@@ -93,9 +94,11 @@ def unjustified_node(architecture: Architecture) -> Iterator[Diagnostic]:
           camera_driver: {implements: camera}
           image_view: {implements: screen}
     """
+    managers = {node.start.by.id for node in architecture.nodes.values() if node.start and node.start.by}
     for node in architecture.nodes.values():
+        serves_start = node.id in managers or "program" in node.kinds or (node.start is not None and node.start.once)
         # `implements` that resolves to nothing is reported by the linker.
-        if node.written and not node.implements and not node.implements_written:
+        if node.written and not node.implements and not node.implements_written and not serves_start:
             yield Diagnostic(
                 "unjustified-node",
                 f"the node `{node.id}` implements no component",

@@ -21,6 +21,7 @@ _NAMED_SECTIONS = {
     "defaults": "default of",
     "comments": "what is said of",
     "callback_groups": "callback group",
+    "environment": "environment variable",
     "actors": "actor",
     "scheduling": "order on core",
 }
@@ -133,7 +134,7 @@ def _key_noun(key: str) -> str:
         timing_key, _, part = key.removeprefix("timing.").partition(".")
         if timing_key in _TIMING_SECTIONS and part:
             return f"{_TIMING_SECTIONS[timing_key]} `{shorten_text(part)}`"
-    section, _, name = key.partition(".")
+    section, _, name = key.removeprefix("start.").partition(".")
     if section in _PARTS_OF and name.rpartition(":")[2] in _PARTS_OF[section]:
         element_name, _, part = name.rpartition(":")
         return f"{_spell_out(part)} of the {_NAMED_SECTIONS[section]} `{shorten_text(element_name)}`"

@@ -15,12 +15,13 @@ _EXCLUSIVE_KEYS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (frozenset({"period"}), frozenset({"rate"})),
     (frozenset({"from"}), frozenset({"external"})),
     (frozenset({"executable"}), frozenset({"plugin"})),
+    (frozenset({"command"}), frozenset({"package", "executable", "plugin"})),
     (frozenset({"value"}), frozenset({"from"})),
 )
 """Keys that say the same in two ways: writing one of a side takes those of the other side away."""
 _PART_KINDS = {"inputs": "input", "outputs": "output", "components": "component"}
 _KEYS_OF_IDS = frozenset(
-    {"parameters", "operations", "performance", "urls", "containers", "frames", "hints", "calls", "uses"}
+    {"parameters", "operations", "performance", "urls", "containers", "frames", "hints", "calls", "uses", "environment"}
     | {"publishes", "subscribes", "serves", "inputs", "outputs"}
 )
 """Keys whose mappings have ids or names as keys: one called `rate` does not replace another called `period`."""

@@ -7,7 +7,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _OWN_KEYS = frozenset({"same_as", "is", "title", "owner", "layout", "from", "inputs", "node"})
 _OWN_INPUT_KEYS = frozenset({"from", "external"})
-_OWN_NODE_KEYS = frozenset({"host", "namespace"})
+_OWN_NODE_KEYS = frozenset({"host", "namespace", "start"})
 
 
 def find_changes_of_reference(body: MappingNode, component_id: str, type_name: str) -> list[Diagnostic]:

@@ -32,6 +32,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "idle-executor",
         "missing-detail",
         "uncovered-requirement",
+        "unmet-ready",
         "unlinked-hosts",
         "unmapped-component",
         "unpublished-output",
@@ -46,17 +47,20 @@ _WHOLE_MODEL_RULES = frozenset(
 _LACK_RULES = frozenset(
     {
         "absent-core",
+        "circular-start",
         "half-written",
         "idle-timing",
         "incompatible-qos",
         "remote-resource",
         "role-mismatch",
+        "unactivated-node",
         "unfed-input",
         "unjustified-component",
         "unjustified-node",
         "unknown-message",
         "unmapped-type",
         "unpublished-frame",
+        "unstarted-program",
     }
 )
 """Rules that report what an element lacks (or that depend on a default or a `status: planned`): they wait for an element

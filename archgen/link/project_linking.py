@@ -56,7 +56,9 @@ def link_project(  # noqa: PLR0913 - all by name
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
     written_targets = resolve_implements(root, resolver)
-    implemented = declare_component_nodes(element_outline, expansion, written_targets, declared_groups, parameters)
+    implemented = declare_component_nodes(
+        element_outline, expansion, written_targets, declared_groups, parameters, resolver
+    )
     implements = implemented.implements
     containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)

@@ -23,7 +23,7 @@ DataPath = tuple[str | int, ...]
 _BARE_KEYS = frozenset(
     {
         *("archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core", "measured"),
-        *("reentrant", "large_paper", "static", "abstract", "whole"),
+        *("reentrant", "large_paper", "static", "abstract", "whole", "respawn", "once", "port"),
     },
 )
 """Keys whose values are numbers or booleans; everything else outside of parameters is text."""

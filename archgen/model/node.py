@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.model.declared_timing import SchedulingOrder, Timing
 from archgen.model.parameter import FileRemark, ParameterValue
 from archgen.model.quantity import Quantity
+from archgen.model.start_up import StartUp
 
 NodeKind = Literal["node", "lifecycle", "composable", "driver", "nodelet", "program"]
 NodeStatus = Literal["existing", "adapted", "planned"]
@@ -81,6 +82,8 @@ class Node:
     package: str | None = None
     executable: str | None = None
     plugin: str | None = None
+    command: tuple[str, ...] = ()
+    """The words of the command that starts it, where it is no executable of a package."""
     container: str | None = None
     host: str | None = None
     """The node's own host, else its container's."""
@@ -99,6 +102,8 @@ class Node:
     parameter_files: tuple[str, ...] = ()
     parameter_commands: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """The words of the commands whose output is the value of a parameter, by its name."""
+    start: StartUp | None = None
+    """What it says of its start-up; None where it says nothing."""
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
     written: bool = True
@@ -107,6 +112,7 @@ class Node:
     name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     kind_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     container_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    command_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     executor_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """The spans of `threads`, `scheduling`, `callback_groups` and `reentrant`, where they are written."""
     own_values: tuple[ParameterValue, ...] = field(default=(), compare=False, repr=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from typing import Any
 
 from archgen.schema.language_schema import resolve_part
@@ -13,6 +14,7 @@ _LOWER_PATH = re.compile(r"[a-z][a-z0-9_.]*\Z")
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 _RANGE = re.compile(r"(\d{1,4})\s*(?:-|\.\.\.?)\s*(\d{1,4})\Z", re.ASCII)
+_SHELL_SIGN = re.compile(r"[$&|;<>`*?~]")
 _MAX_RANGE = 16
 """A longer list of numbers is not written out."""
 _MAX_LENGTH = 1000
@@ -43,6 +45,16 @@ def suggest_list(text: str, schema_part: dict[str, Any]) -> str:
     """Return a text as the list in brackets that was most likely meant."""
     entries = _list_range(text, schema_part) or split_ids(text, schema_part) or [text]
     return f"[{', '.join(map(_quote_entry, entries))}]"
+
+
+def suggest_words(text: str) -> str:
+    """Return a line for a shell as the list of words that was most likely meant, with what no shell will do."""
+    try:
+        words = shlex.split(text[:_MAX_LENGTH])
+    except ValueError:  # a quote that is not closed
+        words = text[:_MAX_LENGTH].split()
+    note = "; no shell reads it" if _SHELL_SIGN.search(text) else ""
+    return f"write its words as a list: `[{', '.join(map(_quote_entry, words))}]`{note}"
 
 
 def _list_range(text: str, schema_part: dict[str, Any]) -> list[str]:

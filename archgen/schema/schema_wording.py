@@ -219,6 +219,8 @@ def _suggest_message(text: str, pattern: str) -> str | None:
 
 
 def _find_value_help(kind: str, text: str, schema_part: dict[str, Any], *, is_entry: bool) -> str | None:
+    if kind == "pattern" and schema_part.get("title") == "Command":
+        return list_wording.suggest_words(clip_text(text))
     if kind == "pattern":
         help_line = _find_pattern_help(text, schema_part, is_entry=is_entry)
         if help_line:

@@ -46,8 +46,12 @@ _CALL_FORM = ElementForm(("name",))
 _USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
 _CONTAINER_FORM = ElementForm(("host",), raw_keys=frozenset({"parameters"}))
 _FRAME_FORM = ElementForm(("parent",))
+_START_FORM = ElementForm(("after",), frozenset({"after"}), part_forms={"ready": ElementForm(("wait",))})
 _COMPONENT_NODE_FORM = ElementForm(
-    list_keys=frozenset({"kind"}), keyed_forms=_USE_FORMS, raw_keys=frozenset({"parameters"})
+    list_keys=frozenset({"kind", "command"}),
+    keyed_forms=_USE_FORMS,
+    part_forms={"start": _START_FORM},
+    raw_keys=frozenset({"parameters"}),
 )
 
 _COMPONENT_PARTS = {
@@ -75,9 +79,9 @@ _COMPONENT_TYPE_FORM = ElementForm(
 )
 _NODE_FORM = ElementForm(
     ("implements",),
-    frozenset({"implements", "kind"}),
+    frozenset({"implements", "kind", "command"}),
     keyed_forms=_USE_FORMS,
-    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS)},
+    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS), "start": _START_FORM},
     raw_keys=frozenset({"parameters"}),
 )
 # One latency is both the best and the worst: a constant.

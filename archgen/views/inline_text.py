@@ -29,6 +29,7 @@ NODE_KIND_WORDS = {
     "composable": "composable node",
     "driver": "driver",
     "nodelet": "nodelet",
+    "program": "program",
 }
 ENDPOINT_USE_WORDS = {"publishes": "publishes", "subscribes": "subscribes to", "serves": "serves", "calls": "calls"}
 UNKNOWN_INLINES: Inlines = (Text("not known yet", muted=True),)

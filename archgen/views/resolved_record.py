@@ -19,6 +19,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
 from archgen.views.shapes import Record
+from archgen.views.start_record import record_start
 from archgen.views.timing_record import record_timing
 from archgen.views.type_record import record_type
 from archgen.views.use_case_record import record_use_cases
@@ -265,6 +266,8 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             **{key: getattr(node, key) for key in field_names},
             "full_name": node.full_name,
             "kind": list(node.kinds),
+            "command": list(node.command),
+            "start": record_start(node.start),
             "co_owners": list(node.co_owners),
             "implements": list(node.implements),
             "callback_groups": {name: list(members) for name, members in node.callback_groups.items()},

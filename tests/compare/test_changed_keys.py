@@ -206,3 +206,40 @@ def test_an_option_that_is_written_in_another_way_has_not_changed(told: Told) ->
     assert told("rules: {late-chain: {margin: 20 %}}\n", "rules: {late-chain: {margin: 2.5 %}}\n") == [
         "changed project robot: the project: `margin` of the rule `late-chain` `20 %` → `2.5 %`"
     ]
+
+
+START = """\
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes:
+  na: {implements: a, kind: lifecycle, command: [run, it], start: {phase: core, by: m, ready: {topic: up, within: 2 s}, environment: {A: b}}}
+  nb: {implements: b, start: {after: na, user: robot}}
+  m: {kind: program, command: [m]}
+"""
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "phase of its start `core` → `network`"),
+        ("after: na", "after: [na, m]", "nb", "start.after", ["na"], ["m", "na"], " now starts after `m`"),
+        ("topic: up", "topic: /up", "na", "start.ready.topic", None, None, None),
+        ("topic: up", "topic: ~/up", "na", "start.ready.topic", "/up", "/na/up", "topic that shows it is up `/up` → `/na/up`"),
+        ("within: 2 s", "within: 3 s", "na", "start.ready.within", "2 s", "3 s", "longest time until it is up `2 s` → `3 s`"),
+        ("A: b", "A: c", "na", "start.environment.A", "b", "c", "environment variable `A` `b` → `c`"),
+        (", user: robot", "", "nb", "start.user", "robot", None, "user as whom it runs no longer given (it was `robot`)"),
+        ("by: m", "state: inactive, by: m", "na", "start.state", None, "inactive", "state that it is brought into set to `inactive`"),
+        ("[run, it]", '[run, "it all"]', "na", "command", "run it", "run 'it all'", None),
+    ],
+)  # fmt: skip
+def test_keys_of_the_start_up(compared: Compared, case: tuple[str, str, str, str, object, object, str | None]) -> None:
+    old, new, element, key, before, after, text = case
+    assert old in START
+    changes = compared(START, START.replace(old, new, 1)).changes
+    if before is after is None:
+        assert changes == ()
+        return
+    (change,) = changes
+    assert (f"{change.element_kind} {change.element_id}", change.key) == (f"node {element}", key)
+    assert (change.before, change.after) == (before, after)
+    if text is not None:
+        assert change.text == (f"node `{element}`{text}" if text.startswith(" ") else f"node `{element}`: {text}")

@@ -293,6 +293,8 @@ nodes:
     parameters: {plugins.x: 1}
     parameter_commands: {plugins.y: [cat, z]}
     parameter_files: [p.yaml]
+    command: [stage, w]
+    start: {phase: components, after: m, ready: {port: 1, file: f, topic: t, service: s, log: l, wait: 1 s, within: 2 s}, respawn: true, respawn_delay: 1 s, environment: {A: b}, directory: /d, user: u, once: true, state: active, by: m}
     tags: [t]
     urls: {a: "https://a.eu"}
     publishes: {o: /o}
@@ -471,7 +473,7 @@ def test_no_key_is_listed_twice() -> None:
             (
                 "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, component performance.p.accuracy, "
                 "component requirements, chain requirements, node package, node executable, node plugin, node status, "
-                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, project parameters.x, "
+                "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, node command, node start.after, node start.ready.port, node start.environment.x, project parameters.x, "
                 "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "

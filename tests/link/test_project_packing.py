@@ -277,13 +277,35 @@ DATA = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS.filter(bool), inner, max_size=3),
     max_leaves=6,
 )
+START = st.fixed_dictionaries(
+    {},
+    optional={
+        "phase": st.sampled_from(["core", "cores"]),
+        "after": st.one_of(IDS, st.lists(IDS, max_size=2)),
+        "ready": st.one_of(
+            st.just("2 s"), st.fixed_dictionaries({}, optional={"port": st.integers(0, 90000), "log": WORDS})
+        ),
+        "respawn": st.booleans(),
+        "environment": st.dictionaries(st.sampled_from(["port", "once", "A"]), st.one_of(WORDS, st.integers())),
+        "by": IDS,
+    },
+)
 PROJECTS = st.fixed_dictionaries(
     {"archgen": st.just(1)},
     optional={
         "project": st.fixed_dictionaries({}, optional={"title": WORDS, "description": WORDS}),
         "groups": st.dictionaries(IDS, st.fixed_dictionaries({"components": st.dictionaries(IDS, COMPONENT)})),
         "nodes": st.dictionaries(
-            IDS, st.fixed_dictionaries({}, optional={"implements": IDS, "parameters": st.dictionaries(IDS, DATA)})
+            IDS,
+            st.fixed_dictionaries(
+                {},
+                optional={
+                    "implements": IDS,
+                    "parameters": st.dictionaries(IDS, DATA),
+                    "command": st.one_of(st.just("stage"), st.lists(WORDS, max_size=2)),
+                    "start": st.one_of(IDS, st.lists(IDS, max_size=2), START),
+                },
+            ),
         ),
         "frames": st.dictionaries(
             IDS, st.one_of(st.none(), IDS, st.fixed_dictionaries({"by": IDS, "static": st.booleans()}))
@@ -396,3 +418,24 @@ def test_frames_pack_to_the_same(tmp_path: Path) -> None:
     again = packed_again(checked, tmp_path)
     for name in ("frames", "types", "outputs"):
         assert getattr(again.architecture, name) == getattr(checked.architecture, name)
+
+
+def test_what_is_written_of_the_start_up_is_packed_as_it_was_written(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+project: {id: r, title: R}
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes:
+  a: {implements: a, package: p, executable: e, start: {phase: core, ready: {topic: /g/a/x, within: 2 s}, environment: {port: "1", once: no}}}
+  b: {implements: b, command: run, start: [a, stage]}
+  stage: {kind: program, command: [stage, 1.10, --fast], start: {phase: simulators, ready: {port: 6665}, respawn: true, respawn_delay: 1 s}}
+"""
+    checked = project(tmp_path / "p", archgen_yaml=text)
+    nodes = yaml.safe_load(text_of(checked))["nodes"]
+    assert nodes["a"]["start"]["environment"] == {"port": "1", "once": "no"}
+    assert (nodes["b"]["command"], nodes["b"]["start"]) == (["run"], {"after": ["a", "stage"]})
+    assert nodes["stage"]["command"] == ["stage", "1.10", "--fast"]
+    assert nodes["stage"]["start"]["ready"] == {"port": 6665}
+    assert nodes["stage"]["start"]["respawn"] is True
+    again = packed_again(checked, tmp_path)
+    assert again.architecture.nodes == checked.architecture.nodes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from archgen.compare.kinds.shared_keys import (
     text_feature,
     timing_key,
 )
+from archgen.compare.kinds.start_keys import START_KEYS, read_start
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
 from archgen.diagnostics.source_span import NO_SPAN
@@ -111,6 +113,7 @@ NODE = KindSpec(
         KeySpec("package", effect=Effect.SYSTEM),
         KeySpec("executable", effect=Effect.SYSTEM),
         KeySpec("plugin", effect=Effect.SYSTEM),
+        KeySpec("command", lambda node, _: " ".join(map(shlex.quote, node.command)) or None, Effect.SYSTEM),
         KeySpec(
             "container",
             lambda node, context: context.common_id("container", node.container),
@@ -131,6 +134,7 @@ NODE = KindSpec(
         KeySpec("scheduling", worsening=Worsening.ALWAYS),
         KeySpec("reentrant", lambda node, _: node.reentrant or None, worsening=Worsening.ALWAYS),
         KeySpec("callback_groups.", _read_callback_groups, worsening=Worsening.ALWAYS),
+        KeySpec("start.", read_start, Effect.SYSTEM, inner=START_KEYS),
         KeySpec("status", effect=Effect.SYSTEM, verb="is"),
         KeySpec("parameter_files", effect=Effect.SYSTEM),
         TAGS,

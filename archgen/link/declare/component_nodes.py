@@ -11,15 +11,17 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.link import mapping_values
 from archgen.link.declare.group_declaration import DeclaredGroups
 from archgen.link.declare.handed_parameters import HandedParameters
+from archgen.link.declare.start_declaration import inherit_start, resolve_start
 from archgen.link.element_outline import ElementOutline
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.derived_names import derive_node_ids
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
-_INHERITED_KEYS = frozenset({"host", "container", "namespace", "parameters"})
+_INHERITED_KEYS = frozenset({"host", "container", "namespace", "parameters", "start"})
 """What a composed component says for all nodes inside."""
 _CONTAINER_KEYS = ("host", "namespace")
 """What it says for the containers inside as well."""
-_MAPPING_KEYS = frozenset({"package", "executable", "plugin"})
+_MAPPING_KEYS = frozenset({"package", "executable", "plugin", "command"})
 """Keys of a node that say what runs: with one of them its component is mapped."""
 
 
@@ -38,19 +40,20 @@ class ImplementingNodes(NamedTuple):
     """Nodes of components that say where they run, but not what."""
 
 
-def declare_component_nodes(
+def declare_component_nodes(  # noqa: PLR0913, PLR0917 - what nodes are made of
     outline: ElementOutline,
     expansion: ExpandedProject,
     written_targets: dict[str, tuple[str, ...]],
     declared_groups: DeclaredGroups,
     parameters: HandedParameters,
+    resolver: ReferenceResolver,
 ) -> ImplementingNodes:
     """Return all nodes: those that are written, and those that components bring along."""
     root = expansion.root
     if expansion.is_plain:
         return ImplementingNodes(root, written_targets, {}, lambda _kind, port: (port,))
     written_nodes = mapping_values.get_mapping(root, "nodes")
-    made = ComponentNodes(outline, expansion, written_nodes, written_targets, parameters)
+    made = ComponentNodes(outline, expansion, written_nodes, written_targets, parameters, resolver)
     targets = {**written_targets, **made.implements}
     sections = {**root.entries, **made.list_container_section(root)}
     sections["nodes"] = MappingEntry("nodes", written_nodes.span, MappingNode(made.entries, written_nodes.span))
@@ -69,13 +72,14 @@ def declare_component_nodes(
 class ComponentNodes:
     """The nodes that components bring along: `entries` in normal form by node id, `implements` by node id."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913, PLR0917 - what nodes are made of
         self,
         outline: ElementOutline,
         expansion: ExpandedProject,
         written_nodes: MappingNode,
         implements: Mapping[str, tuple[str, ...]],
         parameters: HandedParameters,
+        resolver: ReferenceResolver,
     ) -> None:
         """Make them: for components that no written node implements, and under those of written nodes."""
         self.entries: dict[str, MappingEntry] = {}
@@ -85,6 +89,7 @@ class ComponentNodes:
         self._outline = outline
         self._expansion = expansion
         self._parameters = parameters
+        self._resolver = resolver
         self._diagnostics = parameters.diagnostics
         self._bodies: dict[str, MappingNode] = {}
         self._lay_under_written(written_nodes, implements)
@@ -181,15 +186,25 @@ class ComponentNodes:
     def _find_body(self, component_id: str) -> MappingNode:
         """Return what a component's node has: its own keys over those of what is around it."""
         if component_id not in self._bodies:
-            own = self._parameters.fill_in_body(self._own_node(component_id), component_id)
+            filled = self._parameters.fill_in_body(self._own_node(component_id), component_id)
+            own = resolve_start(filled, self._resolver, component_id)
             parent = self._expansion.parents.get(component_id)
             around = self._find_body(parent) if parent else mapping_values.EMPTY_MAPPING
-            inherited = {key: entry for key, entry in around.entries.items() if key in _INHERITED_KEYS}
+            inherited = _list_inherited(around)
             body = lay_node(MappingNode(inherited, around.span), own) if inherited else own
             if inherited and own.entries:
                 _join_namespaces(body, inherited, own)
             self._bodies[component_id] = body
         return self._bodies[component_id]
+
+
+def _list_inherited(around: MappingNode) -> dict[str, MappingEntry]:
+    """Return what the nodes inside have of what a composed component says."""
+    entries = {key: entry for key, entry in around.entries.items() if key in _INHERITED_KEYS}
+    if "start" in entries:
+        start = inherit_start(entries.pop("start"))
+        entries |= {"start": start} if start else {}
+    return entries
 
 
 def _drop_whole(body: MappingNode) -> MappingNode:

@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.link import mapping_values
 from archgen.link.declare.callback_groups import EXECUTOR_KEYS, declare_callback_groups
 from archgen.link.declare.component_nodes import ImplementingNodes
+from archgen.link.declare.start_declaration import declare_start, read_command
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.merged_timing import TimingMerger
@@ -98,6 +99,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         package=mapping_values.get_text(body, "package"),
         executable=mapping_values.get_text(body, "executable"),
         plugin=mapping_values.get_text(body, "plugin"),
+        command=read_command(body, resolver, node_id),
         container=container,
         host=host or (context.containers[container].host if container else None),
         threads=mapping_values.get_integer(body, "threads"),
@@ -112,6 +114,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         parameters=mapping_values.get_data(body, "parameters"),
         parameter_files=mapping_values.get_texts(body, "parameter_files"),
         parameter_commands=_read_commands(body),
+        start=declare_start(body, resolver, node_id),
         own_values=tuple(_list_own_values(body)),
         tags=mapping_values.get_texts(body, "tags"),
         urls=mapping_values.get_text_mapping(body, "urls"),
@@ -121,6 +124,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         name_at=mapping_values.get_span(body, "name"),
         kind_at=mapping_values.get_span(body, "kind"),
         container_at=mapping_values.get_span(body, "container"),
+        command_at=mapping_values.get_span(body, "command"),
         executor_places={key: mapping_values.get_span(body, key) for key in EXECUTOR_KEYS if key in body.entries},
     )
 

@@ -1,0 +1,328 @@
+"""Can the start-up come to its end: does what is waited for come up, and does nothing wait for itself?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.bringup.start_commands import build_command
+from archgen.bringup.start_plan import describes_start, make_start_plan, resolve_conditions
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.start_up import DEFAULT_PHASE, NO_START
+from archgen.transform.ros_names import shared_topic_names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.bringup.plan_shapes import DroppedWait, StartPlan
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Node, Topic
+
+_MAX_LISTED = 6
+"""So many steps of a circle are named."""
+
+
+def circular_start(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Something is to start after what starts only after it.
+
+    Why: `after` and the phases never give way: the start-up would wait for ever. Waits that follow from connections do give
+    way where they close a circle; the plan says which ones.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              localiser: {outputs: {pose: geometry_msgs/msg/PoseStamped}}
+              planner: {inputs: {pose: localiser.pose}}
+        nodes:
+          localiser: {implements: localiser, start: {after: planner}}
+          planner: {implements: planner, start: {after: localiser}}
+
+    Good:
+        groups:
+          driving:
+            components:
+              localiser: {outputs: {pose: geometry_msgs/msg/PoseStamped}}
+              planner: {inputs: {pose: localiser.pose}}
+        nodes:
+          localiser: {implements: localiser}
+          planner: {implements: planner, start: {after: localiser}}
+    """
+    if any(node.start is not None and node.start.after for node in architecture.nodes.values()):
+        for circle in make_start_plan(architecture).circles:
+            yield _diagnose_circle(architecture, circle)
+
+
+def _diagnose_circle(architecture: Architecture, closed: DroppedWait) -> Diagnostic:
+    waiting, awaited = closed.wait.waiting, closed.wait.awaited
+    if not closed.circle:
+        phases = [(architecture.nodes[name].start or NO_START).phase for name in (waiting, awaited)]
+        own, other = (phase or DEFAULT_PHASE for phase in phases)
+        return Diagnostic(
+            "circular-start",
+            f"`{waiting}` starts after `{awaited}`, but in an earlier phase: `{own}` is over before `{other}` begins",
+            closed.wait.at,
+            labels=(
+                Label(
+                    architecture.nodes[awaited].at,
+                    f"in the phase `{other}`" + ("" if phases[1] else ", as nothing is written"),
+                ),
+            ),
+            help=f"write `phase: {own}` at `{awaited}`, `phase: {other}` at `{waiting}`, or take `after` out",
+            element=waiting,
+        )
+    way = [f"`{name}`" for name in reversed(closed.circle)]
+    shown = [*way[: _MAX_LISTED - 1], "...", way[-1]] if len(way) > _MAX_LISTED else way
+    message = f"`{waiting}` starts after itself"
+    if len(way) > 1:
+        message = f"`{waiting}` starts after {', which starts after '.join(shown)}"
+    places = (_find_after_span(architecture, name) for name in closed.circle[1 : _MAX_LISTED + 1])
+    return Diagnostic(
+        "circular-start",
+        message,
+        closed.wait.at,
+        labels=tuple(Label(place, "the circle goes on here") for place in places if place),
+        help="take one of these `after` out",
+        element=waiting,
+    )
+
+
+def _find_after_span(architecture: Architecture, node_id: str) -> Span | None:
+    start = architecture.nodes[node_id].start if node_id in architecture.nodes else None
+    return start.after[0].at if start and start.after else None
+
+
+def unmet_ready(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Something is up only when a topic or a service is there that nobody gives, or only somebody who starts later.
+
+    Why: What starts after it waits until the time is over, and then the start-up has failed.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
+              planner: {inputs: {map: map_server.map}}
+        nodes:
+          map_server:
+            implements: map_server
+            publishes: {map: /map}
+            start: {phase: core, ready: {topic: /maps, within: 20 s}}
+          planner: planner
+
+    Good:
+        groups:
+          driving:
+            components:
+              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
+              planner: {inputs: {map: map_server.map}}
+        nodes:
+          map_server:
+            implements: map_server
+            publishes: {map: /map}
+            start: {phase: core, ready: {topic: /map, within: 20 s}}
+          planner: planner
+    """
+    plan: StartPlan | None = None
+    for node in architecture.nodes.values():
+        if node.start is None or (node.start.ready.topic is None and node.start.ready.service is None):
+            continue
+        ready = resolve_conditions(node.start.ready, node)
+        for key, name in (("topic", ready.topic), ("service", ready.service)):
+            if name is None or _is_always_there(architecture, key, name):
+                continue
+            givers = _list_givers(architecture, key, name)
+            if not givers:
+                yield _diagnose_no_giver(architecture, node, key, name)
+            elif node.id not in givers:
+                plan = plan or make_start_plan(architecture)
+                if _find_later_steps(plan, node.id).issuperset(givers):
+                    yield _diagnose_late_giver(architecture, node, key, name, givers)
+
+
+def _is_always_there(architecture: Architecture, key: str, name: str) -> bool:
+    """Whether every node has it: topics that all share, and the services of nodes themselves."""
+    if key == "topic":
+        return name in shared_topic_names(architecture.shared_topics)
+    return any(name.startswith(f"{node.full_name}/") for node in architecture.nodes.values())
+
+
+def _list_givers(architecture: Architecture, key: str, name: str) -> list[str]:
+    """Return the nodes that publish a topic, or offer a service or an action."""
+    return list(
+        dict.fromkeys(
+            writer.node
+            for topic in architecture.topics.values()
+            if topic.name == name and _is_of_key(topic, key)
+            for writer in topic.writers
+        )
+    )
+
+
+def _is_of_key(topic: Topic, key: str) -> bool:
+    return (topic.flow == "topic") == (key == "topic")
+
+
+def _diagnose_no_giver(architecture: Architecture, node: Node, key: str, name: str) -> Diagnostic:
+    known_names = [topic.name for topic in architecture.topics.values() if topic.writers and _is_of_key(topic, key)]
+    verb = "publishes" if key == "topic" else "offers"
+    return Diagnostic(
+        "unmet-ready",
+        f"`{node.id}` is up when the {key} `{name}` is there, but nobody {verb} it",
+        _find_ready_span(node, key),
+        help=did_you_mean(name, known_names)
+        or f"name a {key} that a node {verb}; one of no component stands below `internal` of its node",
+        element=node.id,
+    )
+
+
+def _diagnose_late_giver(architecture: Architecture, node: Node, key: str, name: str, givers: list[str]) -> Diagnostic:
+    ticked = join_words([f"`{each}`" for each in givers[:_MAX_LISTED]])
+    verb = "publishes" if key == "topic" else "offers"
+    return Diagnostic(
+        "unmet-ready",
+        f"`{node.id}` is up when the {key} `{name}` is there, but {ticked}, which {verb} it, waits for `{node.id}`",
+        _find_ready_span(node, key),
+        labels=tuple(Label(architecture.nodes[each].at, "starts later") for each in givers[:_MAX_LISTED]),
+        help=f"write what `{node.id}` itself shows when it is up",
+        element=node.id,
+    )
+
+
+def _find_ready_span(node: Node, key: str) -> Span:
+    places = node.start.ready.places if node.start else {}
+    return places.get(key, node.at)
+
+
+def _find_later_steps(plan: StartPlan, step_id: str) -> set[str]:
+    """Return the steps that wait for one, directly or not; without those that only need that it was started."""
+    later = {step_id}
+    for step in plan.steps:
+        if any(wait.awaited in later and wait.reason != "manages" for wait in step.waits):
+            later.add(step.id)
+    return later - {step_id}
+
+
+def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Two programs on one host are to listen on the same port.
+
+    Why: The second one that starts finds the port taken and ends, or the first one is taken for the second one.
+
+    Bad:
+        nodes:
+          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
+          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6665}}}
+        hosts: {sim_pc: {title: Simulation computer}}
+
+    Good:
+        nodes:
+          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
+          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6666}}}
+        hosts: {sim_pc: {title: Simulation computer}}
+    """
+    first_nodes: dict[tuple[str | None, int], Node] = {}
+    for node in architecture.nodes.values():
+        port = node.start.ready.port if node.start else None
+        if port is None:
+            continue
+        first = first_nodes.setdefault((node.host, port), node)
+        if first is not node:
+            place = f"on `{node.host}`" if node.host else "and on no host that is named"
+            yield Diagnostic(
+                "shared-port",
+                f"`{first.id}` and `{node.id}` are both to listen on the port {port} {place}",
+                _find_ready_span(node, "port"),
+                labels=(Label(_find_ready_span(first, "port"), f"`{first.id}`"),),
+                help="give one of them another port" + ("" if node.host else ", or each its host"),
+                element=node.id,
+            )
+
+
+def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A lifecycle node is started, and nobody says who activates it.
+
+    Why: A lifecycle node does nothing until it is configured and activated. It is asked as soon as the project says something
+    about its start-up.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
+              planner: {inputs: {map: map_server.map}}
+        nodes:
+          map_server: {implements: map_server, kind: lifecycle, start: {phase: core}}
+          planner: planner
+
+    Good:
+        groups:
+          driving:
+            components:
+              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
+              planner: {inputs: {map: map_server.map}}
+        nodes:
+          map_server: {implements: map_server, kind: lifecycle, start: {phase: core, state: active}}
+          planner: planner
+    """
+    if not describes_start(architecture):
+        return
+    managers: dict[str, list[str]] = defaultdict(list)
+    for node in architecture.nodes.values():
+        if node.start and node.start.by:
+            managers[node.start.by.id].append(node.id)
+    usual = max(managers, key=lambda name: len(managers[name]), default=None)
+    for node in architecture.nodes.values():
+        if "lifecycle" in node.kinds and (node.start or NO_START).wanted_state is None:
+            by_help = f"`start: {{by: {usual}}}`" if usual else "`start: {by: NODE}` with the node that manages it"
+            yield Diagnostic(
+                "unactivated-node",
+                f"nobody activates the lifecycle node `{node.id}`",
+                node.kind_at,
+                help=f"write `start: {{state: active}}`, or {by_help}",
+                element=node.id,
+            )
+
+
+def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A program has no command and no package, and nothing shows that it is up.
+
+    Why: Nobody can start it, and nobody can wait for it. A program that is started elsewhere (a cloud service, another team's
+    computer) says by what one sees that it is up: `ready`.
+
+    Bad:
+        nodes:
+          fleet_server: {kind: program}
+          logger: {kind: program, command: [logger], start: fleet_server}
+
+    Good:
+        nodes:
+          fleet_server: {kind: program, start: {ready: {port: 8080}}}
+          logger: {kind: program, command: [logger], start: fleet_server}
+    """
+    if not describes_start(architecture):
+        return
+    for node in architecture.nodes.values():
+        is_known = (
+            node.status == "planned" or build_command(architecture, node) or (node.start or NO_START).ready.has_sign
+        )
+        if node.is_program and node.written and not is_known:
+            yield Diagnostic(
+                "unstarted-program",
+                f"nothing says how the program `{node.id}` is started, nor how one sees that it is up",
+                node.kind_at,
+                help="write its `command`, or `start: {ready: ...}` where somebody else starts it; while it is not "
+                "decided, `status: planned`",
+                element=node.id,
+            )
+
+
+RULES = (
+    (circular_start, Severity.ERROR),
+    (unmet_ready, Severity.WARNING),
+    (shared_port, Severity.WARNING),
+    (unactivated_node, Severity.WARNING),
+    (unstarted_program, Severity.WARNING),
+)

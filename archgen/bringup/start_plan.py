@@ -1,0 +1,153 @@
+"""Make the plan of a start-up: phases, then who waits for whom, with circles cut where least is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from heapq import heapify, heappop, heappush
+
+from archgen.bringup.plan_shapes import FIRM_NEED, DroppedWait, StartPlan, StartStep, StepKind, Wait
+from archgen.bringup.start_commands import (
+    build_command,
+    build_container_command,
+    list_needed_rights,
+    list_transitions,
+)
+from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
+from archgen.bringup.wait_circles import keep_acyclic
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node
+from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
+from archgen.transform.ros_names import resolve_ros_name
+
+
+def describes_start(architecture: Architecture) -> bool:
+    """Whether a project says anything about its start-up."""
+    return any(node.start is not None or node.command for node in architecture.nodes.values())
+
+
+def make_start_plan(architecture: Architecture) -> StartPlan:
+    """Return the plan of all nodes and containers; it depends on nothing else, and on no order but that of the files."""
+    start_waits = StartWaits(architecture)
+    phases = _find_phases(architecture)
+    step_ids = list(phases)
+    following: list[Wait] = []
+    against_phases: list[Wait] = []
+    for wait in start_waits.list_waits():
+        is_against = PHASES.index(phases[wait.awaited]) > PHASES.index(phases[wait.waiting])
+        (against_phases if is_against else following).append(wait)
+    kept, closing = keep_acyclic(step_ids, following)
+    left_out = [*(DroppedWait(wait) for wait in against_phases), *closing]
+    waits_of = group_by_waiting(kept)
+    steps = {step.id: step for step in _list_steps(architecture, phases, start_waits.managers)}
+    return StartPlan(
+        steps=tuple(
+            replace(steps[step_id], waits=tuple(waits_of.get(step_id, ())))
+            for step_id in _order_steps(step_ids, phases, kept)
+        ),
+        dropped=tuple(each for each in left_out if each.wait.need < FIRM_NEED),
+        circles=tuple(each for each in left_out if each.wait.need >= FIRM_NEED),
+    )
+
+
+def _find_phases(architecture: Architecture) -> dict[str, StartPhase]:
+    """Return the phase of each step; a container starts in the earliest of what it loads, and stands before it."""
+    nodes = architecture.nodes.values()
+    phases_inside: dict[str, list[StartPhase]] = {container_id: [] for container_id in architecture.containers}
+    for node in nodes:
+        if node.container is not None:
+            phases_inside[node.container].append(_phase_of(node))
+    phases: dict[str, StartPhase] = {}
+    for node in nodes:
+        for container_id in (node.container,) if node.container is not None else ():
+            earliest = min(phases_inside[container_id], key=PHASES.index)
+            phases.setdefault(name_container(architecture, container_id), earliest)
+        phases[node.id] = _phase_of(node)
+    for container_id in architecture.containers:
+        phases.setdefault(name_container(architecture, container_id), DEFAULT_PHASE)
+    return phases
+
+
+def _phase_of(node: Node) -> StartPhase:
+    return (node.start or NO_START).phase or DEFAULT_PHASE
+
+
+def _order_steps(step_ids: Sequence[str], phases: Mapping[str, StartPhase], waits: Sequence[Wait]) -> list[str]:
+    """Return the steps, each behind all that it waits for; else by phase, and as they are written."""
+    open_counts = dict.fromkeys(step_ids, 0)
+    followers: dict[str, list[str]] = {step_id: [] for step_id in step_ids}
+    for wait in waits:
+        open_counts[wait.waiting] += 1
+        followers[wait.awaited].append(wait.waiting)
+    keys = {step_id: (PHASES.index(phases[step_id]), place) for place, step_id in enumerate(step_ids)}
+    free = [(keys[step_id], step_id) for step_id in step_ids if not open_counts[step_id]]
+    heapify(free)
+    ordered: list[str] = []
+    while free:
+        _, step_id = heappop(free)
+        ordered.append(step_id)
+        for follower in followers[step_id]:
+            open_counts[follower] -= 1
+            if not open_counts[follower]:
+                heappush(free, (keys[follower], follower))
+    return ordered
+
+
+def _list_steps(
+    architecture: Architecture, phases: Mapping[str, StartPhase], managers: Mapping[str, tuple[str, ...]]
+) -> list[StartStep]:
+    containers = []
+    for container in architecture.containers.values():
+        step_id = name_container(architecture, container.id)
+        command = build_container_command(architecture, container)
+        containers.append(
+            StartStep(
+                step_id,
+                "container",
+                phases[step_id],
+                container.host,
+                container.title,
+                command=command,
+                container=container.id,
+            )
+        )
+    return [
+        *containers,
+        *(_make_node_step(architecture, each, managers[each.id]) for each in architecture.nodes.values()),
+    ]
+
+
+def _make_node_step(architecture: Architecture, node: Node, managers: tuple[str, ...]) -> StartStep:
+    start = node.start or NO_START
+    kind: StepKind = "program" if "program" in node.kinds else "composable" if node.container is not None else "node"
+    return StartStep(
+        node.id,
+        kind,
+        _phase_of(node),
+        node.host,
+        node.title,
+        command=build_command(architecture, node),
+        ready=resolve_conditions(start.ready, node),
+        once=start.once,
+        transitions=list_transitions(node),
+        state=start.wanted_state if "lifecycle" in node.kinds else None,
+        manager=managers,
+        container=node.container,
+        respawn=start.respawn,
+        respawn_delay=start.respawn_delay,
+        environment=start.environment,
+        directory=start.directory,
+        user=start.user,
+        needs_rights=list_needed_rights(node),
+    )
+
+
+def resolve_conditions(ready: ReadyConditions, node: Node) -> ReadyConditions:
+    """Return what shows that a node is up, with the absolute names of its topic and service."""
+    if ready.topic is None and ready.service is None:
+        return ready
+    return replace(
+        ready,
+        topic=resolve_ros_name(ready.topic, node) if ready.topic is not None else None,
+        service=resolve_ros_name(ready.service, node) if ready.service is not None else None,
+    )

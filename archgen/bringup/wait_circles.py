@@ -1,0 +1,125 @@
+"""Take waits into a plan so that none closes a circle: of each circle the wait that is needed least stays out.
+
+Waits come in by need. The order of what is taken so far is kept up to date with each (Pearce and Kelly, A dynamic
+topological sort algorithm for directed acyclic graphs, 2006), so that a wait is looked at only between its two ends. It
+begins with an order that goes against few and little needed waits (the greedy rule of Eades, Lin and Smyth, kept to one
+loop at a time), which leaves little to put right.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterator, Sequence
+from heapq import heapify, heappop, heappush
+
+from archgen.bringup.plan_shapes import DroppedWait, Wait
+from archgen.model.graph_search import find_strong_components
+
+_WEIGHT_BASE = 1 << 12
+"""More waits of less need than this do not outweigh one of more need."""
+
+
+def keep_acyclic(step_ids: Sequence[str], waits: Sequence[Wait]) -> tuple[list[Wait], list[DroppedWait]]:
+    """Return the waits without those that close a circle with others that are needed more, and those with their circles.
+
+    Of waits that are needed alike, the first ones stay.
+    """
+    successors: dict[str, list[str]] = {step_id: [] for step_id in step_ids}
+    for wait in waits:
+        successors[wait.awaited].append(wait.waiting)
+    loops = find_strong_components(step_ids, successors.__getitem__)
+    loop_of = {step_id: index for index, loop in enumerate(loops) for step_id in loop}
+    inner_waits: dict[int, list[Wait]] = defaultdict(list)
+    for wait in waits:
+        if loop_of[wait.awaited] == loop_of[wait.waiting]:
+            inner_waits[loop_of[wait.awaited]].append(wait)
+    dropped: list[DroppedWait] = []
+    for index in sorted(inner_waits):
+        dropped += _find_closing_waits(loops[index], inner_waits[index])
+    dropped_waits = {id(each.wait) for each in dropped}
+    return [wait for wait in waits if id(wait) not in dropped_waits], dropped
+
+
+def _find_closing_waits(step_ids: Sequence[str], waits: Sequence[Wait]) -> Iterator[DroppedWait]:
+    """Yield the waits of one loop that stay out."""
+    order = _KeptOrder(_order_greedily(step_ids, waits))
+    is_backward = [order.positions[wait.awaited] >= order.positions[wait.waiting] for wait in waits]
+    for index in sorted(range(len(waits)), key=lambda each: (-waits[each].need, is_backward[each], each)):
+        circle = order.add(waits[index].awaited, waits[index].waiting)
+        if circle:
+            yield DroppedWait(waits[index], circle)
+
+
+class _KeptOrder:
+    """Steps in an order that all pairs taken in so far follow."""
+
+    def __init__(self, step_ids: Sequence[str]) -> None:
+        self.positions = {step_id: index for index, step_id in enumerate(step_ids)}
+        self._successors: dict[str, list[str]] = {step_id: [] for step_id in step_ids}
+        self._predecessors: dict[str, list[str]] = {step_id: [] for step_id in step_ids}
+
+    def add(self, awaited: str, waiting: str) -> tuple[str, ...]:
+        """Take a pair in, and return nothing; or return the way back that it would close to a circle."""
+        if awaited == waiting:
+            return (awaited,)
+        lowest, highest = self.positions[waiting], self.positions[awaited]
+        if highest >= lowest:
+            forward = self._reach(self._successors, waiting, lowest, highest)
+            if awaited in forward:
+                return _walk_back(forward, awaited)
+            self._reorder(self._reach(self._predecessors, awaited, lowest, highest), forward)
+        self._successors[awaited].append(waiting)
+        self._predecessors[waiting].append(awaited)
+        return ()
+
+    def _reach(self, neighbours: dict[str, list[str]], start: str, lowest: int, highest: int) -> dict[str, str | None]:
+        """Return what can be reached between two positions, each with the step before it: the nearest first."""
+        found: dict[str, str | None] = {start: None}
+        queue = [start]
+        for step_id in queue:
+            for neighbour in neighbours[step_id]:
+                if neighbour not in found and lowest <= self.positions[neighbour] <= highest:
+                    found[neighbour] = step_id
+                    queue.append(neighbour)
+        return found
+
+    def _reorder(self, before: Collection[str], behind: Collection[str]) -> None:
+        """Put what leads to a step before what follows another, in the places that both have."""
+        position = self.positions.__getitem__
+        moved = [*sorted(before, key=position), *sorted(behind, key=position)]
+        self.positions.update(zip(moved, sorted(map(position, moved)), strict=True))
+
+
+def _walk_back(steps_before: dict[str, str | None], last: str) -> tuple[str, ...]:
+    way: list[str] = []
+    step: str | None = last
+    while step is not None:
+        way.append(step)
+        step = steps_before[step]
+    return tuple(reversed(way))
+
+
+def _order_greedily(step_ids: Sequence[str], waits: Sequence[Wait]) -> list[str]:
+    """Order steps one by one: always that of which the open waits weigh least, the first of equals."""
+    weights: dict[str, int] = dict.fromkeys(step_ids, 0)
+    followers: dict[str, list[tuple[str, int]]] = {step_id: [] for step_id in step_ids}
+    for wait in waits:
+        if wait.awaited != wait.waiting:
+            weight = _WEIGHT_BASE**wait.need
+            weights[wait.waiting] += weight
+            followers[wait.awaited].append((wait.waiting, weight))
+    places = {step_id: index for index, step_id in enumerate(step_ids)}
+    heap = [(weight, places[step_id], step_id) for step_id, weight in weights.items()]
+    heapify(heap)
+    ordered: list[str] = []
+    while heap:
+        weight, _, step_id = heappop(heap)
+        if weights.get(step_id) != weight:
+            continue  # an older entry of a step that weighs less by now, or is placed
+        del weights[step_id]
+        ordered.append(step_id)
+        for follower, share in followers[step_id]:
+            if follower in weights:
+                weights[follower] -= share
+                heappush(heap, (weights[follower], places[follower], follower))
+    return ordered

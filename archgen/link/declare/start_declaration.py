@@ -1,0 +1,127 @@
+"""Declare the start-up of nodes: what is written below `start`, with the nodes and components that it names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, get_args
+
+from archgen.link import mapping_values, sanity_checks
+from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartTarget, StartUp
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+
+if TYPE_CHECKING:
+    from archgen.diagnostics.source_span import Span
+    from archgen.link.reference_resolution import ReferenceResolver
+    from archgen.syntax.yaml_tree import YamlNode
+
+_STATES = get_args(LifecycleState)
+_NOT_INHERITED = frozenset({"ready", "once"})
+"""What a composed component says of itself, and not of each node inside."""
+
+
+def declare_start(body: MappingNode, resolver: ReferenceResolver, node_id: str) -> StartUp | None:
+    """Return what a node says of its start-up; None where it says nothing."""
+    start = body.get("start")
+    if not isinstance(start, MappingNode) or not start.entries:
+        return None
+    sanity_checks.report_empty_list(start, "after", "node or component", node_id, resolver.diagnostics)
+    phase = mapping_values.get_text(start, "phase")
+    state = mapping_values.get_text(start, "state")
+    manager = mapping_values.get_scalar(start, "by")
+    targets = (_resolve_target(each, resolver, node_id) for each in mapping_values.get_scalars(start, "after"))
+    return StartUp(
+        phase=phase if phase in PHASES else None,
+        after=tuple(dict.fromkeys(filter(None, targets))),
+        ready=_read_conditions(mapping_values.get_mapping(start, "ready"), resolver, node_id),
+        respawn=mapping_values.get_flag(start, "respawn"),
+        respawn_delay=mapping_values.get_quantity(start, "respawn_delay", "duration"),
+        environment=mapping_values.get_text_mapping(start, "environment"),
+        directory=mapping_values.get_text(start, "directory"),
+        user=mapping_values.get_text(start, "user"),
+        once=mapping_values.get_flag(start, "once"),
+        state=state if state in _STATES else None,  # type: ignore[arg-type]
+        by=_resolve_target(manager, resolver, node_id) if manager else None,
+        by_written=manager is not None,
+        places=_list_places(start),
+    )
+
+
+def read_command(body: MappingNode, resolver: ReferenceResolver, node_id: str) -> tuple[str, ...]:
+    """Return the words of a node's command."""
+    sanity_checks.report_empty_list(body, "command", "program", node_id, resolver.diagnostics)
+    return mapping_values.get_texts(body, "command")
+
+
+def _read_conditions(ready: MappingNode, resolver: ReferenceResolver, node_id: str) -> ReadyConditions:
+    return ReadyConditions(
+        port=mapping_values.get_integer(ready, "port"),
+        file=mapping_values.get_text(ready, "file"),
+        topic=mapping_values.get_text(ready, "topic"),
+        service=mapping_values.get_text(ready, "service"),
+        log=mapping_values.get_text(ready, "log"),
+        wait=mapping_values.get_quantity(ready, "wait", "duration"),
+        within=sanity_checks.read_positive(ready, "within", "duration", node_id, resolver.diagnostics),
+        places=_list_places(ready),
+    )
+
+
+def _list_places(mapping: MappingNode) -> dict[str, Span]:
+    # The span of a mapping may cover lines: its key is shown instead.
+    return {e.key: e.key_span if isinstance(e.value, MappingNode) else e.value.span for e in mapping}
+
+
+def _resolve_target(
+    reference: ScalarNode, resolver: ReferenceResolver, element_id: str, component_id: str | None = None
+) -> StartTarget | None:
+    """Return the component that a reference names; where no component is called so, the node."""
+    # A node often has the name of the component that it implements: both would be meant by one word.
+    has_component = resolver.names.resolve_path(reference.text, ("component",), component_id=component_id).count > 0
+    kinds = ("component",) if has_component else ("component", "node")
+    target = resolver.resolve_reference(reference, kinds, element_id, component_id)
+    if target is None:
+        return None
+    return StartTarget("node" if target.kind == "node" else "component", target.id, reference.span)
+
+
+def resolve_start(body: MappingNode, resolver: ReferenceResolver, component_id: str) -> MappingNode:
+    """Return what a component says of its node with complete ids in `after` and `by`: others inherit these.
+
+    What cannot be resolved is reported and left out.
+    """
+    start = body.get("start")
+    if not isinstance(start, MappingNode) or {"after", "by"}.isdisjoint(start.entries):
+        return body
+    entries = dict(start.entries)
+    for key in ("after", "by"):
+        if key in entries:
+            scalars = tuple(_complete_targets(start, key, resolver, component_id))
+            span = entries[key].value.span
+            value: YamlNode = SequenceNode(list(scalars), span)
+            if key == "by":
+                if not scalars:
+                    continue
+                value = scalars[0]
+            elif not scalars:
+                del entries[key]
+                continue
+            entries[key] = MappingEntry(key, entries[key].key_span, value)
+    entry = body.entries["start"]
+    completed = MappingEntry("start", entry.key_span, MappingNode(entries, start.span))
+    return MappingNode({**body.entries, "start": completed}, body.span)
+
+
+def _complete_targets(
+    start: MappingNode, key: str, resolver: ReferenceResolver, component_id: str
+) -> Iterator[ScalarNode]:
+    for scalar in mapping_values.get_scalars(start, key):
+        target = _resolve_target(scalar, resolver, component_id, component_id)
+        if target:
+            yield ScalarNode(target.id, target.id, scalar.span)
+
+
+def inherit_start(entry: MappingEntry) -> MappingEntry | None:
+    """Return what a composed component says of the start-up of all nodes inside; None where that is nothing."""
+    if not isinstance(entry.value, MappingNode):
+        return None
+    entries = {each.key: each for each in entry.value if each.key not in _NOT_INHERITED}
+    return MappingEntry(entry.key, entry.key_span, MappingNode(entries, entry.value.span)) if entries else None

@@ -1,0 +1,29 @@
+"""The page on start-up: its example is a project in which nothing is wrong."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from archgen.bringup.start_plan import make_start_plan
+from archgen.diagnostics.diagnostic import Severity
+from archgen.pipeline import check_project
+from tests.running import ROOT
+
+PAGE = (ROOT / "docs" / "start_up.md").read_text(encoding="utf-8")
+
+
+def test_nothing_is_wrong_with_the_example(tmp_path: Path) -> None:
+    (example,) = re.findall(r"^```yaml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    file = tmp_path / "archgen.yaml"
+    file.write_text(f"archgen: 1\nproject: {{id: robot, title: Robot}}\n{example}", encoding="utf-8")
+    checked = check_project(file)
+    assert [f"{d.span} {d.rule}: {d.message}" for d in checked.findings if d.effective_severity > Severity.NOTE] == []
+    plan = make_start_plan(checked.architecture)
+    assert [step.id for step in plan.steps] == ["stage", "map_server", "manager", "clear_cache", "amcl", "rviz"]
+    assert plan.dropped == ()
+
+
+def test_every_key_and_every_rule_of_the_page_is_one() -> None:
+    for rule in re.findall(r"\(rules/([\w-]+)\.md\)", PAGE):
+        assert (ROOT / "docs" / "rules" / f"{rule}.md").is_file(), rule
