@@ -25,7 +25,7 @@ from archgen.findings import (
     option_settings,
     rule_table,
 )
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import (
     chapter_pictures,
     element_outline,
@@ -46,6 +46,7 @@ from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
+from archgen.project.commit_days import find_commit_day
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
@@ -260,6 +261,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     for path, text in read_parameters.texts.items():
         loaded_project.sources.add_text(path, text)
     architecture = transform.transform_architecture(read_parameters.architecture)
+    commit_day = find_commit_day(loaded_project.files, architecture)
+    if commit_day is not None:
+        architecture = replace(architecture, commit_day=commit_day)
     analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     missing_pictures = chapter_pictures.find_missing_pictures(

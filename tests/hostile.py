@@ -91,10 +91,14 @@ def project(text: str) -> dict[str, Any]:
             },
         },
         "groups": {
-            "a": {"owner": "p", "urls": {text[:60]: "https://example.org/"}, "components": {"x": _component({}, kind)}},
+            "a": {
+                "owner": "p",
+                "urls": {text[:60]: "https://example.org/"},
+                "components": {"x": _component({}, kind, text)},
+            },
             "b": {
                 "components": {
-                    "y": _component({"in": {"from": "a.x.out"}}, kind),
+                    "y": _component({"in": {"from": "a.x.out"}}, kind, text),
                     "z": {},
                     "s": _compose(),
                     "w": {"is": "lib.u"},
@@ -147,13 +151,21 @@ def _compose() -> dict[str, Any]:
     return {"inputs": {"in": {"from": "a.x.out"}}, "outputs": {"made": {"from": "i.made"}}, "components": inner}
 
 
-def _component(inputs: dict[str, Any], kind: str) -> dict[str, Any]:
+def _component(inputs: dict[str, Any], kind: str, text: str) -> dict[str, Any]:
     outside = {"medium": "physical"}
     return {
         "requirements": ["R-1", f"{kind} {kind}"],
         "performance": {"overall": {}},
         "inputs": {**inputs, "felt": {**outside}},
-        "outputs": {"out": {"type": kind, "frame": "map"}, "seen": {**outside, "type": kind}},
+        "outputs": {
+            "out": {
+                "type": kind,
+                "frame": "map",
+                "promise": {"rate": "1 Hz", "unit": text, "frame": "map", "range": [0, "1"]},
+                "deprecated": {"until": "2999-01-01", "use": "seen"},
+            },
+            "seen": {**outside, "type": kind},
+        },
     }
 
 

@@ -8,12 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 
-def git(folder: Path, *words: str, stdin: bytes | None = None) -> str:
-    """Run git as a user who has no settings of his own."""
+def git(folder: Path, *words: str, stdin: bytes | None = None, day: str | None = None) -> str:
+    """Run git as a user who has no settings of his own, on a day (YYYY-MM-DD) if one is given."""
     person = {
         f"GIT_{who}_{what}": f"{what.lower()}@x.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")
     }
     environment = {**os.environ, **person, "GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+    if day is not None:
+        environment |= {f"GIT_{who}_DATE": f"{day}T12:00:00+0000" for who in ("AUTHOR", "COMMITTER")}
     done = subprocess.run(  # noqa: S603 - a fixed program
         ["git", *words],  # noqa: S607 - the same that archgen calls
         cwd=folder,
@@ -25,23 +27,25 @@ def git(folder: Path, *words: str, stdin: bytes | None = None) -> str:
     return done.stdout.decode().strip()
 
 
-def repository(folder: Path, files: Mapping[str, str | bytes] | None = None, *options: str) -> Path:
+def repository(
+    folder: Path, files: Mapping[str, str | bytes] | None = None, *options: str, day: str | None = None
+) -> Path:
     """Make a repository on branch `main`, with one commit if there are files."""
     folder.mkdir(parents=True, exist_ok=True)
     git(folder, "init", "-q", "-b", "main", *options)
     if files is not None:
-        commit(folder, files)
+        commit(folder, files, day)
     return folder
 
 
-def commit(folder: Path, files: Mapping[str, str | bytes]) -> str:
+def commit(folder: Path, files: Mapping[str, str | bytes], day: str | None = None) -> str:
     """Write files, commit everything, and give the hash."""
     for name, content in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
     git(folder, "add", "-A")
-    git(folder, "commit", "-q", "--allow-empty", "-m", "x")
+    git(folder, "commit", "-q", "--allow-empty", "-m", "x", day=day)
     return git(folder, "rev-parse", "HEAD")
 
 

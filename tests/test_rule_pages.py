@@ -13,12 +13,17 @@ from archgen.findings import rule_pages
 from archgen.findings.comparison_rules import COMPARISON_RULES
 from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES, check_project, check_text
+from tests.repositories import repository
 
 _LOUD = {Severity.ERROR, Severity.WARNING}
 
 
 def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
-    """Judge an example: one file, or several that begin with a line `# file: NAME`."""
+    """Judge an example: one file, or several that begin with a line `# file: NAME`, or one of a commit of some day."""
+    if example.startswith("# committed on "):
+        day = example.partition("\n")[0].removeprefix("# committed on ")
+        repository(folder, {"archgen.yaml": example}, day=day)
+        return check_project(folder / "archgen.yaml").findings
     parts = re.split(r"^# file: (\S+)\n", f"{example}\n", flags=re.MULTILINE)
     if len(parts) == 1:
         return check_text(parts[0])

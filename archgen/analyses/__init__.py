@@ -14,12 +14,15 @@ from archgen.analyses import (
     component_roles,
     composed_ports,
     connectivity,
+    deprecated_uses,
     frame_tree,
     half_written,
     host_links,
     ineffective_timing,
     input_freshness,
     input_sources,
+    interface_promises,
+    kept_promises,
     media_words,
     name_validity,
     node_mapping,
@@ -94,6 +97,8 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *policy_violations.RULES,
     *selector_checks.RULES,
     *frame_tree.RULES,
+    *interface_promises.RULES,
+    *deprecated_uses.RULES,
     *start_order.RULES,
     *start_settings.RULES,
     *completeness.RULES,
@@ -107,6 +112,7 @@ _TIMING_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *answer_times.RULES,
     *chain_latency.RULES,
     *input_freshness.RULES,
+    *kept_promises.RULES,
 )
 """These also take the timing analysis of the architecture, which is computed once for all of them."""
 

@@ -9,6 +9,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model.coordinate_frames import walk_ancestors
+from archgen.model.counted_outputs import list_described_outputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -83,6 +84,10 @@ def _list_named_frames(architecture: Architecture) -> Iterator[_NamedFrame]:
     for port in architecture.list_ports():
         if port.frame is not None:
             yield _NamedFrame(port.frame, port.frame_at, port.component)
+    for component, output in list_described_outputs(architecture):
+        promise = output.promise
+        if promise is not None and promise.frame is not None:
+            yield _NamedFrame(promise.frame, promise.places.get("frame", promise.at), component.id)
     for conceptual_type in architecture.types.values():
         if conceptual_type.frame is not None:
             yield _NamedFrame(conceptual_type.frame, conceptual_type.frame_at, conceptual_type.name)

@@ -15,6 +15,7 @@ from archgen.compare.losses.changed_distro import find_changed_distro
 from archgen.compare.losses.changed_frames import find_changed_frames
 from archgen.compare.losses.changed_meanings import find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
+from archgen.compare.losses.deprecated_types import find_deprecated_types
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
@@ -26,6 +27,7 @@ from archgen.compare.losses.weakened_outputs import find_weakened_outputs
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
 from archgen.compare.losses.weakened_qos import find_weakened_publishers
 from archgen.compare.losses.weakened_sizes import find_weakened_sizes
+from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSettings
@@ -39,6 +41,8 @@ _LOSS_FINDERS = (
     find_retyped_topics,
     find_weakened_publishers,
     find_weakened_outputs,
+    find_weakened_words,
+    find_deprecated_types,
     find_weakened_sizes,
     find_unserved_requirements,
     find_changed_meanings,

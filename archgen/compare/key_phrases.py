@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from archgen.compare.comparison import Change
 from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
+from archgen.compare.kinds.promise_keys import NO_DAY
 from archgen.compare.text_differences import cut_text, describe_text_difference
 from archgen.diagnostics.common_wording import join_words
 
@@ -55,9 +56,9 @@ def describe_key_change(change: Change) -> str:
         phrase = _count_lines(before, after) if key == "text" else _rewrite_phrase(before, after)
         return f"the {_spell_out(key)} of {subject} {phrase}"
     if (
-        port_phrase := _name_new_port(change)
+        port_phrase := _deprecation_phrase(change) or _name_new_port(change)
         if change.element_kind == "component_type"
-        else _port_phrase(change, spec.verb)
+        else _deprecation_phrase(change) or _port_phrase(change, spec.verb)
     ):
         return f"{subject} {port_phrase}"
     if spec.verb and _has_verb_form(key, before, after):
@@ -79,9 +80,9 @@ def name_key(kind: str, key: str) -> str:
 
 
 def _part_noun(kind: str, key: str) -> str:
-    """Return what sentences call what a component type says of a part of it, empty for any other key."""
+    """Return what sentences call what a component type, or a composed component, says of a part; empty for other keys."""
     section, _, path = key.partition(".")
-    part_kind = _PARTS_OF_TYPES.get(section) if kind == "component_type" and path else None
+    part_kind = _PARTS_OF_TYPES.get(section) if kind in {"component_type", "composed"} and path else None
     if part_kind is None:
         return ""
     if part_kind == "node":
@@ -103,6 +104,19 @@ def _inner_kind(part_kind: str, part_key: str) -> str:
     """Return the kind whose words a key takes: a part of a part is named as a type's own part is."""
     is_nested = part_kind == "component" and part_key.partition(".")[0] in _PARTS_OF_TYPES
     return "component_type" if is_nested else part_kind
+
+
+def _deprecation_phrase(change: Change) -> str:
+    """Return that something is going away now, or stays; empty for any other change."""
+    if change.key != "deprecated.until" or None not in {change.before, change.after}:
+        return ""
+    if change.after is None:
+        return f"is no longer deprecated (it was, {_until_phrase(change.before)})"
+    return f"is deprecated now, {_until_phrase(change.after)}"
+
+
+def _until_phrase(last_day: object) -> str:
+    return "without a day" if last_day == NO_DAY else f"until {format_value(last_day)}"
 
 
 def _has_verb_form(key: str, before: object, after: object) -> bool:

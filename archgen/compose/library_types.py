@@ -34,16 +34,27 @@ def library_of_type(name: str) -> str | None:
     return library if dot else None
 
 
-def _qualify_types(body: YamlNode, library: str) -> YamlNode:
-    """Return a type's body in which the types that it names are of the library: nothing else is known there."""
-    if not isinstance(body, MappingNode):
-        return body
+def _qualify_keys(body: MappingNode, keys: tuple[str, ...], library: str) -> MappingNode:
+    """Return a mapping with the library's id before the types that these keys name."""
     entries = dict(body.entries)
-    for key in _TYPE_KEYS:
+    for key in keys:
         reference = body.get(key)
         if isinstance(reference, ScalarNode) and reference.value is not None:
             text = f"{library}.{reference.text.strip()}"
             entries[key] = MappingEntry(key, entries[key].key_span, ScalarNode(text, text, reference.span))
+    return MappingNode(entries, body.span, body.declares)
+
+
+def _qualify_types(body: YamlNode, library: str) -> YamlNode:
+    """Return a type's body in which the types that it names are of the library: nothing else is known there."""
+    if not isinstance(body, MappingNode):
+        return body
+    entries = dict(_qualify_keys(body, _TYPE_KEYS, library).entries)
+    deprecated = body.get("deprecated")
+    if isinstance(deprecated, MappingNode):
+        entries["deprecated"] = MappingEntry(
+            "deprecated", entries["deprecated"].key_span, _qualify_keys(deprecated, ("use",), library)
+        )
     components = body.get("components")
     if isinstance(components, MappingNode):
         parts = {

@@ -196,6 +196,7 @@ class _ProjectExpander:
         body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
         self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
         self._result.type_entries[name] = entry
+        self._types.ask_replacement(name)
         self._open_types.append(name)
         for part in _list_components(body):
             self._expand(part.value, f"{name}.{part.key}")

@@ -16,7 +16,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 
 MAX_BASES = 60
 """So many types a type may be made from, one of the other."""
-_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner"})
+_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""
@@ -66,6 +66,19 @@ class TypeTable:
         if library_of_type(expression.name):
             self.library_names[expression.name] = None
         return expression
+
+    def ask_replacement(self, name: str) -> None:
+        """Report what replaces a deprecated type where there is no such type; one of a library counts as used."""
+        body = self.entries[name].value
+        deprecated = body.get("deprecated") if isinstance(body, MappingNode) else None
+        reference = deprecated.get("use") if isinstance(deprecated, MappingNode) else None
+        if not isinstance(reference, ScalarNode) or reference.value is None:
+            return
+        library = library_of_type(reference.text)
+        if reference.text in self.entries:
+            self.library_names |= {reference.text: None} if library else {}
+        elif library not in self.incomplete_libraries:
+            self.diagnostics.append(self._diagnose_unknown_type(reference, TypeExpression(reference.text, ()), name))
 
     def get_body(self, expression: TypeExpression) -> MappingNode | None:
         """Return the body of a type, with what it is made from; None where that goes in a circle."""

@@ -13,6 +13,7 @@ _WHOLE_MODEL_RULES = frozenset(
     {
         # Timing: one figure that could not be read changes the bounds of everything that shares a host with it.
         "broken-chain",
+        "broken-promise",
         "broken-step",
         "deadlocked-trigger",
         "endless-trigger",

@@ -36,6 +36,17 @@ def find_revision_date(root: Path, files: Iterable[str]) -> str:
     return date.strip() if date and not differs_from_head(root, file_names) else ""
 
 
+def find_commit_day(folder: Path, commit: str = "HEAD") -> str | None:
+    """Return the day of a commit of the repository around a folder, as YYYY-MM-DD in its committer's time zone.
+
+    None without git, outside of a repository, before the first commit, and of what is no commit.
+    """
+    while not folder.is_dir() and folder != folder.parent:  # a folder that a commit holds, and the disk does not
+        folder = folder.parent
+    day = _run_git(folder, "log", "-1", "--no-show-signature", "--format=%cs", "--end-of-options", commit, "--")
+    return (day or "").strip() or None
+
+
 def differs_from_head(root: Path, file_names: Iterable[str]) -> bool:
     """Whether some file differs from HEAD's blob; differences that git's conversion of line ends makes do not count.
 

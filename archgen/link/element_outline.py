@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from archgen.compose import ExpandedProject
 from archgen.compose.project_expansion import ComponentShell
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
+from archgen.link.promise_reading import read_deprecation, read_promise
 from archgen.model.component import Output
 from archgen.model.port_media import ROS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+_PROMISING_KEYS = frozenset({"promise", "version", "deprecated"})
 
 
 @dataclass(slots=True)
@@ -34,6 +38,10 @@ class ElementOutline:
     """Inputs that `to` at an output names and nobody declares, with their components."""
     middleware: str = ROS
     """What digital ports travel over where they do not say."""
+    promises_something: bool = False
+    """Whether an output has a promise, a version, or is deprecated."""
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    """What is wrong with promises."""
     members: dict[str, list[str]] = field(default_factory=dict)
     """The components that stand directly in each group, leaves first, by complete ids."""
 
@@ -120,21 +128,26 @@ def _outline_ports(element_outline: ElementOutline, component_id: str, body: Map
         )
         element_outline.undeclared_inputs += [(component_id, entry) for entry in undeclared_entries]
     element_outline.outputs[component_id] = {
-        e.key: _declare_output(component_id, e, element_outline.middleware)
-        for e in mapping_values.get_mapping(body, "outputs")
+        e.key: _declare_output(element_outline, component_id, e) for e in mapping_values.get_mapping(body, "outputs")
     }
 
 
-def _declare_output(component: str, entry: MappingEntry, middleware: str) -> Output:
+def _declare_output(element_outline: ElementOutline, component: str, entry: MappingEntry) -> Output:
     body = mapping_values.get_body(entry)
     type_text = mapping_values.get_text(body, "type")
+    said: dict[str, Any] = {}
+    if not _PROMISING_KEYS.isdisjoint(body.entries):
+        element_outline.promises_something = True
+        said["promise"] = read_promise(body, component, element_outline.diagnostics)
+        said["version"] = mapping_values.get_text(body, "version")
+        said["deprecated"] = read_deprecation(body, component, element_outline.diagnostics)
     return Output(
         id=f"{component}.{entry.key}",
         name=entry.key,
         component=component,
         type=mapping_values.normalise_type_name(type_text) if type_text else None,
         external=mapping_values.get_text(body, "external"),
-        medium=mapping_values.get_medium(body, "medium") or middleware,
+        medium=mapping_values.get_medium(body, "medium") or element_outline.middleware,
         medium_written=mapping_values.get_medium(body, "medium") is not None,
         frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
@@ -142,4 +155,5 @@ def _declare_output(component: str, entry: MappingEntry, middleware: str) -> Out
         medium_at=mapping_values.get_span(body, "medium"),
         type_at=mapping_values.get_span(body, "type"),
         frame_at=mapping_values.get_span(body, "frame"),
+        **said,
     )

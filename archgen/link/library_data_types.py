@@ -14,7 +14,7 @@ from archgen.link.element_outline import ElementOutline
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
 
 _NAME_BETWEEN_BRACKETS = re.compile(r"[^<>,\[\]]+")
-_NAMING_KEYS = frozenset({"type", "request", "response", "feedback"})
+_NAMING_KEYS = frozenset({"type", "request", "response", "feedback", "use"})
 """Keys whose scalars name types; `fields` and its like hold them by name."""
 _FIELD_KEYS = frozenset({"fields", "request", "response", "feedback"})
 

@@ -119,6 +119,10 @@ class PortSources:
         behind = (leaf for output in outputs for leaf in self._follow_output(output))
         return tuple(dict.fromkeys(leaf for leaf in behind if leaf.rpartition(".")[0] != reader_id))
 
+    def leaf_outputs_of(self, output_id: str) -> tuple[str, ...]:
+        """Return the outputs of leaves behind an output; one that gives nothing on stands for itself."""
+        return self._follow_output(output_id)
+
     def type_of_output(self, output_id: str) -> str | None:
         """Return the type of an output: as written, or that of what it gives on."""
         component_id, _, name = output_id.rpartition(".")

@@ -48,7 +48,7 @@ def link_project(  # noqa: PLR0913 - all by name
     # containers and components. Every step appends to the same list of diagnostics.
     root = expansion.root
     diagnostics: list[Diagnostic] = [*expansion.diagnostics, *declared_types.diagnostics]
-    diagnostics += diagnose_undeclared_inputs(element_outline)
+    diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
     resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)

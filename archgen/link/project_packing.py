@@ -24,6 +24,7 @@ _BARE_KEYS = frozenset(
     {
         *("archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core", "measured"),
         *("reentrant", "large_paper", "static", "abstract", "whole", "respawn", "once", "port"),
+        "range",
     },
 )
 """Keys whose values are numbers or booleans; everything else outside of parameters is text."""

@@ -157,6 +157,8 @@ class Architecture:
     project: ProjectInfo
     repository: SourceRepository | None = None
     """Where its files are on the web; None where the project does not say."""
+    commit_day: str | None = None
+    """The day of the newest commit, as YYYY-MM-DD; None where nothing ends on a day, and where git does not say."""
     distro: str | None = None
     distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()

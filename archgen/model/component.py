@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.parameter import Operation, Parameter
+from archgen.model.promise import Deprecation, Promise
 from archgen.model.quantity import Quantity
 
 ComponentRole = Literal["source", "filter", "sink", "reactive"]
@@ -86,6 +87,10 @@ class Output:
     """What it travels over, as `port_media` says: the word written, else the project's."""
     frame: str | None = None
     """The coordinate frame in which its data is given, as written; None: that of its type."""
+    promise: Promise | None = None
+    """What readers may count on; what an output given on promises is kept where nothing else is written."""
+    version: str | None = None
+    deprecated: Deprecation | None = None
     description: str | None = None
     is_made: bool = False
     """Whether nobody wrote what this output of a composed component gives on: `autoconnect` joined the two."""
@@ -214,6 +219,8 @@ class ComponentType:
     generic: tuple[str, ...] = ()
     """The names that stand for conceptual types."""
     is_abstract: bool = False
+    version: str | None = None
+    deprecated: Deprecation | None = None
     inputs: Mapping[str, str | None] = field(default_factory=dict)
     """The types of its inputs by id, those of the type that it is made from included."""
     outputs: Mapping[str, str | None] = field(default_factory=dict)

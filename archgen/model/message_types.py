@@ -9,6 +9,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.promise import Deprecation
 from archgen.model.quantity import Quantity
 
 _FULL_NAME = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)/(msg|srv|action)/([A-Z][A-Za-z0-9_]*)\Z", re.ASCII)
@@ -84,6 +85,8 @@ class ConceptualType:
     generic: tuple[str, ...] = ()
     frame: str | None = None
     """The coordinate frame in which such data is given, as written."""
+    version: str | None = None
+    deprecated: Deprecation | None = None
     origin: Literal["project", "shipped", "message"] = "project"
     """What maps it: the project, the type mapper that ships with archgen, or its own name, which is a message."""
     library: str | None = None

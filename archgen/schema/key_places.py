@@ -34,6 +34,8 @@ _HOMES = {
     "use_case": "`use_cases: {{USE-CASE: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
+_GIVER_KEYS = frozenset({"promise"})
+"""Keys that only an output has."""
 _READER_KEYS = frozenset({"freshness", "optional"})
 """Keys that only an input has, and that say by themselves what they are about: `from` and `type` do not."""
 _PORT_HOMES = ("type", "topic_use", "timing", "node")
@@ -68,6 +70,8 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
         return None
     if key in _READER_KEYS and kind != "Input":
         return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
+    if key in _GIVER_KEYS and kind != "Output":
+        return f"write it at the output that it is about: `outputs: {{OUTPUT: {{{key}: ...}}}}`"
     home = _find_kind(key, _PORT_HOMES if is_port else tuple(_HOMES))
     if home is None:
         return _find_section_help(key, path)

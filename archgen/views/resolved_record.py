@@ -17,6 +17,7 @@ from archgen.model.port_media import ROS, is_physical, word_of_medium
 from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
+from archgen.views.promise_record import record_life, record_words
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
 from archgen.views.shapes import Record
 from archgen.views.start_record import record_start
@@ -98,6 +99,7 @@ def _record_component_type(component_type: ComponentType) -> dict[str, object]:
         "is": component_type.base,
         "generic": list(component_type.generic),
         "abstract": component_type.is_abstract or None,
+        **record_life(component_type),
         "inputs": {name: kind or "" for name, kind in component_type.inputs.items()},
         "outputs": {name: kind or "" for name, kind in component_type.outputs.items()},
         "components": list(component_type.components),
@@ -235,7 +237,9 @@ def _record_input(port: Input) -> dict[str, object]:
 def _record_output(lookup: Lookup, port: Output) -> dict[str, object]:
     readers = dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ()))
     return drop_unknown(
-        _record_port(port) | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
+        _record_port(port)
+        | record_words(port)
+        | {"message": lookup.architecture.message_of(port), "readers": list(readers)}
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from archgen.model.known_interfaces import InterfaceField, Interfaces
 from archgen.model.message_types import ConceptualType, DataField
+from archgen.views.promise_record import record_life
 from archgen.views.record_values import drop_unknown, pick_fields, record_quantity
 
 _PART_NAMES = {"request": ("request", "goal"), "response": ("response", "result"), "feedback": ("feedback",)}
@@ -29,6 +30,7 @@ def record_type(conceptual_type: ConceptualType, interfaces: Interfaces) -> dict
     keys = ("message", "comment", "status", "request", "response", "feedback", "frame", "values", "generic")
     return pick_fields(conceptual_type, *keys) | drop_unknown(
         {
+            **record_life(conceptual_type),
             "size": record_quantity(conceptual_type.size, "B"),
             "fields": _record_fields(conceptual_type.fields or (), "", ros_fields),
             "part_fields": parts,

@@ -104,7 +104,8 @@ SCHEMA_ONLY = {
     **{
         f"component_type {key}": "what its instances have"
         for key in SCHEMA["$defs"]["component_type"]["properties"]
-        if key not in {"title", "functionality", "description", "owner", "is", "generic", "abstract"}
+        if key
+        not in {"title", "functionality", "description", "owner", "is", "generic", "abstract", "version", "deprecated"}
         and key not in {"inputs", "outputs", "components"} | READ_OFF_PATTERNS
     },
     "group components": "elements of their own",
@@ -252,7 +253,7 @@ groups:
         open: [plugins]
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D}}
-        outputs: {o: {type: T, external: the world, frame: base, description: D}}
+        outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D}, o2: {external: the world}}
         frames: {base: {title: B, parent: map, rate: 10 Hz}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
@@ -261,11 +262,11 @@ groups:
       whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
       copy: {same_as: drum}
 component_types:
-  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh}
+  drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, version: 3, deprecated: {until: 2999-01-01, use: spare}}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
   spare: {parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
 types:
-  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map}
+  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}}
   S: {request: T, response: T, feedback: T}
   F: {fields: {x: {type: float64, default: 0.5, unit: m, comment: C}, y: {type: "int8[]", default: [1, 2]}, t: T}, constants: {A: {type: int8, value: 1, comment: C}}}
   V: {values: [ON, OFF]}
@@ -479,7 +480,9 @@ def test_no_key_is_listed_twice() -> None:
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "requirement parent, requirement kind, requirement priority, requirement verified_by, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
-                "output frame, input frame, type frame, link protocol, project middleware"
+                "link protocol, project middleware, "
+                "output frame, input frame, type frame, output promise.rate, output version, output deprecated.until, type version, "
+                "type deprecated.use, component_type version, component_type deprecated.until"
             ),
         ),
         (

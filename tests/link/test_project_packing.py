@@ -252,7 +252,20 @@ WORDS = st.text(
     | st.sampled_from("\n:#-'\"\\ {}[]&*!|>%@`,?~0123456789"),
     max_size=20,
 )
-OUTPUTS = st.dictionaries(IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"type": WORDS, "external": WORDS})))
+PROMISES = st.fixed_dictionaries(
+    {},
+    optional={
+        "rate": st.sampled_from(["10 Hz", "0.5 kHz", "0 Hz"]),
+        "unit": WORDS,
+        "frame": IDS,
+        "range": st.lists(st.sampled_from([0, 1.5, -2, "3 m", ".inf", "1e3"]), max_size=3),
+    },
+)
+DEPRECATIONS = st.fixed_dictionaries({}, optional={"until": st.sampled_from(["2999-01-01", "2999-02-30"]), "use": IDS})
+SAID = {"promise": PROMISES, "version": WORDS, "deprecated": DEPRECATIONS}
+OUTPUTS = st.dictionaries(
+    IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"type": WORDS, "external": WORDS, **SAID}))
+)
 INPUTS = st.dictionaries(
     IDS, st.one_of(IDS, st.lists(IDS), st.fixed_dictionaries({}, optional={"from": IDS, "description": WORDS}))
 )
@@ -399,6 +412,34 @@ resources: {gpu: pc, npu: {scheduling: fixed_priority}}
     again = packed_again(checked, tmp_path)
     for name in ("nodes", "hosts", "resources", "inputs"):
         assert getattr(again.architecture, name) == getattr(checked.architecture, name)
+
+
+def test_promises_pack_to_the_same(tmp_path: Path) -> None:
+    checked = project(
+        tmp_path / "p",
+        archgen_yaml="archgen: 1\nsources: ['*.yaml']\nproject: {id: r, title: R}\nlibraries: {lib: {component_types: {x: {deprecated: {use: y}}, y: {version: 2}, z: }, types: {L: {deprecated: {use: M}}, M: std_msgs/msg/Bool}}}\n",
+        a_yaml="groups: {g: {components: {a: {outputs: {o: {type: L, promise: {rate: 10 Hz, range: [0, 1.50]}}, p: {type: T, version: 1.10, deprecated: {until: 2999-01-01, use: o}}}}, b: {is: lib.x}}}}\n",
+        b_yaml="groups: {g: {components: {a: {outputs: {o: {promise: {unit: m, max_age: 1 s}}, p: {deprecated: {}}}}}}}\n"
+        "types: {T: {message: std_msgs/msg/Bool, version: 2, deprecated: {use: S}}, S: std_msgs/msg/String}\nnodes: {a: a}\n",
+    )
+    data = yaml.safe_load(text_of(checked))
+    assert data["groups"]["g"]["components"]["a"]["outputs"] == {
+        "o": {"type": "L", "promise": {"rate": "10 Hz", "range": [0, 1.5], "unit": "m", "max_age": "1 s"}},
+        "p": {"type": "T", "version": "1.10", "deprecated": {"until": "2999-01-01", "use": "o"}},
+    }
+    # What replaces something of a library belongs to what is used of it.
+    assert list(data["libraries"]["lib"]["component_types"]) == ["x", "y"]
+    assert list(data["libraries"]["lib"]["types"]) == ["L", "M"]
+    again = packed_again(checked, tmp_path)
+    for name in ("types", "outputs", "component_types"):
+        assert getattr(again.architecture, name) == getattr(checked.architecture, name)
+    deprecated, type_deprecated = (
+        checked.architecture.component_types["lib.x"].deprecated,
+        checked.architecture.types["L"].deprecated,
+    )
+    assert deprecated
+    assert type_deprecated
+    assert (deprecated.target, type_deprecated.target) == ("lib.y", "M")
 
 
 def test_frames_pack_to_the_same(tmp_path: Path) -> None:

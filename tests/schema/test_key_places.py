@@ -27,7 +27,8 @@ def _component(text: str) -> str:
         (_component("outputs: {scan: {topic: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, publishes: {scan: {topic: ...}}}}`"),
         (_component("inputs: {scan: {qos: /a}}"), "write it as `nodes: {NODE: {implements: sensing.lidar, subscribes: {scan: {qos: ...}}}}`"),
         (_component("outputs: {scan: {message: a/msg/B}}"), "write it as `types: {TYPE: {message: ...}}`"),
-        (_component("outputs: {scan: {rate: 1 Hz}}"), "write it as `timing: {rate: ...}` of the component or of its node"),
+        (_component("outputs: {scan: {rate: 1 Hz}}"), "write it below `promise`: `promise: {rate: ...}`"),
+            (_component("inputs: {scan: {promise: }}"), "write it at the output that it is about: `outputs: {OUTPUT: {promise: ...}}`"),
         # One letter too few or too many is a slip, wherever else the key belongs.
         ("hosts: {pc: {core: 4}}", "did you mean `cores`?"),
         ("nodes: {n: {hosts: pc}}", "did you mean `host`?"),

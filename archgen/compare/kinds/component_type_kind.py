@@ -13,6 +13,7 @@ from typing import Any
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.functional_kinds import COMPONENT, INPUT, OUTPUT, name_common_type
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.promise_keys import VERSION, deprecation_key
 from archgen.compare.kinds.ros_kinds import NODE
 from archgen.compare.kinds.shared_keys import DESCRIPTION, TITLE, key_values, prose_key, text_feature
 from archgen.compare.normal_values import drop_unset_values
@@ -119,6 +120,8 @@ COMPONENT_TYPE = KindSpec(
         ),
         KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
         KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
+        VERSION,
+        deprecation_key("component_type"),
         KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),
         KeySpec("outputs.", _read_ports("outputs", OUTPUT.keys), Effect.SYSTEM),
         KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),

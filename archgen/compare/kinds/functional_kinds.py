@@ -9,6 +9,7 @@ from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.element_relations import ElementRelations, ports_of
 from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.promise_keys import OUTPUT_KEYS, read_port_words
 from archgen.compare.kinds.shared_keys import (
     CO_OWNERS,
     DESCRIPTION,
@@ -219,6 +220,7 @@ COMPOSED = KindSpec(
         URLS,
         _PERFORMANCE,
         timing_key(_read_claimed_timing),
+        KeySpec("outputs.", read_port_words, Effect.SYSTEM),
     ),
     Effect.SYSTEM,
     elements=lambda version: version.architecture.shells,
@@ -323,6 +325,7 @@ OUTPUT = KindSpec(
         KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="carries"),
         *_PORT_KEYS,
         frame_reference("is given in"),
+        *OUTPUT_KEYS,
     ),
     elements=lambda version: version.architecture.outputs,
     features=(

@@ -13,6 +13,7 @@ from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.promise_keys import VERSION, deprecation_key
 from archgen.compare.kinds.shared_keys import mark_values, prose_key, text_feature
 from archgen.model.message_types import ConceptualType, DataField
 
@@ -81,6 +82,8 @@ TYPE = KindSpec(
         _inner_type_key("response"),
         _inner_type_key("feedback"),
         frame_reference("is given in"),
+        VERSION,
+        deprecation_key("type"),
         KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM, noun="type parameters"),
         KeySpec("fields.", _read_fields, Effect.SYSTEM),
     ),

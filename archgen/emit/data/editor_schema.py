@@ -52,6 +52,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "output.frame": ("frames",),
     "owners": ("partners",),
     "port_list": ("inputs",),
+    "promise.frame": ("frames",),
     "resource": ("hosts",),
     "resource.host": ("hosts",),
     "requirement.parent": ("requirements",),

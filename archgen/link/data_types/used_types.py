@@ -59,6 +59,8 @@ def _bind_declared_types(types: dict[str, ConceptualType]) -> None:
                 comment=declared.comment or bound_type.comment,
                 size=declared.size or bound_type.size,
                 status=declared.status or bound_type.status,
+                version=declared.version or bound_type.version,
+                deprecated=declared.deprecated or bound_type.deprecated,
                 at=declared.at,
                 message_at=declared.message_at,
             )

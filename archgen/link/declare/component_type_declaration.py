@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
 from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
+from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import ComponentType
 from archgen.model.coordinate_frames import Frame
+from archgen.model.promise import Deprecation
 from archgen.syntax.yaml_tree import MappingNode
 
 
@@ -36,6 +39,8 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
             library=library,
             generic=list_generic_names(entry),
             is_abstract=is_abstract(entry),
+            version=mapping_values.get_text(body, "version"),
+            deprecated=_name_replacement(read_deprecation(body, name, resolver.diagnostics), expansion),
             inputs=_read_port_types(whole_body, "inputs"),
             outputs=_read_port_types(whole_body, "outputs"),
             components=tuple(mapping_values.get_mapping(whole_body, "components").entries),
@@ -47,6 +52,13 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
             at=entry.key_span,
         )
     return types
+
+
+def _name_replacement(deprecation: Deprecation | None, expansion: ExpandedProject) -> Deprecation | None:
+    """Return a deprecation with the type that replaces it, if there is one; what is not there was reported."""
+    if deprecation is None or deprecation.use not in expansion.type_entries:
+        return deprecation
+    return replace(deprecation, target=deprecation.use)
 
 
 def _read_port_types(body: MappingNode, side: str) -> dict[str, str | None]:

@@ -11,6 +11,7 @@ from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.parameter_declaration import declare_operations
+from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
@@ -75,6 +76,7 @@ def declare_groups(
         resolver,
         wiring,
         parameters,
+        promised_outputs=PromisedOutputs(outline, sources, parameters, resolver),
         outside_readers=sources.list_given_outside() if sources else {},
     )
     open_shells = OpenShells(outline, sources) if sources else None
@@ -99,6 +101,7 @@ class _GroupDeclarer:
     resolver: ReferenceResolver
     wiring: InputWiring
     parameters: HandedParameters
+    promised_outputs: PromisedOutputs
     owners: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """The owners of groups and composed components, by complete id."""
     outside_readers: Mapping[str, MappingNode] = field(default_factory=dict)
@@ -227,7 +230,10 @@ class _GroupDeclarer:
             inputs={port_name: self._fill_in_frame(port) for port_name, port in inputs.items()},
             # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=body.get("inputs") is not None,
-            outputs={port_name: self._fill_in_frame(port) for port_name, port in outputs.items()},
+            outputs={
+                port_name: self.promised_outputs.complete_output(self._fill_in_frame(port))
+                for port_name, port in outputs.items()
+            },
             outputs_known=body.get("outputs") is not None,
             parameters=self.parameters.find_parameters(component_id),
             open=mapping_values.get_texts(body, "open"),

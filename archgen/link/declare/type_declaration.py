@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import first_written_span
@@ -14,8 +15,10 @@ from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
 from archgen.link.data_types.generic_types import TypeMention, find_unbound_names, list_held_names
 from archgen.link.data_types.message_definitions import DefinitionMaker, TypeDefinition
 from archgen.link.data_types.message_names import name_messages
+from archgen.link.data_types.type_replacements import name_replacements
 from archgen.link.data_types.used_types import OversizedType, add_used_types
 from archgen.link.element_outline import ElementOutline
+from archgen.link.promise_reading import read_deprecation
 from archgen.model.message_types import PART_KEYS, ConceptualType, full_message_name
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -38,14 +41,15 @@ def declare_types(root: MappingNode, outline: ElementOutline, sources: TypeSourc
     """Return every type that is declared or used, by name; the project's own declaration wins."""
     diagnostics = list[Diagnostic]()
     types = _declare_own_types(root, sources, diagnostics)
+    replacements = name_replacements(types, sources, diagnostics)
     if not any(each.has_content or each.generic for each in types.values()):
         # Nearly every project: its ports need not be looked at one by one.
-        add_used_types(types, outline.list_used_types(), sources.shipped_types)
+        add_used_types(types, chain(outline.list_used_types(), replacements), sources.shipped_types)
         return DeclaredTypes(_sort_types(types), diagnostics=tuple(diagnostics))
     drop_circular_fields(types, diagnostics)
     mentions = [*_list_port_mentions(outline), *(each for holder in types.values() for each in _list_mentions(holder))]
     oversized_types = add_used_types(
-        types, (each.name for each in mentions if not each.is_field), sources.shipped_types
+        types, chain((each.name for each in mentions if not each.is_field), replacements), sources.shipped_types
     )
     first_mentions = {mention.name: mention for mention in reversed(mentions)}
     diagnostics += (_diagnose_oversized_type(each, types, first_mentions) for each in oversized_types)
@@ -157,6 +161,8 @@ def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading, 
         feedback=_read_type_name(body, "feedback"),
         **content,
         frame=mapping_values.get_text(body, "frame"),
+        version=mapping_values.get_text(body, "version"),
+        deprecated=read_deprecation(body, reading.name, reading.diagnostics),
         library=library,
         at=entry.key_span,
         message_at=mapping_values.get_span(body, "message"),

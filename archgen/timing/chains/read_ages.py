@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from fractions import Fraction
 
@@ -40,6 +40,15 @@ def find_read_ages(analysis: Analysis) -> Iterator[ReadAge]:
             limit = activity.freshness.get(arc.input)
             if limit is not None and arc.role == "data":
                 yield ReadAge(arc, _find_age(analysis, steps, arc), Fraction(limit * analysis.system.tick))
+
+
+def find_sent_ages(analysis: Analysis, outputs: Collection[str]) -> Iterator[tuple[Arc, TimingValue]]:
+    """Yield how old (ns) what is sent at some outputs may be where it is read, by each way to a reader."""
+    steps = StepDelays.of_analysis(analysis)
+    for arcs in analysis.system.arcs_from.values():
+        for arc in arcs:
+            if arc.output in outputs and arc.role == "data":
+                yield arc, _find_age(analysis, steps, arc)
 
 
 def _find_age(analysis: Analysis, steps: StepDelays, arc: Arc) -> TimingValue:

@@ -17,7 +17,7 @@ from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
-from archgen.views.agreement import interface_timing, interface_versions, message_fields
+from archgen.views.agreement import interface_timing, interface_versions, message_fields, output_promises
 from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
@@ -108,12 +108,13 @@ def gather_terms(
     """Gather all terms of an interface."""
     chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
     giver, taker = (partner_titles(lookup, [partner]) for partner in interface.pair)
+    ports = output_promises.list_counted_ports(lookup, interface)
     return InterfaceTerms(
         interface,
         interface_title(lookup, interface),
         interface_versions.hash_interface(lookup, interface),
-        tuple(_list_facts(lookup, interface)),
-        tuple(_list_promises(lookup, activity_names, interface)),
+        (*_list_facts(lookup, interface), *output_promises.list_word_facts(ports)),
+        tuple(_list_promises(lookup, activity_names, interface, ports)),
         tuple(_list_ends(lookup, interface)),
         message_fields.list_field_rows(lookup.architecture.interfaces, interface.message)
         if interface.message
@@ -121,7 +122,10 @@ def gather_terms(
         chains,
         tuple(_requirement_runs(lookup, interface)),
         tuple(list_missing_data_duties(lookup, interface, giver, taker)),
-        tuple(find_contradictions(lookup, activity_names, interface)),
+        (
+            *find_contradictions(lookup, activity_names, interface),
+            *output_promises.find_broken_words(lookup, interface, ports),
+        ),
         tuple(find_late_chains(lookup, chains)),
         tuple(_shared_sentences(lookup, interface)),
     )
@@ -169,9 +173,13 @@ def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:
 
 
 def _list_promises(
-    lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
+    lookup: Lookup,
+    activity_names: activity_builder.ActivityNames,
+    interface: PartnerInterface,
+    ports: Sequence[output_promises.CountedPort],
 ) -> Iterator[PromiseRow]:
-    yield from interface_timing.promise_timing(lookup, activity_names, interface)
+    timing_rows = interface_timing.promise_timing(lookup, activity_names, interface)
+    yield from output_promises.add_promises(lookup, activity_names, interface, ports, timing_rows)
     if interface.flow == "topic" and not is_ros_1(lookup.architecture.distro):
         yield _promise_qos(interface.giver_endpoints)
 

@@ -17,6 +17,7 @@ from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.figures.tick_unit import written_period
 from archgen.views.agreement.interface_timing import find_giver_timing
+from archgen.views.agreement.output_promises import identify_words, list_counted_ports
 from archgen.views.agreement.promise_rows import identify_qos
 from archgen.views.lookup import Lookup
 
@@ -48,6 +49,8 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
     content |= {"freshness": sorted(freshness)} if freshness else {}
     frame_name = architecture.frame_of(interface.output) if interface.output else None
     content |= {"frame": frame_name} if frame_name else {}
+    words = identify_words(list_counted_ports(lookup, interface))
+    content |= {"words": words} if words else {}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:_DIGITS]
 
 

@@ -1,0 +1,230 @@
+"""What an output promises to the readers of an interface, beside what follows from the figures of timing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TypeVar
+
+from archgen.analyses.kept_promises import find_broken_promises
+from archgen.model.component import Output
+from archgen.model.counted_outputs import find_counted_output
+from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.promise import Promise, describe_deprecation, format_range
+from archgen.model.quantity import Quantity
+from archgen.timing.chains.read_ages import find_sent_ages
+from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.value_arithmetic import is_boundless
+from archgen.timing.system import activity_builder
+from archgen.views import inline_text
+from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Inlines, Text
+from archgen.views.timing import value_format
+
+_ROW_NAMES = {"rate": "Rate", "max_gap": "Largest gap", "max_age": "Greatest age"}
+_WORDS = {"rate": "at least {}", "max_gap": "at most {}", "max_age": "no older than {}"}
+_Value = TypeVar("_Value")
+
+
+@dataclass(frozen=True, slots=True)
+class CountedPort:
+    """An output as readers name it, which says what they may count on, and those of an interface that name it."""
+
+    port: Output
+    readers: tuple[str, ...]
+
+    @property
+    def promise(self) -> Promise:
+        """What it promises; nothing where it says nothing."""
+        return self.port.promise or Promise()
+
+
+def list_counted_ports(lookup: Lookup, interface: PartnerInterface) -> tuple[CountedPort, ...]:
+    """Return the ports whose word counts for the readers of an interface; readers of equal words are taken together."""
+    if interface.output is None:
+        return ()
+    ports: dict[tuple[object, ...], CountedPort] = {}
+    for reader in interface.inputs:
+        connection = next((each for each in reader.connections if interface.output.id in each.outputs), None)
+        port = (
+            find_counted_output(lookup.architecture, connection, interface.output) if connection else interface.output
+        )
+        words = tuple((port.promise or Promise()).list_kept()), port.version, _deprecation_text(port)
+        known = ports.get(words, CountedPort(port, ()))
+        ports[words] = CountedPort(known.port, (*known.readers, reader.id))
+    return tuple(ports.values()) or (CountedPort(interface.output, ()),)
+
+
+def list_word_facts(ports: Sequence[CountedPort]) -> Iterator[tuple[str, Inlines]]:
+    """Yield the version that the owner counts, and until when it may be used."""
+    yield from _list_fact("Version by its owner", ports, lambda each: each.port.version)
+    yield from _list_fact("Deprecated", ports, lambda each: _deprecation_text(each.port))
+
+
+def _deprecation_text(port: Output) -> str | None:
+    return describe_deprecation(port.deprecated) if port.deprecated else None
+
+
+def _list_fact(
+    name: str, ports: Sequence[CountedPort], read_text: Callable[[CountedPort], str | None]
+) -> Iterator[tuple[str, Inlines]]:
+    texts = _group_values(ports, read_text)
+    if texts:
+        yield name, _write_values(texts, str, is_several=len(ports) > 1)
+
+
+def add_promises(
+    lookup: Lookup,
+    activity_names: activity_builder.ActivityNames,
+    interface: PartnerInterface,
+    ports: Sequence[CountedPort],
+    rows: Iterable[PromiseRow],
+) -> Iterator[PromiseRow]:
+    """Yield rows with what outputs promise in the place of what is written of their timing, which is expected then."""
+    if not any(each.port.promise for each in ports):
+        yield from rows
+        return
+    rows_by_name = {row.name: row for row in rows}
+    for key, name in _ROW_NAMES.items():
+        row = rows_by_name.pop(name, PromiseRow(name))
+        if key == "max_age":
+            row = replace(row, expected=_write_age(lookup, activity_names, interface))
+        values = _group_values(ports, lambda each, key=key: getattr(each.promise, key))  # type: ignore[misc]
+        if values:
+            row = _promise_figure(row, key, values, is_several=len(ports) > 1, is_complete=_is_complete(ports, key))
+        if values or row.promised or (row.expected and key != "max_age"):
+            yield row
+    yield from rows_by_name.values()
+    yield from _list_value_rows(ports)
+
+
+def _is_complete(ports: Sequence[CountedPort], key: str) -> bool:
+    return all(getattr(each.promise, key) is not None for each in ports)
+
+
+def _group_values(
+    ports: Sequence[CountedPort], read_value: Callable[[CountedPort], _Value | None]
+) -> list[tuple[_Value, tuple[str, ...]]]:
+    """Return the different values with those who read them."""
+    values: list[tuple[_Value, tuple[str, ...]]] = []
+    for each in ports:
+        value = read_value(each)
+        if value is not None:
+            index = next((i for i, (known, _) in enumerate(values) if known == value), None)
+            if index is None:
+                values.append((value, each.readers))
+            else:
+                values[index] = (value, (*values[index][1], *each.readers))
+    return values
+
+
+def _write_values(
+    values: Sequence[tuple[_Value, tuple[str, ...]]], write: Callable[[_Value], str], *, is_several: bool
+) -> Inlines:
+    """Write values, one a line; where not all readers see the same, each with its readers."""
+    lines = []
+    for value, readers in values:
+        names = f" for {', '.join(_short(reader) for reader in readers)}" if is_several and readers else ""
+        number = str(value.value) if isinstance(value, Quantity) else None
+        lines.append((Text(f"{write(value)}{names}", sort_number=number),))
+    return inline_text.join_lines(lines)
+
+
+def _short(port_id: str) -> str:
+    return ".".join(port_id.split(".")[-2:])
+
+
+def _promise_figure(
+    row: PromiseRow, key: str, values: list[tuple[Quantity, tuple[str, ...]]], *, is_several: bool, is_complete: bool
+) -> PromiseRow:
+    """Return a row with the promised figure; what is written as timing is expected beside it."""
+    written = "".join(run.text for run in row.promised)
+    expected = (
+        inline_text.to_inlines(f"{written}{SOURCE_PHRASE}the timing that is written") if written else row.expected
+    )
+    figures = [quantity.value for quantity, _ in values]
+    # Of several the one that promises least counts.
+    aspect, figure = ("rate", min(figures)) if key == "rate" else (key, -max(figures))
+    strength: PromiseStrength = {**row.strength, **({aspect: figure} if is_complete else {})}
+    promised = _write_values(values, _WORDS[key].format, is_several=is_several)
+    identity = "; ".join(f"{quantity.value} {', '.join(readers) if is_several else ''}" for quantity, readers in values)
+    return PromiseRow(row.name, promised, expected, strength, identity)
+
+
+def _list_value_rows(ports: Sequence[CountedPort]) -> Iterator[PromiseRow]:
+    """Yield the promised unit, frame and range of the values."""
+    is_several = len(ports) > 1
+    for name, read_text in (
+        ("Range of values", lambda each: _range_text(each.promise)),
+        ("Unit", lambda each: each.promise.unit if each.promise.range is None else None),
+        ("Frame", lambda each: each.promise.frame),
+    ):
+        texts = _group_values(ports, read_text)
+        if texts:
+            yield PromiseRow(
+                name, _write_values(texts, str, is_several=is_several), strength=_measure_range(ports, name)
+            )
+
+
+def _range_text(promise: Promise) -> str | None:
+    return format_range(promise.range, promise.unit) if promise.range else None
+
+
+def _measure_range(ports: Sequence[CountedPort], name: str) -> Mapping[str, Fraction]:
+    limits = [each.promise.range for each in ports]
+    finite = [limit for limit in limits if limit is not None and not {float("inf"), float("-inf")} & set(limit)]
+    if name != "Range of values" or len(finite) != len(ports):
+        return {}
+    least, greatest = min(limit[0] for limit in finite), max(limit[1] for limit in finite)
+    return {"least": Fraction(least), "greatest": -Fraction(greatest)}
+
+
+def _write_age(lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface) -> Inlines:
+    """Return how old what is read may be at the takers of an interface, as it follows from the timing."""
+    if lookup.timing is None or interface.output is None:
+        return ()
+    takers = {activity_builder.activity_of_endpoint(activity_names, endpoint) for endpoint in interface.taker_endpoints}
+    analysis = lookup.timing.analysis
+    ages = [age for arc, age in find_sent_ages(analysis, {interface.output.id}) if arc.target in takers]
+    boundless = next((age for age in ages if is_boundless(age)), None)
+    if boundless is not None:
+        return inline_text.to_inlines("without a bound")
+    known = [age.value for age in ages if age.value is not None]
+    if not known:
+        return ()
+    complete = all(age.value is not None and age.complete for age in ages)
+    words = value_format.display_duration(TimingValue(max(known), complete=complete)).replace(">= ", "at least ")
+    return (Text(f"{words}{SOURCE_PHRASE}how often it is sent and read", sort_number=str(max(known))),)
+
+
+def find_broken_words(lookup: Lookup, interface: PartnerInterface, ports: Sequence[CountedPort]) -> Iterator[str]:
+    """Yield a sentence for each promise that figures do not keep, and for each reader that needs more than is promised."""
+    port_ids = {each.port.id for each in ports}
+    if lookup.timing is not None and interface.output is not None and any(each.port.promise for each in ports):
+        for broken in find_broken_promises(lookup.architecture, lookup.timing.analysis):
+            if broken.leaf == interface.output.id and broken.port in port_ids:
+                yield f"`{_short(broken.port)}` promises {broken.promised}: {broken.words}."
+    freshness = {port.id: port.freshness for port in interface.inputs if port.freshness}
+    for each in ports:
+        for reader in each.readers:
+            needed, promised = freshness.get(reader), each.promise.max_age
+            if needed and promised and promised.value > needed.value:
+                yield f"`{_short(reader)}` needs what is no older than {needed}, and {promised} is promised."
+
+
+def identify_words(ports: Sequence[CountedPort]) -> list[list[str]]:
+    """Return what readers may count on, for the version of an interface: the same for equal words, nothing for none."""
+    words = [
+        [
+            *(
+                f"{key} {value.value if isinstance(value, Quantity) else value}"
+                for key, value in each.promise.list_kept()
+            ),
+            *([f"version {each.port.version}"] if each.port.version else []),
+            *([f"until {each.port.deprecated.until}"] if each.port.deprecated else []),
+        ]
+        for each in ports
+    ]
+    return sorted(each for each in words if each)

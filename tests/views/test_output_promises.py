@@ -1,0 +1,100 @@
+"""What outputs promise in agreements, beside what follows: for each reader the words of the port that it names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen.views.agreement import make_agreement
+from archgen.views.agreement.output_promises import list_counted_ports
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Facts, Table
+from tests.agreeing import checked, section, text, view
+
+ROBOT = """\
+archgen: 1
+ros: {distro: jazzy}
+partners: {a: Alpha, b: Beta}
+groups:
+  sense:
+    owner: a
+    components:
+      eye: {outputs: {rows: {type: Rows, promise: {rate: 10 Hz, max_gap: 150 ms, max_age: 300 ms, unit: m, frame: base, range: [0, 30]}, version: 2, deprecated: {until: 2999-06-01, use: new}}, new: Rows}}
+      head:
+        outputs: {kept: {from: lens.heads}, slow: {from: lens.heads, promise: {rate: 5 Hz}}}
+        components: {lens: {outputs: {heads: {type: Rows, promise: {rate: 20 Hz, unit: cm}}}}}
+  drive:
+    owner: b
+    components:
+      plan: {inputs: {rows: {from: eye.rows, freshness: 100 ms}, heads: head.kept}}
+      reach: {inputs: {slow: head.slow}}
+types: {Rows: std_msgs/msg/Bool}
+nodes:
+  eye: {implements: eye, timing: {period: 200 ms, wcet: 4 ms}}
+  lens: {implements: lens, timing: {period: 50 ms, wcet: 4 ms}}
+  plan: {implements: plan, timing: {period: 20 ms, wcet: 4 ms}}
+"""
+
+
+def _section(folder: Path, title: str, source: str = ROBOT) -> tuple[dict[str, str], dict[str, tuple[str, str]]]:
+    blocks = section(make_agreement(view(checked(folder, source)), "a", "b").outline, title).blocks
+    facts = next(block for block in blocks if isinstance(block, Facts))
+    table = next(block for block in blocks if isinstance(block, Table) and block.columns[0].title == "Term")
+    rows = {text(name): (text(promised), text(expected)) for name, promised, expected in table.rows}
+    return {name: text(value) for name, value in facts.rows}, rows
+
+
+def test_what_is_promised_stands_beside_what_follows(tmp_path: Path) -> None:
+    facts, rows = _section(tmp_path, "Eye · rows")
+    assert facts["Version by its owner"] == "2"
+    assert facts["Deprecated"] == "until 2999-06-01, use new instead"
+    assert rows["Rate"] == ("at least 10 Hz", "5 Hz · 200 ms, follows from the timing that is written")
+    assert rows["Largest gap"][0] == "at most 150 ms"
+    assert rows["Greatest age"] == ("no older than 300 ms", "204 ms, follows from how often it is sent and read")
+    assert (rows["Range of values"][0], rows["Frame"][0]) == ("0 to 30 m", "base")
+    assert "Unit" not in rows
+    assert facts["Open points"].split("\n")[1:] == [
+        "eye.rows promises 10 Hz: 5 Hz follows from the timing.",
+        "eye.rows promises gaps of at most 150 ms: it may be 204 ms between two messages.",
+        "plan.rows needs what is no older than 100 ms, and 300 ms is promised.",
+    ]
+
+
+def test_readers_of_different_ports_see_different_figures(tmp_path: Path) -> None:
+    _, rows = _section(tmp_path, "Head · Lens · heads")
+    assert rows["Rate"][0].split("\n") == ["at least 20 Hz for plan.heads", "at least 5 Hz for reach.slow"]
+    assert rows["Unit"][0] == "cm for plan.heads, reach.slow"
+
+
+def _lookup(folder: Path, source: str) -> Lookup:
+    return view(checked(folder, source))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "weaker"),
+    [
+        ("rate: 10 Hz", "rate: 5 Hz", ["Rate (promised)"]),
+        ("rate: 10 Hz", "rate: 11 Hz", []),
+        ("max_age: 300 ms, ", "", ["Greatest age (promised)"]),
+        ("rate: 5 Hz", "rate: 4 Hz", ["Rate (promised)"]),
+        ("rate: 20 Hz", "rate: 19 Hz", []),
+        ("range: [0, 30]", "range: [0, 31]", ["Range of values (promised)"]),
+        ("range: [0, 30]", "range: [1, 29]", []),
+    ],
+)
+def test_a_signed_promise_that_is_weakened_is_told(tmp_path: Path, old: str, new: str, weaker: list[str]) -> None:
+    before, after = _lookup(tmp_path / "1", ROBOT), _lookup(tmp_path / "2", ROBOT.replace(old, new, 1))
+    changes = make_agreement(after, "a", "b", earlier_revision=("v1", before)).changes
+    assert changes
+    terms = [term for change in changes.changes_by_key.values() for term in change.terms]
+    assert [term.name for term in terms if term.is_weaker] == weaker
+    assert changes.earlier_versions != changes.later_versions
+
+
+def test_nothing_is_counted_on_where_a_topic_has_no_output(tmp_path: Path) -> None:
+    lookup = _lookup(tmp_path, ROBOT.replace("rows: {from: eye.rows, freshness: 100 ms}, ", ""))
+    from archgen.model.partner_interfaces import find_interfaces_between
+
+    counted = [list_counted_ports(lookup, each) for each in find_interfaces_between(lookup.architecture, "a", "b")]
+    assert [[port.port.id for port in ports] for ports in counted] == [["sense.head.kept", "sense.head.slow"]]
