@@ -31,6 +31,7 @@ from archgen.link import (
     element_outline,
     interface_sources,
     library_merging,
+    named_files,
     parameter_files,
     parameter_reading,
     report_chapters,
@@ -269,6 +270,9 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     missing_pictures = chapter_pictures.find_missing_pictures(
         project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
     )
+    files_by_element = tuple(named_files.list_named_files(merged_table))
+    project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
+    named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
     missing_files = (
         tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
     )
@@ -289,6 +293,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
         *chapter_findings,
         *missing_pictures,
         *missing_files,
+        *named_file_findings,
         *missing_verifications,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(

@@ -49,6 +49,7 @@ ELEMENTS = {
     "chains": "chain",
     "views": "view",
     "policies": "policy",
+    "properties": "property_declaration",
 }
 NAMES = {
     *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
@@ -135,6 +136,8 @@ def project(text: str) -> dict[str, Any]:
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
         "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},
+        "properties": {"declared": {}, "chosen": {"of": ["component"], "choices": [text]}},
+        "glossary": {kind[:90].strip(): text, "functionality": text},
     }
     _fill(data["project"], "project", text)
     for section in ELEMENTS.keys() & data.keys():
@@ -176,7 +179,13 @@ def _fill(element: dict[str, Any], kind: str, text: str) -> None:
             for inner in element[key].values():
                 _fill(inner, ELEMENTS[key], text)
         elif key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
-            filled: dict[str, dict[str, Any]] = {"text": {key: text}, "prose": {key: text}, "texts": {key: [text]}}
+            filled: dict[str, dict[str, Any]] = {
+                "text": {key: text},
+                "prose": {key: text},
+                "texts": {key: [text]},
+                "properties": {key: {"free": text, "declared": text}},
+                "hints": {key: {"program": [text, {text[:60]: text}]}},
+            }
             element |= filled.get(sort, {})
 
 

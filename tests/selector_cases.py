@@ -5,27 +5,28 @@ from __future__ import annotations
 ROBOT = """
 partners: {certh: , tum: }
 requirements: {R-1: {title: Safe, tags: [law]}, R-2: , R-0: All, R-1a: {parent: R-0}, R-1b: {parent: [R-1a, R-1]}}
-hosts: {pc: , board: {tags: [gpu]}}
+hosts: {pc: , board: {tags: [gpu], properties: {ram: 8 GB}}}
 groups:
   sensing:
     owner: certh
     tags: [perception]
+    properties: {sil: 1}
     components:
       camera:
         role: source
         inputs: {light: {external: Light, medium: physical}}
         outputs: {image: Colour image, info: T}
-      lidar: {outputs: {scan: Laser scan}, requirements: [R-1], tags: [safety]}
+      lidar: {outputs: {scan: Laser scan}, requirements: [R-1], tags: [safety], properties: {sil: 2, mass: 0.5 kg, due: 2027-03-01}}
   planning:
     owner: tum
     components:
-      detector: {inputs: {image: camera.image}, outputs: {objects: T}, requirements: [R-1b], timing: {behaviour: event}}
+      detector: {inputs: {image: camera.image}, outputs: {objects: T}, requirements: [R-1b], timing: {behaviour: event}, properties: {sil: none}}
       fusion: {inputs: {any_of: [lidar, detector, camera.info]}, outputs: {world: T}}
       solver: {inputs: {world: fusion}, outputs: {solve: std_srvs/srv/Trigger}}
       executor: {inputs: {ask: solver.solve}, outputs: {command: T}, requirements: [R-2, "R-2 in the dark"]}
   driving:
     components:
-      base: {role: sink, parameters: {speed.max: 1.5}, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
+      base: {role: sink, parameters: {speed.max: 1.5}, properties: {mass: 12 kg, vendor: Acme Ltd, hot: 12 g}, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
       camera: {title: Rear Camera}
       odd: {inputs: {x: stub}}
       stub:
@@ -93,6 +94,19 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ("parameter:speed.*", "d.base"),
     ("parameter:image.fps", "camera"),  # of a node
     ("node:eyes*", "detector fusion"),
+    ("property:sil", "camera lidar detector"),  # the group's for what has none of its own
+    ("property:sil>=2", "lidar"),
+    ("property:sil<2", "camera"),
+    ("property:sil=1.0", "camera"),
+    ("property:sil=n*", "detector"),
+    ('property:"mass > 0.1 kg"', "lidar d.base"),
+    ('property:"mass<=0.5 kg"', "lidar"),
+    ('property:"*<500 g"', "d.base"),  # only in the same unit
+    ("property:due<2027-03-02", "lidar"),
+    ('property:"vendor=Acme Ltd"', "d.base"),
+    ("property:vendor=*", "d.base"),
+    ('property:"ram>=8 GB"', "camera"),  # of a host
+    ("-property:sil sensing planning", "fusion solver executor"),
     ("+role:sink -sensing", "detector fusion solver executor d.base"),
     ("host:pc..base", "detector fusion solver executor d.base"),
 )
@@ -139,6 +153,9 @@ WRONG: tuple[tuple[str, str], ...] = (
 FOUND_NOTHING: tuple[tuple[str, str], ...] = (
     ("lidar tag:nothing", "6-17 nothing has `tag:nothing`"),
     ("lidar *_x", "6-9 nothing fits `*_x`"),
+    ("lidar property:sil=>2", "6-21 nothing has `property:sil=>2`"),
+    ("lidar property:mass>=1", "6-22 nothing has `property:mass>=1`"),
+    ("lidar property:vendor>=1", "6-24 nothing has `property:vendor>=1`"),
 )
 """Selectors with a warning, all of which select the lidar."""
 

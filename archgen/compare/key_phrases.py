@@ -25,12 +25,16 @@ _NAMED_SECTIONS = {
     "environment": "environment variable",
     "actors": "actor",
     "scheduling": "order on core",
+    "properties": "property",
+    "hints": "hint",
+    "glossary": "term",
 }
 """What sentences call the keys of a section, by the section."""
 _PARTS_OF: Mapping[str, frozenset[str]] = {
     "parameters": frozenset(
         {"type", "unit", "range", "choices", "description", "read_only", "visibility", "from", "hints"}
     ),
+    "properties": frozenset({"title", "description", "of", "type", "unit", "range", "choices", "required"}),
     "operations": frozenset({"title", "request", "response", "call", "visibility", "description"}),
 }
 """Sections whose keys may be parts of what they name, behind a colon."""

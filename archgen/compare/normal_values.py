@@ -61,6 +61,15 @@ def parameter_leaves(prefix: str, value: object) -> Iterator[tuple[str, object]]
         yield prefix, freeze_value(value)
 
 
+def list_data_leaves(prefix: str, data: object) -> Iterator[tuple[str, object]]:
+    """Yield the leaves of data with their paths below `prefix`, lists as they are."""
+    if isinstance(data, Mapping) and data:
+        for key, inner_data in data.items():
+            yield from list_data_leaves(f"{prefix}.{key}", inner_data)
+    else:
+        yield prefix, "{}" if isinstance(data, Mapping) else data
+
+
 def freeze_value(value: object) -> object:
     """Return the value of a parameter so that equal ones compare equal, and true differs from 1."""
     if isinstance(value, list):

@@ -21,7 +21,18 @@ _EXCLUSIVE_KEYS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
 """Keys that say the same in two ways: writing one of a side takes those of the other side away."""
 _PART_KINDS = {"inputs": "input", "outputs": "output", "components": "component"}
 _KEYS_OF_IDS = frozenset(
-    {"parameters", "operations", "performance", "urls", "containers", "frames", "hints", "calls", "uses", "environment"}
+    {
+        "parameters",
+        "operations",
+        "performance",
+        "urls",
+        "containers",
+        "frames",
+        "properties",
+        "calls",
+        "uses",
+        "environment",
+    }
     | {"publishes", "subscribes", "serves", "inputs", "outputs"}
 )
 """Keys whose mappings have ids or names as keys: one called `rate` does not replace another called `period`."""
@@ -137,6 +148,8 @@ def _lay_entry(entries: dict[str, MappingEntry], entry: MappingEntry, *, has_ids
     below = entries.get(entry.key)
     if below is None or not isinstance(below.value, MappingNode) or not isinstance(entry.value, MappingNode):
         entries[entry.key] = entry
+    elif entry.key == "hints" and not has_ids:
+        entries["hints"] = MappingEntry("hints", entry.key_span, lay_data(below.value, entry.value))
     elif entry.key == "node":
         entries["node"] = MappingEntry("node", entry.key_span, lay_node(below.value, entry.value))
     elif entry.key == "qos" and "profile" in entry.value.entries:
@@ -146,6 +159,17 @@ def _lay_entry(entries: dict[str, MappingEntry], entry: MappingEntry, *, has_ids
         if entry.key == "timing":
             _drop_period(value, entry.value)
         entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
+
+
+def lay_data(base: MappingNode, over: MappingNode) -> MappingNode:
+    """Lay data over other data, key by key, to any depth: no key of it means anything to archgen."""
+    entries = dict(base.entries)
+    for entry in over:
+        below = entries.get(entry.key)
+        both = below and isinstance(below.value, MappingNode) and isinstance(entry.value, MappingNode)
+        value = lay_data(below.value, entry.value) if both else entry.value  # type: ignore[union-attr,arg-type]
+        entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
+    return MappingNode(entries, base.span)
 
 
 def lay_node(base: MappingNode, over: MappingNode) -> MappingNode:

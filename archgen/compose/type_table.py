@@ -20,6 +20,9 @@ _TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "dep
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""
+_DATA_KEYS = frozenset({"parameters", "node", "hints", "properties"})
+"""Keys below which nothing names a type."""
+_KEYS_OF_IDS = frozenset({"inputs", "outputs", "components", "operations"})
 
 MissingTypeDescriber = Callable[[str], str | None]
 """Returns what is to be known of a type that a library lacks, by its name; None for nothing."""
@@ -259,17 +262,21 @@ def _drop_type_keys(body: MappingNode) -> MappingNode:
     return MappingNode({e.key: e for e in body if e.key not in _TYPE_KEYS}, body.span)
 
 
-def _bind_types(node: MappingNode, bindings: Mapping[str, str]) -> MappingNode:
-    """Return a copy of a type's body in which generic names are replaced by what they stand for."""
+def _bind_types(node: MappingNode, bindings: Mapping[str, str], *, has_ids: bool = False) -> MappingNode:
+    """Return a copy of a type's body in which generic names are replaced by what they stand for.
+
+    `has_ids`: its keys are ids of ports or components, whatever they are called.
+    """
     return MappingNode(
-        {e.key: MappingEntry(e.key, e.key_span, _bind_value(e.key, e.value, bindings)) for e in node},
+        {e.key: MappingEntry(e.key, e.key_span, _bind_value(e.key, e.value, bindings, has_ids=has_ids)) for e in node},
         node.span,
     )
 
 
-def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str]) -> YamlNode:
+def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str], *, has_ids: bool) -> YamlNode:
     if isinstance(node, MappingNode):
-        return node if key in {"parameters", "node"} else _bind_types(node, bindings)
+        is_data = key in _DATA_KEYS and not has_ids
+        return node if is_data else _bind_types(node, bindings, has_ids=key in _KEYS_OF_IDS and not has_ids)
     if key in _NAMING_KEYS and isinstance(node, ScalarNode) and node.value is not None:
         text = bind_type_name(node.text, bindings)
         return node if text == node.text else ScalarNode(text, text, node.span)

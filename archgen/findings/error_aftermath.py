@@ -52,6 +52,7 @@ _LACK_RULES = frozenset(
         "half-written",
         "idle-timing",
         "incompatible-qos",
+        "missing-property",
         "remote-resource",
         "role-mismatch",
         "unactivated-node",

@@ -6,6 +6,7 @@ from archgen.link import composition_rules, reference_rules, slice_merging
 from archgen.link.chapter_pictures import MISSING_PICTURE
 from archgen.link.data_types import type_rules
 from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
+from archgen.link.named_files import MISSING_FILE
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
@@ -19,6 +20,7 @@ RULES = (
     DUPLICATE_FRAME,
     MISSING_CHAPTER,
     MISSING_PICTURE,
+    MISSING_FILE,
     MISSING_PARAMETER_FILE,
     MISSING_VERIFICATION,
 )

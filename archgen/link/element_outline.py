@@ -151,6 +151,8 @@ def _declare_output(element_outline: ElementOutline, component: str, entry: Mapp
         medium_written=mapping_values.get_medium(body, "medium") is not None,
         frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
+        urls=mapping_values.get_text_mapping(body, "urls"),
+        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
         medium_at=mapping_values.get_span(body, "medium"),
         type_at=mapping_values.get_span(body, "type"),

@@ -90,6 +90,8 @@ class InputWiring:
             description=mapping_values.get_text(body, "description"),
             from_written=body.get("from") is not None
             or (self.sources is not None and ("input", f"{component_id}.{entry.key}") in self.sources.ambiguous_ports),
+            urls=mapping_values.get_text_mapping(body, "urls"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             medium_at=mapping_values.get_span(body, "medium"),
             type_at=mapping_values.get_span(body, "type"),

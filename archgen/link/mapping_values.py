@@ -13,6 +13,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model import quantity
 from archgen.model.component import DiagramLayout
 from archgen.model.declared_timing import SchedulingOrder
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.message_types import full_message_name
 from archgen.model.path_resolver import title_from_id
 from archgen.model.port_media import normalise_medium
@@ -117,6 +118,20 @@ def get_text_mapping(mapping: MappingNode, key: str) -> Mapping[str, str]:
     """Return a mapping of texts, such as `urls`."""
     texts_mapping = get_mapping(mapping, key)
     return {e.key: e.value.text for e in texts_mapping if type(e.value) is ScalarNode and e.value.value is not None}
+
+
+def get_annotations(mapping: MappingNode) -> ElementAnnotations:
+    """Return an element's properties and hints."""
+    entries = mapping.entries
+    if "properties" not in entries and "hints" not in entries:  # nearly every element
+        return NO_ANNOTATIONS
+    properties = {entry.key: entry.value for entry in get_mapping(mapping, "properties")}
+    return ElementAnnotations(
+        properties=get_text_mapping(mapping, "properties"),
+        hints=get_data(mapping, "hints"),
+        property_places={name: value.span for name, value in properties.items()},
+        hint_places={entry.key: entry.key_span for entry in get_mapping(mapping, "hints")},
+    )
 
 
 def iterate_elements(mapping: MappingNode, key: str) -> Iterator[tuple[str, MappingEntry, MappingNode]]:

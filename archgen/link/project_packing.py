@@ -6,6 +6,7 @@ The packed file must give the same report as the folder (docs/decisions/0002-pac
 from __future__ import annotations
 
 import base64
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import field
@@ -24,12 +25,19 @@ _BARE_KEYS = frozenset(
     {
         *("archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core", "measured"),
         *("reentrant", "large_paper", "static", "abstract", "whole", "respawn", "once", "port"),
-        "range",
+        *("range", "required"),
     },
 )
 """Keys whose values are numbers or booleans; everything else outside of parameters is text."""
+_PLAIN_NUMBER = re.compile(r"0|-?[1-9][0-9]{0,14}")
 _RAW_KEYS = frozenset({"parameters", "calls"})
-"""Keys below which values keep the kind that they were written in."""
+"""Keys below which values keep the kind that they were written in; `hints` is another."""
+_KEYS_OF_IDS = frozenset(
+    {"groups", "components", "component_types", "inputs", "outputs", "nodes", "hosts", "containers", "resources"}
+    | {"links", "frames", "chains", "views", "policies", "partners", "requirements", "use_cases", "types", "libraries"}
+    | {"publishes", "subscribes", "serves", "operations", "performance", "properties", "glossary", "urls"}
+)
+"""Keys of mappings whose own keys are ids or names."""
 
 
 @dataclass(slots=True)
@@ -213,9 +221,32 @@ def _pack_mapping(
         placer.visit_value(
             entry_path, entry.key_span, *([entry.value.span] if isinstance(entry.value, ScalarNode) else [])
         )
-        data[entry.key] = _pack_value(entry.value, entry_path, placer, is_raw=is_raw or _holds_raw_values(entry))
+        value = _pack_value(entry.value, entry_path, placer, is_raw=is_raw or _holds_raw_values(entry, path))
+        if entry.key == "properties" and path and not is_raw and isinstance(value, dict) and not _is_id(path):
+            value = {name: _write_plain(text) for name, text in value.items()}
+        data[entry.key] = value
     return data
 
 
-def _holds_raw_values(entry: MappingEntry) -> bool:
+def _write_plain(text: object) -> object:
+    """Return the value of a property as a number or a boolean where its text stays the same: nobody writes `trl: "5"`."""
+    if isinstance(text, str) and _PLAIN_NUMBER.fullmatch(text):
+        return int(text)
+    return {"true": True, "false": False}.get(text, text) if isinstance(text, str) else text
+
+
+def _holds_raw_values(entry: MappingEntry, path: DataPath) -> bool:
+    if entry.key == "hints":
+        return not _is_id(path)
     return entry.key in _RAW_KEYS or (entry.key in _BARE_KEYS and not isinstance(entry.value, MappingNode))
+
+
+def _is_id(path: DataPath) -> bool:
+    """Whether a key in the mapping at a path is the id of an element: inputs may be called `hints`."""
+    keys = iter(path)
+    has_ids = False
+    for key in keys:
+        has_ids = key in _KEYS_OF_IDS
+        if has_ids and next(keys, None) is not None:
+            has_ids = False
+    return has_ids

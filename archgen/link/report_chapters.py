@@ -70,6 +70,8 @@ class ReportChapters:
     """Pictures that a packed project holds itself, by path; they win over files."""
     settings: ReportSettings = field(default_factory=ReportSettings)
     """What stands beside the chapters: level, first pages, lists."""
+    image_paths: tuple[str, ...] = ()
+    """Pictures that elements name, by their normal paths."""
     picture_cache: dict[str, bytes | None] = field(default_factory=dict, compare=False, repr=False)
     """Pictures read so far, None for one that is absent: each is read once, so that all outputs have the same bytes."""
 
@@ -92,8 +94,9 @@ class ReportChapters:
         return read_binary_file(self.files, normal_path)
 
     def list_picture_paths(self) -> tuple[str, ...]:
-        """Return the paths of all pictures that the chapters show; some may be absent."""
-        paths: dict[str, None] = {}
+        """Return the paths of all pictures that chapters and elements show; some may be absent."""
+        paths: dict[str, None] = dict.fromkeys(self.image_paths)
+        paths |= {f"{path.removesuffix('.svg')}.png": None for path in self.image_paths if path.endswith(".svg")}
         for chapter in self.texts.values():
             for picture in find_shown_pictures(chapter.text):
                 normal_path = posixpath.normpath(posixpath.join(chapter.folder, picture.path))
@@ -104,7 +107,7 @@ class ReportChapters:
         return tuple(paths)
 
     def read_pictures(self) -> dict[str, bytes]:
-        """Read all pictures that the chapters show; return their bytes by path."""
+        """Read all pictures that chapters and elements show; return their bytes by path."""
         pictures = {path: self.read_picture(path) for path in self.list_picture_paths()}
         return {path: data for path, data in pictures.items() if data is not None}
 

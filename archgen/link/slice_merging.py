@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
 KeyPath = tuple[str, ...]
-_SUPPORTING_KEYS = frozenset({"timing", "requirements", "tags", "urls", "layout", "owner", "parameters", "node"})
+_SUPPORTING_KEYS = frozenset(
+    {"timing", "requirements", "tags", "urls", "layout", "owner", "parameters", "node"}
+    | {"properties", "hints", "status", "contact", "image"}
+)
 """Keys that supporting files add to components which other files declare: they alone declare nothing."""
 _INSTANCE_KEYS = frozenset({"is", "same_as"})
 

@@ -23,6 +23,7 @@ UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "o
 _MAX_COMPARED = 2_000
 """Items of a list that is compared item by item: that takes time that grows with the square at worst."""
 _FREE_SECTION = "parameters"
+_DATA_KEY = "hints"
 _CHOICES_KEY = "choices"
 """What a declared parameter may be: in any order."""
 _CHAIN_SECTION = "chains"
@@ -96,7 +97,7 @@ def _is_unordered(path: tuple[str, ...]) -> bool:
         return section == _FREE_SECTION and len(names) > 1
     # What stands below `parameters` is the nodes' own data, whatever its keys are called.
     is_named = bool(path) and (path[-1] in UNORDERED_KEYS or path[-2:-1] == (_PORT_SECTION,))
-    return is_named and _FREE_SECTION not in path and path[:-1] != (_CHAIN_SECTION,)
+    return is_named and _FREE_SECTION not in path and _DATA_KEY not in path[:-1] and path[:-1] != (_CHAIN_SECTION,)
 
 
 def _list_keys_of_component(path: tuple[str, ...]) -> tuple[str, ...]:

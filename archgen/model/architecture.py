@@ -12,6 +12,7 @@ from archgen.model import port_media
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -44,6 +45,7 @@ class Partner:
     contact: str | None = None
     reviewers: tuple[str, ...] = ()
     """The reviewers of its files as CODEOWNERS names them: `@user`, `@organisation/team`, an e-mail address."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -56,6 +58,7 @@ class UseCase:
     description: str | None = None
     actors: Mapping[str, Actor] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -77,6 +80,7 @@ class Chain:
     through: tuple[Waypoint, ...] = ()
     deadline: Quantity | None = None
     requirements: tuple[str, ...] = ()
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
     """The entries of `through` that name no element: such a chain is not judged."""
@@ -96,6 +100,7 @@ class View:
     depth: int | None = None
     """How many levels of composed components it opens; None where it does not say."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     show_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
@@ -108,9 +113,19 @@ class Policy:
     title: str
     forbid_from: str
     forbid_to: str
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     to_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class GlossaryTerm:
+    """What a term means."""
+
+    term: str
+    text: str
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,6 +209,10 @@ class Architecture:
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
+    properties: Mapping[str, PropertyDeclaration] = field(default_factory=dict)
+    """What the project says of properties, by id; others are free."""
+    glossary: Mapping[str, GlossaryTerm] = field(default_factory=dict)
+    """What terms mean, by the term as written."""
     review: ReviewSettings = field(default_factory=ReviewSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)

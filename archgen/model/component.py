@@ -10,11 +10,13 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.parameter import Operation, Parameter
 from archgen.model.promise import Deprecation, Promise
 from archgen.model.quantity import Quantity
 
 ComponentRole = Literal["source", "filter", "sink", "reactive"]
+ComponentStatus = Literal["existing", "adapted", "planned"]
 DiagramDirection = Literal["left-right", "top-bottom"]
 
 
@@ -67,6 +69,9 @@ class Input:
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
     medium_written: bool = False
     """Whether somebody says what it travels over; `digital` alone does not."""
+    urls: Mapping[str, str] = field(default_factory=dict)
+    """Addresses and files of the project by name: what describes its interface."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     medium_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
@@ -96,6 +101,9 @@ class Output:
     """Whether nobody wrote what this output of a composed component gives on: `autoconnect` joined the two."""
     medium_written: bool = False
     """Whether somebody says what it travels over; `digital` alone does not."""
+    urls: Mapping[str, str] = field(default_factory=dict)
+    """Addresses and files of the project by name: what describes its interface."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     medium_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
@@ -162,7 +170,13 @@ class Component:
     timing: Timing | None = None
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
+    status: ComponentStatus | None = None
+    contact: str | None = None
+    """Whom to ask about it."""
+    image: str | None = None
+    """The path of a picture of it, in the project."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     role_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
@@ -195,6 +209,7 @@ class Group:
     urls: Mapping[str, str] = field(default_factory=dict)
     layout: DiagramLayout = field(default_factory=DiagramLayout)
     components: Mapping[str, Component] = field(default_factory=dict)
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
@@ -232,8 +247,13 @@ class ComponentType:
     operations: Mapping[str, Operation] = field(default_factory=dict)
     frames: tuple[Frame, ...] = ()
     """The frames of its instances, with the names as written: `$(self.prefix)laser`."""
+    status: ComponentStatus | None = None
+    contact: str | None = None
+    image: str | None = None
+    """The path of a picture of it, in the project."""
     inner_types: frozenset[str] = field(default=frozenset(), compare=False)
     """The types that the components inside name, to any depth: what is said of them is compared component by component."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property

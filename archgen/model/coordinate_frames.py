@@ -8,6 +8,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.quantity import Quantity
 
 
@@ -29,6 +30,7 @@ class Frame:
     component: str | None = None
     by_written: bool = False
     """Whether `by` is written, resolved or not: no rule reports such a frame as unpublished."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     parent_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 

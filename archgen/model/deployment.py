@@ -8,6 +8,7 @@ from dataclasses import field
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import SchedulingOrder
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.quantity import Quantity
 
 
@@ -26,6 +27,7 @@ class Host:
     core_scheduling: Mapping[int, SchedulingOrder] = field(default_factory=dict)
     description: str | None = None
     tags: tuple[str, ...] = ()
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     core_places: Mapping[int, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where the scheduling of single cores is written."""
@@ -49,6 +51,7 @@ class Container:
     executable: str | None = None
     parameters: Mapping[str, object] = field(default_factory=dict)
     name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
@@ -65,6 +68,7 @@ class Resource:
     title: str
     host: str | None = None
     scheduling: SchedulingOrder | None = None
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -83,6 +87,7 @@ class Link:
     """The components that are devices on it, by complete id."""
     protocol: str | None = None
     """What is spoken on it, as a medium's word."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     protocol_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     connects_at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -15,8 +15,10 @@ GENERATED_CHAPTERS = (
     "types",
     "connections",
     "requirements",
+    "properties",
     "open_points",
     "statistics",
+    "glossary",
 )
 """The generated chapters by their names in `report.chapters`, in their default order."""
 

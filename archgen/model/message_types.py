@@ -9,6 +9,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.promise import Deprecation
 from archgen.model.quantity import Quantity
 
@@ -91,6 +92,7 @@ class ConceptualType:
     """What maps it: the project, the type mapper that ships with archgen, or its own name, which is a message."""
     library: str | None = None
     """The library that it comes from, None where the project declares it, or nobody."""
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)

@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import SchedulingOrder, Timing
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.parameter import FileRemark, ParameterValue
 from archgen.model.quantity import Quantity
 from archgen.model.start_up import StartUp
@@ -108,6 +109,7 @@ class Node:
     urls: Mapping[str, str] = field(default_factory=dict)
     written: bool = True
     implements_written: bool = False
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     name_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     kind_at: Span = field(default=NO_SPAN, compare=False, repr=False)

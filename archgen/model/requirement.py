@@ -8,6 +8,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,7 @@ class Requirement:
     use_cases: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     urls: Mapping[str, str] = field(default_factory=dict)
+    annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     parent_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     """Where its first parent is written."""

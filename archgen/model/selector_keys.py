@@ -11,6 +11,7 @@ from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import list_medium_words
+from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_condition
 from archgen.model.requirement_tree import add_below
 
 
@@ -161,6 +162,24 @@ def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
     return SelectorHit(frozenset(components), frozenset(nodes))
 
 
+def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
+    """Find what has a property itself; components also by what is around them, nodes by their host."""
+    condition = parse_condition(text)
+    if condition is None:
+        return SelectorHit(frozenset(), frozenset())
+    components = (
+        c.id
+        for c in architecture.components.values()
+        if condition.is_met(find_component_properties(architecture, c), matches_wildcard)
+    )
+    nodes = (
+        n.id
+        for n in architecture.nodes.values()
+        if condition.is_met(find_node_properties(architecture, n), matches_wildcard)
+    )
+    return SelectorHit(frozenset(components), frozenset(nodes))
+
+
 def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
     """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
@@ -191,5 +210,6 @@ _ELEMENT_FINDERS: Mapping[str, Callable[[Architecture, str], SelectorHit]] = {
     "tag": _find_tagged,
     "requirement": _find_by_requirement,
     "parameter": _find_by_parameter,
+    "property": _find_by_property,
 }
 """The keys whose values stand at other elements than the components and nodes that they select."""

@@ -33,6 +33,7 @@ SELECTOR_KEYS = (
     "is",
     "library",
     "parameter",
+    "property",
 )
 ALL_STEPS = -1
 """Any number of steps."""

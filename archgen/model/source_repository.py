@@ -35,15 +35,15 @@ class SourceRepository:
     commit: str = ""
     """The commit whose files are meant; empty for those of the branch."""
 
-    def file_address(self, file: str, line: int) -> str | None:
-        """Return the address of a line of a file, given from the project's folder; None where it leads out."""
+    def file_address(self, file: str, line: int | None = None) -> str | None:
+        """Return the address of a file, or of a line of it, given from the project's folder; None where it leads out."""
         path = posixpath.normpath(posixpath.join((self.folder or "").strip("/"), file))
         if not file or path.startswith(("../", "/")):
             return None
         base = self.address.rstrip("/").removesuffix(".git")
         paths = _COMMIT_PATHS if self.commit else _FILE_PATHS
         file_path = paths[self.forge or self._guess_forge()].format(quote(self.commit or self.branch), quote(path))
-        return f"{base}{file_path}#L{line}"
+        return f"{base}{file_path}" if line is None else f"{base}{file_path}#L{line}"
 
     def _guess_forge(self) -> Forge:
         host = urlsplit(self.address).hostname or ""

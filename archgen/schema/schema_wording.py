@@ -31,7 +31,7 @@ _BOOLEAN_WORDS = {
 }
 SECTIONS_BY_ID = frozenset(
     {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
-    | {"resources", "views", "policies", "component_types", "frames", "libraries"}
+    | {"resources", "views", "policies", "component_types", "frames", "libraries", "properties"}
 )
 """The top-level sections that hold elements by id."""
 _UNQUOTED_VALUE = re.compile(r"-?[0-9]+|true|false", re.IGNORECASE)

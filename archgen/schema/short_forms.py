@@ -112,6 +112,7 @@ _ROOT_FORM = ElementForm(
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
+        "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
         "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
@@ -218,7 +219,7 @@ def _normalise_below(key: str, mapping: MappingNode, form: ElementForm) -> None:
         element_form = form.keyed_forms[key]
         for entry in mapping.entries.values():
             entry.value = _normalise_element(entry.value, element_form)
-    elif key not in form.raw_keys:
+    elif key not in form.raw_keys and key != "hints":
         _normalise_mapping(mapping, _PLAIN_FORM)
 
 

@@ -159,7 +159,7 @@ class Graph:
     direction: Literal["left-right", "top-bottom"] | None = None
     """Which way the project wants the flow to run; None: as the layout reads best, `flow` and `group` to the right."""
     legend: tuple[str, ...] = ()
-    """Which keys of the legend apply: names of styles, `width`, `colour`, `neighbour`, ..."""
+    """Which keys of the legend apply: names of styles, `count`, `neighbour`, ..."""
     legend_colours: tuple[tuple[int, str], ...] = ()
     """Palette index and its meaning, where colour stands for something other than the group."""
     notes: tuple[str, ...] = ()

@@ -15,6 +15,7 @@ from archgen.model.declared_timing import InputTiming, Timing
 from archgen.model.deployment import Host
 from archgen.model.node import Node, Qos
 from archgen.model.quantity import Quantity
+from archgen.model.source_repository import SourceRepository
 from archgen.views.shapes import Inlines, Text
 
 BEHAVIOUR_WORDS = {
@@ -179,13 +180,18 @@ def _describe_way(architecture: Architecture, connection: Connection) -> Inlines
     return (Text(" through ", muted=True), component_link(find_component(architecture, shell_id)), *port_name)
 
 
-def link_urls(named_urls: Iterable[tuple[str, str]]) -> Inlines:
-    """Write (name, address) pairs as links."""
-    return join_inlines(
-        # Any other scheme (`javascript:`, `file:`) stays text that nobody can click.
-        (Text(name, url=address) if address.startswith(("https://", "http://")) else Text(f"{name}: {address}"),)
-        for name, address in named_urls
-    )
+def link_urls(named_urls: Iterable[tuple[str, str]], repository: SourceRepository | None = None) -> Inlines:
+    """Write (name, address) pairs as links; files of the project lead into its repository, if that is known."""
+    return join_inlines((_link_address(name, address, repository),) for name, address in named_urls)
+
+
+def _link_address(name: str, address: str, repository: SourceRepository | None) -> Text:
+    if address.startswith(("https://", "http://")):
+        return Text(name, url=address)
+    # Any other scheme (`javascript:`, `file:`) stays text that nobody can click.
+    is_file = ":" not in address and not address.startswith("/")
+    file_address = repository.file_address(address) if repository and is_file else None
+    return Text(name, url=file_address) if file_address else Text(f"{name}: {address}")
 
 
 def format_qos(qos: Qos) -> str:

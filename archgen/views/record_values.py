@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from typing import Protocol
 
+from archgen.model.element_annotations import ElementAnnotations, read_figure
 from archgen.model.quantity import Quantity
+
+
+class HasAnnotations(Protocol):
+    """An element of any kind."""
+
+    @property
+    def annotations(self) -> ElementAnnotations:
+        """What it says of itself beside its own keys."""
 
 
 def pick_fields(element: object, *keys: str) -> dict[str, object]:
@@ -28,6 +38,21 @@ def record_quantity(quantity: Quantity | None, unit: str) -> dict[str, object] |
 def to_number(value: Fraction) -> int | float:
     """Return an int where that is exact, else the nearest float (JSON and YAML have no fractions)."""
     return int(value) if value.denominator == 1 else float(value)
+
+
+def record_annotations(element: HasAnnotations) -> dict[str, object]:
+    """Return the properties of an element (text, number and unit, as far as they are such), and its hints as they are."""
+    annotations = element.annotations
+    if not annotations.properties and not annotations.hints:
+        return {}
+    properties = {name: _record_property(text) for name, text in annotations.properties.items()}
+    return drop_unknown({"properties": properties, "hints": to_plain(annotations.hints)})
+
+
+def _record_property(text: str) -> dict[str, object]:
+    figure = read_figure(text)
+    number = {"value": to_number(Fraction(figure.value))} if figure else {}
+    return {"text": text, **number, **({"unit": figure.unit} if figure and figure.unit else {})}
 
 
 def to_plain(value: object) -> object:

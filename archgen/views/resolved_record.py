@@ -18,7 +18,7 @@ from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.promise_record import record_life, record_words
-from archgen.views.record_values import drop_unknown, pick_fields, record_quantity, to_plain
+from archgen.views.record_values import drop_unknown, pick_fields, record_annotations, record_quantity, to_plain
 from archgen.views.shapes import Record
 from archgen.views.start_record import record_start
 from archgen.views.timing_record import record_timing
@@ -44,10 +44,12 @@ def make_record(lookup: Lookup) -> Record:
         ),
         # Groups, components, connections, edges, nodes and topics are cut to the scope; all else is given in full.
         "partners": {
-            p.id: pick_fields(p, "title", "description", "contact", "reviewers") for p in architecture.partners.values()
+            p.id: pick_fields(p, "title", "description", "contact", "reviewers") | record_annotations(p)
+            for p in architecture.partners.values()
         },
         "use_cases": record_use_cases(lookup),
         "requirements": {r.id: _record_requirement(lookup, r) for r in architecture.requirements.values()},
+        **_record_vocabulary(architecture),
         "groups": {name: _record_group(lookup, architecture.groups[name]) for name in lookup.shown_groups()},
         "components": {c.id: _record_component(lookup, c) for c in architecture.components.values() if is_shown(c.id)},
         **_record_composition(lookup),
@@ -64,7 +66,9 @@ def make_record(lookup: Lookup) -> Record:
         ],
         "nodes": {node.id: _record_node(lookup, node) for node in lookup.shown_nodes()},
         "topics": _record_topics(lookup),
-        "types": {t.name: record_type(t, architecture.interfaces) for t in architecture.types.values()},
+        "types": {
+            t.name: record_type(t, architecture.interfaces) | record_annotations(t) for t in architecture.types.values()
+        },
         "hosts": {host.id: _record_host(host) for host in architecture.hosts.values()},
         "containers": {container.id: _record_container(container) for container in architecture.containers.values()},
         **_record_resources(architecture),
@@ -72,6 +76,23 @@ def make_record(lookup: Lookup) -> Record:
         **_record_frames(architecture),
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
     }
+
+
+def _record_vocabulary(architecture: Architecture) -> dict[str, object]:
+    """Return the declared properties and the glossary, nothing in a project without them."""
+    properties = {
+        each.id: pick_fields(each, "title", "description", "of", "type", "unit", "choices")
+        | drop_unknown(
+            {
+                "range": [str(limit) for limit in each.range] if each.range else None,
+                "required": each.required or None,
+            }
+        )
+        for each in architecture.properties.values()
+    }
+    return drop_unknown(
+        {"properties": properties, "glossary": {t.term: t.text for t in architecture.glossary.values()}}
+    )
 
 
 def _record_composition(lookup: Lookup) -> dict[str, object]:
@@ -108,7 +129,10 @@ def _record_component_type(component_type: ComponentType) -> dict[str, object]:
         "operations": {name: record_operation(each) for name, each in component_type.operations.items()},
         "frames": {frame.id: _record_frame(frame) for frame in component_type.frames},
     }
-    return pick_fields(component_type, "title", "owner", "functionality", "description") | drop_unknown(dict(fields))
+    own_fields = pick_fields(
+        component_type, "title", "owner", "functionality", "description", "status", "contact", "image"
+    )
+    return own_fields | drop_unknown(dict(fields)) | record_annotations(component_type)
 
 
 def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, object]:
@@ -116,6 +140,7 @@ def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, o
         "served_by": [component.id for component in lookup.components_for_requirement.get(requirement.id, ())],
         "served_by_chains": [chain.id for chain in lookup.chains_for_requirement.get(requirement.id, ())],
         "urls": dict(requirement.urls),
+        **record_annotations(requirement),
         "parent": list(requirement.parents),
         "verified_by": [{"kind": each.kind, "text": each.text} for each in requirement.verified_by],
     }
@@ -128,27 +153,33 @@ def _record_requirement(lookup: Lookup, requirement: Requirement) -> dict[str, o
 def _record_group(lookup: Lookup, group: Group) -> dict[str, object]:
     component_ids = [component.id for component in lookup.shown_components(group.id)]
     fields = pick_fields(group, "title", "description", "owner", "co_owners", "tags")
-    return fields | drop_unknown({"components": component_ids, "urls": dict(group.urls)})
+    return fields | drop_unknown({"components": component_ids, "urls": dict(group.urls), **record_annotations(group)})
 
 
 def _record_host(host: Host) -> dict[str, object]:
     """Return a host; `scheduling` is by core where single cores have an order of their own."""
     fields = pick_fields(host, "title", "description", "cores", "tags", "scheduling")
     by_core = {str(core): order for core, order in host.core_scheduling.items()}
-    return fields | ({"scheduling": by_core} if by_core else {})
+    return fields | ({"scheduling": by_core} if by_core else {}) | record_annotations(host)
 
 
 def _record_container(container: Container) -> dict[str, object]:
     fields = pick_fields(container, "title", "host", "threads", "scheduling", "name", "package", "executable")
     own_namespace = {"namespace": container.namespace} if container.namespace != "/" else {}
-    return fields | own_namespace | drop_unknown({"parameters": to_plain(container.parameters) or None})
+    parameters = drop_unknown({"parameters": to_plain(container.parameters) or None})
+    return fields | own_namespace | parameters | record_annotations(container)
 
 
 def _record_resources(architecture: Architecture) -> dict[str, object]:
     """Return the section of resources, empty in a project without any."""
     resources = architecture.resources.values()
     return drop_unknown(
-        {"resources": {each.id: pick_fields(each, "title", "host", "scheduling") for each in resources}}
+        {
+            "resources": {
+                each.id: pick_fields(each, "title", "host", "scheduling") | record_annotations(each)
+                for each in resources
+            }
+        }
     )
 
 
@@ -159,19 +190,19 @@ def _record_frames(architecture: Architecture) -> dict[str, object]:
 
 def _record_frame(frame: Frame) -> dict[str, object]:
     values = {"rate": record_quantity(frame.rate, "Hz"), "static": frame.static or None}
-    return pick_fields(frame, "title", "parent", "by") | drop_unknown(dict(values))
+    return pick_fields(frame, "title", "parent", "by") | drop_unknown(dict(values)) | record_annotations(frame)
 
 
 def _record_link(link: Link) -> dict[str, object]:
     bandwidth = {"bandwidth": record_quantity(link.bandwidth, "bit/s")}
     latency = {"best": record_quantity(link.best, "ns"), "worst": record_quantity(link.worst, "ns")}
-    return pick_fields(link, "title", "connects", "devices", "protocol") | drop_unknown({**bandwidth, **latency})
+    return pick_fields(link, "title", "connects", "devices", "protocol") | drop_unknown({**bandwidth, **latency}) | record_annotations(link)
 
 
 def _record_chain(chain: Chain) -> dict[str, object]:
     through = [{"kind": point.kind, "id": point.id} for point in chain.through]
     fields = {"through": through, "deadline": record_quantity(chain.deadline, "ns")}
-    return pick_fields(chain, "title", "requirements") | drop_unknown(dict(fields))
+    return pick_fields(chain, "title", "requirements") | drop_unknown(dict(fields)) | record_annotations(chain)
 
 
 def _record_component(lookup: Lookup, component: Component) -> dict[str, object]:
@@ -207,6 +238,10 @@ def _record_component(lookup: Lookup, component: Component) -> dict[str, object]
             "timing": record_timing(component.timing),
             "tags": list(component.tags),
             "urls": dict(component.urls),
+            "status": component.status,
+            "contact": component.contact,
+            "image": component.image,
+            **record_annotations(component),
         }
     )
 
@@ -219,6 +254,8 @@ def _record_port(port: Input | Output) -> dict[str, object]:
         "external": port.external,
         "frame": port.frame,
         "description": port.description,
+        "urls": dict(port.urls),
+        **record_annotations(port),
     }
 
 
@@ -288,6 +325,7 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             "effective_parameters": record_effective(lookup.architecture, node),
             "tags": list(node.tags),
             "urls": dict(node.urls),
+            **record_annotations(node),
         }
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.views.lookup import Lookup
-from archgen.views.record_values import drop_unknown, pick_fields
+from archgen.views.record_values import drop_unknown, pick_fields, record_annotations
 
 
 def record_use_cases(lookup: Lookup) -> dict[str, object]:
@@ -22,6 +22,7 @@ def record_use_cases(lookup: Lookup) -> dict[str, object]:
                 ],
             }
         )
+        | record_annotations(use_case)
         for use_case in lookup.architecture.use_cases.values()
     }
 

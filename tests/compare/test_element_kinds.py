@@ -91,9 +91,10 @@ _INSIDE = {
 }
 READ_OFF_PATTERNS = frozenset(
     {"node", "open", "operations", "parameters", "performance", "requirements", "role", "tags", "timing", "urls"}
+    | {"contact", "hints", "image", "properties", "status"}
 )
 """Keys of component types that comparisons read off patterns: they are linked for these."""
-_SHOWN_SETTINGS = frozenset({"open", "operations", "parameters"})
+_SHOWN_SETTINGS = frozenset({"open", "operations", "parameters", "contact", "image", "status", "properties", "hints"})
 """Those of them that a type has in the model as well, for its page."""
 SCHEMA_ONLY = {
     **{f"component {key}": reason for key, reason in _INSIDE.items()},
@@ -126,8 +127,10 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project review": "a section of its own",
     "project site": "a section of its own",
     "project rules": "a section of its own",
+    **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 MODEL_ONLY = {
+    **{f"{kind} annotations": "the keys `properties` and `hints`" for kind in SECTIONS},
     "component parent": "the beginning of the id",
     "component children": "elements of their own",
     "component component_type": "the key `is`",
@@ -165,6 +168,7 @@ MODEL_ONLY = {
     "frame by_written": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
+    **{f"{kind} {key}": "the field `annotations`" for kind in SECTIONS for key in ("properties", "hints")},
     "component is": "the fields `component_type` and `is_reference`",
     **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "component_type is": "the field `base`",
@@ -176,7 +180,18 @@ TABLE_ONLY_FOR_MODEL = {
     "component mapped": "follows from the nodes",
     **{
         f"project {key}": "a field of the architecture or of the version"
-        for key in ("distro", "shared_topics", "parameters", "layout", "chapters", "review", "rules", "site")
+        for key in (
+            "distro",
+            "shared_topics",
+            "parameters",
+            "layout",
+            "chapters",
+            "review",
+            "rules",
+            "site",
+            "properties",
+            "glossary",
+        )
     },
 }
 RECORD_ONLY = {
@@ -203,6 +218,7 @@ NOT_IN_RECORD = {
     **{f"component_type {key}": "what its instances have" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "link latency": "the keys `best` and `worst`",
     **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules", "site")},
+    **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 KINDS_NOT_IN_RECORD = {
     "chapter": "a text, not a part of the system",
@@ -226,9 +242,11 @@ ROBOT = """\
 archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
 ros: {distro: jazzy, parameters: {use_sim_time: true}}
-partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c"}, sssa: S}
-use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}]}}
-requirements: {R-0: W, R-1: {title: R, description: D, parent: R-0, kind: k, priority: p, rationale: W, source: S, verified_by: [UC-1, c, t.py, by hand], use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}}}
+partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c", properties: {q: 1}, hints: {x: {a: 1}}}, sssa: S}
+use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}], properties: {q: 1}, hints: {x: {a: 1}}}}
+requirements: {R-0: W, R-1: {title: R, description: D, parent: R-0, kind: k, priority: p, rationale: W, source: S, verified_by: [UC-1, c, t.py, by hand], use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}, properties: {q: 1}, hints: {x: {a: 1}}}}
+properties: {p: {title: P, description: D, of: [component], type: integer, unit: kg, range: [0, 9], choices: [1 kg, 2 kg], required: true}}
+glossary: {T: Text}
 groups:
   g:
     title: G
@@ -237,6 +255,8 @@ groups:
     tags: [t]
     urls: {a: "https://a.eu"}
     layout: {direction: top-bottom}
+    properties: {q: 1}
+    hints: {x: {a: 1}}
     components:
       a:
         title: A
@@ -251,10 +271,15 @@ groups:
         urls: {a: "https://a.eu"}
         parameters: {gain: {type: float, value: 1, unit: m, range: [0, 2], choices: [1, 2], description: D, read_only: true, visibility: public, hints: {a: {b: 1}}}}
         open: [plugins]
+        status: adapted
+        contact: c@d.eu
+        image: a.png
+        properties: {p: 1 kg}
+        hints: {x: {a: [1]}}
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
-        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D}}
-        outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D}, o2: {external: the world}}
-        frames: {base: {title: B, parent: map, rate: 10 Hz}, eye: {parent: base, static: true}}
+        inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}}
+        outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}, o2: {external: the world}}
+        frames: {base: {title: B, parent: map, rate: 10 Hz, properties: {q: 1}, hints: {x: {a: 1}}}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
@@ -264,9 +289,9 @@ groups:
 component_types:
   drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, version: 3, deprecated: {until: 2999-01-01, use: spare}}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
-  spare: {parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
+  spare: {status: adapted, contact: c@d.eu, image: a.png, properties: {p: 1 kg}, hints: {x: {a: 1}}, parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
 types:
-  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}}
+  T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}, properties: {q: 1}, hints: {x: {a: 1}}}
   S: {request: T, response: T, feedback: T}
   F: {fields: {x: {type: float64, default: 0.5, unit: m, comment: C}, y: {type: "int8[]", default: [1, 2]}, t: T}, constants: {A: {type: int8, value: 1, comment: C}}}
   V: {values: [ON, OFF]}
@@ -298,17 +323,19 @@ nodes:
     start: {phase: components, after: m, ready: {port: 1, file: f, topic: t, service: s, log: l, wait: 1 s, within: 2 s}, respawn: true, respawn_delay: 1 s, environment: {A: b}, directory: /d, user: u, once: true, state: active, by: m}
     tags: [t]
     urls: {a: "https://a.eu"}
+    properties: {q: 1}
+    hints: {x: {a: 1}}
     publishes: {o: /o}
   m: b
   r: [whole, copy]
-hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t]}, arm: {scheduling: {0: fifo}}}
-containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}}}
-resources: {gpu: {title: G, host: pc, scheduling: fifo}}
-links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}}}
+hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
+containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
+resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
+links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
 frames: {map: }
-chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1]}}
-views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}}}
-policies: {p: {title: P, forbid: {from: g, to: g}}}
+chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1], properties: {q: 1}, hints: {x: {a: 1}}}}
+views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}, properties: {q: 1}, hints: {x: {a: 1}}}}
+policies: {p: {title: P, forbid: {from: g, to: g}, properties: {q: 1}, hints: {x: {a: 1}}}}
 """
 """A project in which every kind has every field."""
 
@@ -396,8 +423,8 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
     assert carded - {"topic", "composed"} == set(SECTIONS)
     # What else an architecture maps from ids: topics follow from nodes.
     mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
-    # Nor are composed components a kind of their own in files.
-    assert mapped - {"topics", "channels", "shells", "shell_ports"} == set(SECTIONS.values())
+    # Nor are composed components a kind of their own in files; properties and terms are the project's.
+    assert mapped - {"topics", "channels", "shells", "shell_ports", "properties", "glossary"} == set(SECTIONS.values())
 
 
 def test_the_exceptions_are_needed() -> None:
@@ -466,7 +493,8 @@ def test_no_key_is_listed_twice() -> None:
                 "type comment, input external, output description, chapter text, "
                 "view show, view colour, view level, use_case title, use_case actors.p, use_case steps, requirement title, requirement urls.x, project title, "
                 "requirement rationale, requirement source, "
-                "project layout, partner description, host tags, node urls.x, frame title"
+                "project layout, partner description, host tags, node urls.x, frame title, component contact, component image, input urls.x, output urls.x, view properties.x, "
+                "use_case hints.x, project glossary.x"
             ),
         ),
         (
@@ -482,6 +510,8 @@ def test_no_key_is_listed_twice() -> None:
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
                 "link protocol, project middleware, "
                 "output frame, input frame, type frame, output promise.rate, output version, output deprecated.until, type version, "
+                "output frame, input frame, type frame, component status, component properties.trl, node hints.a.b, host properties.x, "
+                "project properties.trl, output promise.rate, output version, output deprecated.until, type version, "
                 "type deprecated.use, component_type version, component_type deprecated.until"
             ),
         ),

@@ -252,6 +252,11 @@ WORDS = st.text(
     | st.sampled_from("\n:#-'\"\\ {}[]&*!|>%@`,?~0123456789"),
     max_size=20,
 )
+DATA = st.recursive(
+    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), WORDS),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS.filter(bool), inner, max_size=3),
+    max_leaves=6,
+)
 PROMISES = st.fixed_dictionaries(
     {},
     optional={
@@ -281,14 +286,12 @@ COMPONENT = st.one_of(
             "inputs": INPUTS,
             "outputs": OUTPUTS,
             "tags": st.lists(WORDS, max_size=2),
+            "properties": st.dictionaries(IDS, st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), WORDS)),
+            "hints": st.dictionaries(IDS, DATA),
+            "status": st.sampled_from(["planned", "existing"]),
             "requirements": st.lists(WORDS, max_size=2),
         },
     ),
-)
-DATA = st.recursive(
-    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(allow_nan=False), WORDS),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS.filter(bool), inner, max_size=3),
-    max_leaves=6,
 )
 START = st.fixed_dictionaries(
     {},
@@ -323,6 +326,10 @@ PROJECTS = st.fixed_dictionaries(
         "frames": st.dictionaries(
             IDS, st.one_of(st.none(), IDS, st.fixed_dictionaries({"by": IDS, "static": st.booleans()}))
         ),
+        "properties": st.dictionaries(
+            IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"range": st.lists(st.integers(), max_size=3)}))
+        ),
+        "glossary": st.dictionaries(WORDS, WORDS),
         "requirements": st.dictionaries(
             IDS,
             st.one_of(
@@ -372,6 +379,8 @@ def check_fixed_point(tmp_path_factory: pytest.TempPathFactory, data: object) ->
     assert again.architecture.components == checked.architecture.components
     assert again.architecture.nodes == checked.architecture.nodes
     assert again.architecture.types == checked.architecture.types
+    assert again.architecture.properties == checked.architecture.properties
+    assert again.architecture.glossary == checked.architecture.glossary
     # A reading error keeps what it may explain quiet; packed, the wrong value is gone, and then it is told.
     if not checked.has_errors:
         assert [d for d in again.findings if d.severity == "error"] == []

@@ -25,5 +25,7 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "duplicate-frame": ("error", True),
         "missing-chapter": ("error", True),
         "missing-picture": ("warning", False),
+        "missing-file": ("warning", False),
+        "missing-verification": ("warning", False),
         "missing-parameter-file": ("off", False),
     }

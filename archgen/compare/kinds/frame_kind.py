@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
-from archgen.compare.kinds.shared_keys import NAME_FEATURES, TITLE, mark_values
+from archgen.compare.kinds.shared_keys import ANNOTATIONS, NAME_FEATURES, TITLE, mark_values
 from archgen.model.coordinate_frames import Frame
 
 
@@ -71,6 +71,7 @@ FRAME = KindSpec(
         ),
         KeySpec("rate", verb="is written at"),
         KeySpec("static", lambda frame, _: frame.static or None),
+        *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     elements=lambda version: version.architecture.frames,

@@ -11,6 +11,7 @@ from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.promise_keys import OUTPUT_KEYS, read_port_words
 from archgen.compare.kinds.shared_keys import (
+    ANNOTATIONS,
     CO_OWNERS,
     DESCRIPTION,
     LAYOUT,
@@ -45,6 +46,7 @@ GROUP = KindSpec(
         TAGS,
         LAYOUT,
         URLS,
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.groups,
     features=(
@@ -201,6 +203,11 @@ _SETTING_KEYS = (
     KeySpec("open", lambda component, _: unordered_values(component.open), Effect.SYSTEM, noun="open sets"),
     KeySpec("operations.", _read_operations, Effect.SYSTEM),
 )
+_PLAIN_KEYS = (
+    KeySpec("status", effect=Effect.SYSTEM, verb="is"),
+    KeySpec("contact", effect=Effect.TEXT),
+    KeySpec("image", effect=Effect.TEXT, noun="picture"),
+)
 _PERFORMANCE = KeySpec("performance.", _read_performance, Effect.SYSTEM)
 _IS = KeySpec("is", _read_component_type, Effect.SYSTEM, verb="is made from", noun="component type")
 COMPOSED = KindSpec(
@@ -218,9 +225,11 @@ COMPOSED = KindSpec(
         LAYOUT,
         *_SETTING_KEYS,
         URLS,
+        *_PLAIN_KEYS,
         _PERFORMANCE,
         timing_key(_read_claimed_timing),
         KeySpec("outputs.", read_port_words, Effect.SYSTEM),
+        *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     elements=lambda version: version.architecture.shells,
@@ -261,9 +270,11 @@ COMPONENT = KindSpec(
         KeySpec("outputs", lambda each, _: _describe_ports(is_known=each.outputs_known, ports=each.outputs)),
         *_SETTING_KEYS,
         URLS,
+        *_PLAIN_KEYS,
         _PERFORMANCE,
         timing_key(_read_timing),
         KeySpec(MAPPED_KEY, _is_mapped, Effect.SYSTEM),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.components,
     features=(
@@ -311,6 +322,7 @@ _PORT_KEYS = (
     KeySpec("medium", lambda port, _: port.medium if port.medium_written else None),
     prose_key("external"),
     DESCRIPTION,
+    URLS,
 )
 _PORT_FEATURES = (
     FeatureSpec("name", 2, lambda _, port: letter_pairs(port.name)),
@@ -326,6 +338,7 @@ OUTPUT = KindSpec(
         *_PORT_KEYS,
         frame_reference("is given in"),
         *OUTPUT_KEYS,
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.outputs,
     features=(
@@ -354,6 +367,7 @@ INPUT = KindSpec(
         KeySpec("optional", lambda port, _: port.optional or None, Effect.SYSTEM),
         KeySpec("freshness", worsening=Worsening.LESS, verb="must be no older than"),
         frame_reference("is expected in"),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.inputs,
     features=(

@@ -8,6 +8,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
 from archgen.compare.kinds.shared_keys import (
+    ANNOTATIONS,
     DESCRIPTION,
     NAME_FEATURES,
     TAGS,
@@ -19,6 +20,8 @@ from archgen.compare.kinds.shared_keys import (
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo, UseCase
 from archgen.model.port_media import ROS
+from archgen.model.element_annotations import describe_range
+from archgen.model.path_resolver import title_from_id
 from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.use_case_steps import StepEnd
@@ -36,6 +39,29 @@ def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, ob
 
 def _read_parameters(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     return {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters}
+
+
+def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    """Return what is declared of properties: that there is one by its id, what is said of it by `id:key`."""
+    values: dict[str, object] = {}
+    for name, declared in context.architecture.properties.items():
+        values[name] = "declared"
+        facets = {
+            "title": None if declared.title in {title_from_id(name), name} else declared.title,
+            "description": normalize_text(declared.description),
+            "of": ", ".join(declared.of) or None,
+            "type": declared.type,
+            "unit": declared.unit,
+            "range": describe_range(declared) or None,
+            "choices": ", ".join(declared.choices) or None,
+            "required": declared.required or None,
+        }
+        values |= {f"{name}:{key}": freeze_value(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _read_glossary(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    return {each.term: normalize_text(each.text) for each in context.architecture.glossary.values()}
 
 
 def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
@@ -82,6 +108,8 @@ PROJECT = KindSpec(
         KeySpec("chapters", lambda _, context: context.version.chapter_order),
         KeySpec("review.", _read_review),
         KeySpec("site.", _read_site, Effect.TEXT),
+        KeySpec("properties.", _read_declared_properties),
+        KeySpec("glossary.", _read_glossary, Effect.TEXT),
         KeySpec("rules.", lambda _, context: context.version.rule_settings),
     ),
     Effect.SYSTEM,
@@ -108,6 +136,7 @@ PARTNER = KindSpec(
         DESCRIPTION,
         KeySpec("contact"),
         KeySpec("reviewers", lambda partner, _: unordered_values(partner.reviewers)),
+        *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     lambda version: version.architecture.partners,
@@ -151,6 +180,7 @@ USE_CASE = KindSpec(
             noun="actor",
         ),
         KeySpec("steps", _read_steps, list_verbs=("now has the step", "no longer has the step"), noun="steps"),
+        *ANNOTATIONS,
     ),
     Effect.TEXT,
     lambda version: version.architecture.use_cases,
@@ -208,6 +238,7 @@ REQUIREMENT = KindSpec(
         ),
         TAGS,
         URLS,
+        *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     lambda version: version.architecture.requirements,

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.message_kind import MESSAGE
 from archgen.compare.kinds.shared_keys import (
+    ANNOTATIONS,
     CO_OWNERS,
     DESCRIPTION,
     NAME_FEATURES,
@@ -142,6 +143,7 @@ NODE = KindSpec(
         KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
         KeySpec("parameter_commands.", _read_commands, Effect.SYSTEM),
         timing_key(_read_timing),
+        *ANNOTATIONS,
     ),
     # Of a node that is planned since its component says where it will run, that is written: it has a place in the files.
     elements=lambda version: {

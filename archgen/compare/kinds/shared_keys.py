@@ -8,8 +8,15 @@ from typing import Any
 
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, ReadContext, Worsening
-from archgen.compare.normal_values import normalize_text, normalize_title, unordered_values
+from archgen.compare.normal_values import (
+    freeze_value,
+    list_data_leaves,
+    normalize_text,
+    normalize_title,
+    unordered_values,
+)
 from archgen.model.declared_timing import Timing
+from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
 from archgen.model.quantity import Quantity
 from archgen.timing.figures.figure_wording import format_rate
@@ -25,6 +32,22 @@ TAGS = KeySpec(
     list_verbs=("now has the tag", "no longer has the tag"),
 )
 URLS = KeySpec("urls.", lambda element, _: element.urls, Effect.TEXT)
+
+
+def _read_hints(element: Any, _context: ReadContext) -> Mapping[str, object]:  # noqa: ANN401 - any element
+    """Return the leaves of the hints by their path, which begins with the program that they are for; lists as a whole."""
+    return {
+        path: format_parameter(data) if isinstance(data, list) else freeze_value(data)
+        for program, hints in element.annotations.hints.items()
+        for path, data in list_data_leaves(program, hints)
+    }
+
+
+ANNOTATIONS = (
+    KeySpec("properties.", lambda element, _: element.annotations.properties, Effect.SYSTEM),
+    KeySpec("hints.", _read_hints, Effect.SYSTEM),
+)
+"""What any element may say beside its own keys."""
 
 
 def read_owner(element: Any, context: ReadContext) -> str | None:  # noqa: ANN401 - groups, components and nodes

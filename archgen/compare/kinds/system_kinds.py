@@ -10,6 +10,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.frame_kind import FRAME
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.shared_keys import (
+    ANNOTATIONS,
     DESCRIPTION,
     LAYOUT,
     NAME_FEATURES,
@@ -52,6 +53,7 @@ HOST = KindSpec(
         ),
         DESCRIPTION,
         TAGS,
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.hosts,
     features=(
@@ -85,6 +87,7 @@ CONTAINER = KindSpec(
         KeySpec("package", effect=Effect.SYSTEM),
         KeySpec("executable", effect=Effect.SYSTEM),
         KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.containers,
     features=(
@@ -109,7 +112,7 @@ def _mark_users(relations: ElementRelations, resource: Resource) -> frozenset[st
 RESOURCE = KindSpec(
     "resource",
     "Resources",
-    (TITLE, _HOST_OF, _SCHEDULING),
+    (TITLE, _HOST_OF, _SCHEDULING, *ANNOTATIONS),
     elements=lambda version: version.architecture.resources,
     features=(
         *NAME_FEATURES,
@@ -142,6 +145,7 @@ LINK = KindSpec(
         KeySpec("bandwidth", worsening=Worsening.LESS),
         KeySpec("latency.best", lambda link, _: link.best, worsening=Worsening.MORE, noun="best latency"),
         KeySpec("latency.worst", lambda link, _: link.worst, worsening=Worsening.MORE, noun="worst latency"),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.links,
     features=(
@@ -176,6 +180,7 @@ CHAIN = KindSpec(
         ),
         KeySpec("deadline", worsening=Worsening.LESS, verb="must end within", new_verb="must end within"),
         requirements_key(lambda chain: chain.requirements),
+        *ANNOTATIONS,
     ),
     elements=lambda version: version.architecture.chains,
     features=(
@@ -198,6 +203,7 @@ POLICY = KindSpec(
         TITLE,
         KeySpec("forbid.from", _read_selector(lambda policy: policy.forbid_from), noun="forbidden source"),
         KeySpec("forbid.to", _read_selector(lambda policy: policy.forbid_to), noun="forbidden target"),
+        *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     lambda version: version.architecture.policies,
@@ -216,6 +222,7 @@ VIEW = KindSpec(
         KeySpec("level", lambda view, _: None if view.level == "functional" else view.level),
         KeySpec("depth"),
         LAYOUT,
+        *ANNOTATIONS,
     ),
     Effect.TEXT,
     lambda version: version.architecture.views,

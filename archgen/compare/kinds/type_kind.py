@@ -14,7 +14,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.frame_kind import frame_reference
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
 from archgen.compare.kinds.promise_keys import VERSION, deprecation_key
-from archgen.compare.kinds.shared_keys import mark_values, prose_key, text_feature
+from archgen.compare.kinds.shared_keys import ANNOTATIONS, mark_values, prose_key, text_feature
 from archgen.model.message_types import ConceptualType, DataField
 
 
@@ -86,6 +86,7 @@ TYPE = KindSpec(
         deprecation_key("type"),
         KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM, noun="type parameters"),
         KeySpec("fields.", _read_fields, Effect.SYSTEM),
+        *ANNOTATIONS,
     ),
     elements=_list_types,
     features=(

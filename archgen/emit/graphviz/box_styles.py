@@ -53,8 +53,8 @@ _TITLE_WIDTHS = {
 }
 
 
-def style_box(box: Box, resolve_link: LinkResolver) -> DotAttributes:
-    """Return the DOT attributes of a box."""
+def style_box(box: Box, resolve_link: LinkResolver, title_width: int | None = None) -> DotAttributes:
+    """Return the DOT attributes of a box, its title wrapped at the usual width of its style or at so many characters."""
     if box.ports_in or box.ports_out:
         return {**_common_attributes(box, resolve_link), "shape": "plain", "label": _port_table(box)}
     if box.rows or box.load:
@@ -76,7 +76,7 @@ def style_box(box: Box, resolve_link: LinkResolver) -> DotAttributes:
         "margin": _box_margin(box),
         "width": "0.3",
         "height": "0.22",
-        "label": f"<{_label_html(box)}>",
+        "label": f"<{_label_html(box, title_width)}>",
     }
 
 
@@ -160,11 +160,11 @@ def link_attributes(ref: str | None, tooltip: str, resolve_link: LinkResolver) -
     return {**attributes, "URL": quote_value(href), "target": '"_top"'} if href else attributes
 
 
-def _label_html(box: Box) -> str:
+def _label_html(box: Box, title_width: int | None) -> str:
     _, fill = box_colours(box)
     text_colour = palette.text_colour_on(fill)
     detail_colour = palette.MUTED if text_colour == palette.TEXT else text_colour
-    width = _TITLE_WIDTHS.get(box.style, 18)
+    width = title_width or _TITLE_WIDTHS.get(box.style, 18)
     bold = box.emphasis == "subject" or box.style in {"group", "fold", "host"}
     titles = [f"<B>{escape_label(row)}</B>" if bold else escape_label(row) for row in wrap_text(box.title, width)]
     rows = [f'<TR><TD HEIGHT="11"><FONT COLOR="{text_colour}">{row}</FONT></TD></TR>' for row in titles]

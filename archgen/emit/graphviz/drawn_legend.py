@@ -74,16 +74,15 @@ _ARROW_SAMPLES: dict[str, tuple[Arrow, str]] = {
     "line:changed": (Arrow("", "", "", change="changed"), "~ something else flows"),
     "line:same": (Arrow("", "", "", faded=True), "as before"),
 }
-_WIDTH_SAMPLES = ((1, "1 flow"), (2, "2 or 3 flows"), (4, "4 flows and more"))
 _KEY_SENTENCES = {
-    "count": "A number on an arrow: how many flows it stands for.",
+    "count": "A number on an arrow: how many flows it stands for; the more, the thicker it is.",
     "star": "* all that it offers is taken.",
 }
 
 
 def add_graph_legend(scene: Scene, graph: Graph) -> Scene:
     """Add a graph's legend and notes below a scene, at its left."""
-    entries = [entry for key in graph.legend for entry in _legend_entries(key, graph)]
+    entries = [entry for key in graph.legend for entry in _legend_entries(key)]
     entries += [(_colour_sample(index), text) for index, text in graph.legend_colours]
     return add_legend(
         scene, entries, [_KEY_SENTENCES[key] for key in graph.legend if key in _KEY_SENTENCES] + list(graph.notes)
@@ -108,18 +107,13 @@ def _reserve_width(legend: Scene) -> Scene:
     return legend.joined(Scene(parts=(mark,)))
 
 
-def _legend_entries(key: str, graph: Graph) -> Iterator[tuple[Scene, str]]:
+def _legend_entries(key: str) -> Iterator[tuple[Scene, str]]:
     if key in _BOX_SAMPLES:
         box, words = _BOX_SAMPLES[key]
         yield _box_sample(box), words
     if key in _ARROW_SAMPLES:
         arrow, words = _ARROW_SAMPLES[key]
-        yield _arrow_sample(key, arrow, merged=False), words
-    if key == "width":
-        # Only the widths that the picture has: a small one has a legend wider than itself otherwise.
-        used = {max(count for count, _ in _WIDTH_SAMPLES if count <= max(arrow.count, 1)) for arrow in graph.arrows}
-        for count, words in (sample for sample in _WIDTH_SAMPLES if sample[0] in used):
-            yield _arrow_sample(f"{key}{count}", Arrow("", "", "", count=count), merged=True), words
+        yield _arrow_sample(key, arrow), words
 
 
 def _box_sample(box: Box) -> Scene:
@@ -145,11 +139,11 @@ def _colour_sample(index: int) -> Scene:
     return _box_sample(Box("", "", style="group", colour=index))
 
 
-def _arrow_sample(key: str, arrow: Arrow, *, merged: bool) -> Scene:
+def _arrow_sample(key: str, arrow: Arrow) -> Scene:
     width = _SAMPLE_SIZE[0]
     ends = tuple(_create_mark(f"{key}{at}", x, 0) for at, x in enumerate((0.0, width)))
     attributes = {
-        **arrow_styles.style_arrow(arrow, lambda _: None, merged=merged),
+        **arrow_styles.style_arrow(arrow, lambda _: None),
         "tooltip": '" "',
         "edgetooltip": '" "',
     }

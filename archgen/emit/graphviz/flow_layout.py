@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from archgen.emit.graphviz import layout_engine
-from archgen.emit.graphviz.label_places import declutter_labels, sample_line
+from archgen.emit.graphviz.frame_outline import draw_frame
+from archgen.emit.graphviz.label_places import declutter_labels
 from archgen.emit.graphviz.layout_engine import format_attributes
+from archgen.emit.graphviz.neighbour_columns import unwrap_tall_columns
 from archgen.emit.graphviz.nested_frames import find_rank_distance, read_frames, write_frames
-from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, ScenePart, read_scene
+from archgen.emit.graphviz.placed_scene import Scene, read_scene
 from archgen.emit.graphviz.rank_wrapping import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
-    frame_attributes,
-    measure_nodes,
     place_labels_on_lines,
     read_layout,
-    title_attributes,
     write_dot,
 )
-from archgen.views.graph_shapes import Box, Cluster
+from archgen.emit.graphviz.title_places import clear_titles
+from archgen.views.graph_shapes import Box
 
-_FRAME_MARGIN = 12.0
 _WIDEST_FRAME = 800.0
 """The widest frame whose boxes are not wrapped, in points: about a landscape page."""
+_FEW_RANKS = 2
+"""With no more ranks of boxes in the frame a picture has room for wider neighbours."""
 _RANK_WIDTH = 150.0
 """About the width of a rank of boxes with the space beside it, in points."""
 
@@ -54,13 +54,16 @@ def lay_out_group(styled_graph: StyledGraph) -> Scene:
     inside_names = {styled_graph.dot_names[item.id] for item in inside_boxes}
 
     def finish(scene: Scene) -> Scene:
-        framed_scene = _draw_frame(styled_graph, cluster, scene, inside_names)
-        return declutter_labels(place_labels_on_lines(styled_graph, framed_scene))
+        framed_scene = draw_frame(styled_graph, cluster, scene, inside_names)
+        return declutter_labels(place_labels_on_lines(styled_graph, clear_titles(framed_scene)))
 
     if len(graph.clusters) > 1:
         return finish(_lay_out_inner_frames(styled_graph))
     # dot takes longest for lines, and those of a layout that is going to be wrapped are thrown away.
-    looks_wide = _count_ranks(styled_graph, inside_boxes) * _RANK_WIDTH > _WIDEST_FRAME
+    rank_count = _count_ranks(styled_graph, inside_boxes)
+    looks_wide = rank_count * _RANK_WIDTH > _WIDEST_FRAME
+    if rank_count <= _FEW_RANKS and graph.direction != "top-bottom":
+        styled_graph = unwrap_tall_columns(styled_graph)
     scene = _lay_out_framed_boxes(styled_graph, splines="none" if looks_wide else "spline")
     wrapped_scene = None
     if graph.direction != "top-bottom" and (wrapped := _wrap_wide_frame(scene, inside_names)):
@@ -115,7 +118,7 @@ def _lay_out_framed_boxes(
         )
         for at, item in enumerate(graph.arrows)
     ]
-    settings = f'{_layout_settings(styled_graph, 0.16)} splines="{splines}"'
+    settings = f'{_layout_settings(styled_graph, 0.12)} splines="{splines}"'
     return read_layout(styled_graph, layout_engine.lay_out_dot(write_dot(settings, statements)))
 
 
@@ -200,49 +203,6 @@ def _rank_statements(styled_graph: StyledGraph) -> list[str]:
         if names or ports:
             ranks.append(f"{{ rank={rank}; {'; '.join(names or ports)}; }}")
     return ranks
-
-
-def _draw_frame(styled_graph: StyledGraph, cluster: Cluster, scene: Scene, inside_names: set[str]) -> Scene:
-    """Add the frame round its boxes and all lines that pass between them, with the title above."""
-    boxes = [title_part.rectangle for title_part in scene.parts if title_part.name in inside_names]
-    boxes += [inner_frame.rectangle for inner_frame in scene.frames]
-    ports = _list_rim_ports(styled_graph, scene)
-    heading = title_attributes(cluster)
-    ((width, height),) = measure_nodes([heading])
-    left, right = min((box[0] for box in boxes), default=0.0), max((box[2] for box in boxes), default=width)
-    # Ports stand on the frame's own line.
-    centres = [(box[0] + box[2]) / 2 for box in ports]
-    rims = [x for x in centres if x < left], [x for x in centres if x > right]
-    left, right = min(rims[0], default=left), max(rims[1], default=right)
-    # A line may swing out above its boxes. Only what is between the frame's sides counts: neighbours are outside.
-    y_values = [y for line in scene.lines for x, y in sample_line(line) if left <= x <= right]
-    y_values += [
-        title_part.y + side * title_part.height / 2
-        for title_part in scene.parts
-        if left <= title_part.x <= right
-        for side in (-1, 1)
-    ]
-    y_values += [y for inner_frame in scene.frames for y in (inner_frame.rectangle[1], inner_frame.rectangle[3])]
-    # Neighbours are above and below here, so lines to them would stretch the frame over them.
-    if styled_graph.graph.direction == "top-bottom":
-        y_values = [y for box in boxes for y in (box[1], box[3])]
-    bottom, top = min(y_values, default=0.0) - _FRAME_MARGIN, max(y_values, default=0.0) + _FRAME_MARGIN + height
-    spare = max(width + 2 * _FRAME_MARGIN - (right - left), 2 * _FRAME_MARGIN) / 2
-    left_side, right_side = left - (0 if rims[0] else spare), right + (0 if rims[1] else spare)
-    cluster_frame = SceneFrame(
-        "c0", frame_attributes(cluster, styled_graph.resolve_link), (left_side, bottom, right_side, top)
-    )
-    title_part = ScenePart("t0", heading, left_side + 8 + width / 2, top - 5 - height / 2, width, height, kind="title")
-    # Behind the frames inside.
-    return replace(scene.joined(Scene(parts=(title_part,))), frames=(cluster_frame, *scene.frames))
-
-
-def _list_rim_ports(styled_graph: StyledGraph, scene: Scene) -> list[tuple[float, float, float, float]]:
-    """Return the rectangles of the ports at the rim of the frame; none where the flow runs down: they stand outside."""
-    if styled_graph.graph.direction == "top-bottom":
-        return []
-    names = {styled_graph.dot_names[box.id] for box in styled_graph.graph.boxes if box.style == "port"}
-    return [part.rectangle for part in scene.parts if part.name in names]
 
 
 def lay_out_simply(styled_graph: StyledGraph) -> Scene:

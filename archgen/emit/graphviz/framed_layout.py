@@ -16,8 +16,11 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
+from archgen.emit.graphviz.title_places import clear_titles, count_cut_titles
 
 _SCREEN_SIZE = (1000.0, 700.0)
+_CUT_PENALTY = 0.05
+"""How much smaller a picture may be for each title of a frame that cuts no line, as a share of its size."""
 _DIRECTIONS = {None: ("LR", "TB"), "left-right": ("LR",), "top-bottom": ("TB",)}
 """Directions to try by the one that the project asks for; the first is taken where both are as good."""
 
@@ -26,12 +29,17 @@ def lay_out_framed(styled_graph: StyledGraph) -> Scene:
     """Lay out boxes in frames, then place the labels on the arrows. Of two directions the better is taken, unless one is asked for."""
     scenes = [_lay_out_direction(styled_graph, direction) for direction in _DIRECTIONS[styled_graph.graph.direction]]
     # `min` returns the first of equals.
-    return min(scenes, key=lambda scene: (_count_lost_labels(styled_graph, scene), _screen_overflow(scene)))
+    return min(scenes, key=lambda scene: (_count_lost_labels(styled_graph, scene), _reading_cost(scene)))
 
 
 def _count_lost_labels(styled_graph: StyledGraph, scene: Scene) -> int:
     """Count the labels that found no place."""
     return len(styled_graph.label_attributes) - sum(part.kind == "label" for part in scene.parts)
+
+
+def _reading_cost(scene: Scene) -> float:
+    """Return how hard a scene is to read: how small it gets on a screen, and how many titles of frames cut lines."""
+    return _screen_overflow(scene) * (1 + _CUT_PENALTY * count_cut_titles(scene))
 
 
 def _screen_overflow(scene: Scene) -> float:
@@ -51,7 +59,7 @@ def _lay_out_direction(styled_graph: StyledGraph, direction: str) -> Scene:
     layout = layout_engine.lay_out_dot(write_dot(_layout_settings(styled_graph, direction), statements))
     scene = read_scene(layout, styled_graph.box_attributes, styled_graph.arrow_attributes)
     frames = read_frames(styled_graph, layout, graph.clusters)
-    return declutter_labels(place_labels_on_lines(styled_graph, scene.joined(frames)))
+    return declutter_labels(place_labels_on_lines(styled_graph, clear_titles(scene.joined(frames))))
 
 
 def _layout_settings(styled_graph: StyledGraph, direction: str) -> str:

@@ -18,6 +18,7 @@ _BEGIN_SCRIPT = "assets/explorer/data.js"
 """Runs before anything is drawn, so that the static page does not show first."""
 _PAGE_SCRIPTS = (
     "grammar",
+    "properties",
     "closest",
     "select",
     "colours",

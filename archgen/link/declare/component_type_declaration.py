@@ -49,6 +49,10 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
             operations=declare_operations(whole_body),
             frames=tuple(_read_frames(whole_body)),
             inner_types=frozenset(_list_inner_types(whole_body)),
+            status=mapping_values.get_text(whole_body, "status"),  # type: ignore[arg-type]
+            contact=mapping_values.get_text(whole_body, "contact"),
+            image=mapping_values.get_text(whole_body, "image"),
+            annotations=mapping_values.get_annotations(whole_body),
             at=entry.key_span,
         )
     return types
@@ -91,6 +95,7 @@ def _read_frames(body: MappingNode) -> Iterator[Frame]:
             title=mapping_values.get_text(frame, "title") or name,
             parent=mapping_values.get_text(frame, "parent"),
             rate=mapping_values.get_quantity(frame, "rate", "frequency"),
+            annotations=mapping_values.get_annotations(frame),
             static=mapping_values.get_flag(frame, "static"),
             at=entry.key_span,
         )

@@ -22,6 +22,7 @@ def declare_hosts(root: MappingNode) -> dict[str, Host]:
             core_scheduling={core: order for core, (order, _) in _read_core_orders(body).items()},
             description=mapping_values.get_text(body, "description"),
             tags=mapping_values.get_texts(body, "tags"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             core_places={core: span for core, (_, span) in _read_core_orders(body).items()},
         )
@@ -55,6 +56,7 @@ def declare_containers(root: MappingNode, resolver: ReferenceResolver) -> dict[s
             executable=mapping_values.get_text(body, "executable"),
             parameters=mapping_values.get_data(body, "parameters"),
             name_at=mapping_values.get_span(body, "name"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "containers")
@@ -69,6 +71,7 @@ def declare_resources(root: MappingNode, resolver: ReferenceResolver) -> dict[st
             title=mapping_values.get_title(body, name),
             host=resolver.resolve_plain_id(mapping_values.get_scalar(body, "host"), "host", name),
             scheduling=mapping_values.get_order(body, "scheduling"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "resources")
@@ -92,6 +95,7 @@ def declare_links(root: MappingNode, resolver: ReferenceResolver) -> dict[str, L
             bandwidth=sanity_checks.read_positive(body, "bandwidth", "bandwidth", name, resolver.diagnostics),
             best=best,
             worst=worst,
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             connects_at=mapping_values.get_span(body, "connects"),
             protocol_at=mapping_values.get_span(body, "protocol"),

@@ -78,6 +78,7 @@ def _declare_frame(
         static=is_static,
         component=component_id,
         by_written=reference is not None,
+        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
         parent_at=mapping_values.get_span(body, "parent"),
     )

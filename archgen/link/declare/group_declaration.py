@@ -23,6 +23,7 @@ from archgen.model.architecture import PortEdge, list_leaf_ports
 from archgen.model.component import (
     Component,
     ComponentRole,
+    ComponentStatus,
     Connection,
     Group,
     Input,
@@ -35,6 +36,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _Port = TypeVar("_Port", Input, Output)
 _ROLES = frozenset(get_args(ComponentRole))
+_STATUSES = frozenset(get_args(ComponentStatus))
 
 
 class DeclaredGroups(NamedTuple):
@@ -128,6 +130,7 @@ class _GroupDeclarer:
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
             layout=mapping_values.get_layout(body),
+            annotations=mapping_values.get_annotations(body),
             components=components,
             at=entry.key_span,
         )
@@ -245,7 +248,11 @@ class _GroupDeclarer:
             ),
             tags=mapping_values.get_texts(body, "tags"),
             urls=mapping_values.get_text_mapping(body, "urls"),
+            status=_read_status(body),
+            contact=mapping_values.get_text(body, "contact"),
+            image=mapping_values.get_text(body, "image"),
             layout=mapping_values.get_layout(body),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             role_at=mapping_values.get_span(body, "role"),
         )
@@ -254,6 +261,11 @@ class _GroupDeclarer:
 def _read_role(body: MappingNode) -> ComponentRole | None:
     role = mapping_values.get_text(body, "role")
     return role if role in _ROLES else None  # type: ignore[return-value]
+
+
+def _read_status(body: MappingNode) -> ComponentStatus | None:
+    status = mapping_values.get_text(body, "status")
+    return status if status in _STATUSES else None  # type: ignore[return-value]
 
 
 def _read_requirements(body: MappingNode) -> Iterator[RequirementUse]:

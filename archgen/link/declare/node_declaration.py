@@ -120,6 +120,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         urls=mapping_values.get_text_mapping(body, "urls"),
         written=node_id not in implemented.planned_ids,
         implements_written=body.get("implements") is not None,
+        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
         name_at=mapping_values.get_span(body, "name"),
         kind_at=mapping_values.get_span(body, "kind"),

@@ -34,6 +34,7 @@ def _declare_requirement(name: str, entry: MappingEntry, body: MappingNode, reso
         use_cases=resolver.resolve_plain_ids(mapping_values.get_scalars(body, "use_cases"), "use case", name),
         tags=mapping_values.get_texts(body, "tags"),
         urls=mapping_values.get_text_mapping(body, "urls"),
+        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
         parent_at=parents[0].span if parents else entry.key_span,
     )

@@ -41,6 +41,7 @@ def declare_partners(root: MappingNode) -> dict[str, Partner]:
             mapping_values.get_text(body, "description"),
             mapping_values.get_text(body, "contact"),
             mapping_values.get_texts(body, "reviewers"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "partners")
@@ -70,6 +71,7 @@ def declare_chains(
             through=tuple(_make_waypoint(target, scalar, list_leaf_ports) for target, scalar in waypoints if target),
             deadline=sanity_checks.read_positive(body, "deadline", "duration", name, resolver.diagnostics),
             requirements=mapping_values.get_texts(body, "requirements"),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             unresolved=tuple(scalar.text for target, scalar in waypoints if target is None),
             requirement_places=tuple(scalar.span for scalar in mapping_values.get_scalars(body, "requirements")),
@@ -104,6 +106,7 @@ def declare_views(root: MappingNode) -> dict[str, View]:
             level="implementation" if level == "implementation" else "functional",
             depth=mapping_values.get_integer(body, "depth"),
             layout=mapping_values.get_layout(body),
+            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             show_at=mapping_values.get_span(body, "show"),
         )
@@ -165,6 +168,7 @@ def declare_policies(root: MappingNode) -> dict[str, Policy]:
                 title=mapping_values.get_title(body, name),
                 forbid_from=mapping_values.get_text(forbid, "from") or "",
                 forbid_to=mapping_values.get_text(forbid, "to") or "",
+                annotations=mapping_values.get_annotations(body),
                 at=entry.key_span,
                 from_at=mapping_values.get_span(forbid, "from"),
                 to_at=mapping_values.get_span(forbid, "to"),

@@ -29,7 +29,8 @@ def declare_use_cases(root: MappingNode, resolver: ReferenceResolver) -> dict[st
             mapping_values.get_text(body, "description"),
             actors,
             tuple(_declare_steps(body, actors, name, resolver)),
-            entry.key_span,
+            annotations=mapping_values.get_annotations(body),
+            at=entry.key_span,
         )
     return use_cases
 

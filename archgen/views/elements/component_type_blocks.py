@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from archgen.model.component import Component, ComponentType
 from archgen.views import inline_text
 from archgen.views.element_references import place_run
+from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.elements.instance_values import OwnValue, TypeTexts
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
@@ -53,6 +54,7 @@ def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Blo
     known_texts = {base.functionality, base.description} if base else set()
     texts = (component_type.functionality, component_type.description)
     blocks += [Markdown(text) for text in texts if text and text not in known_texts]
+    blocks += make_image_blocks(lookup, component_type)
     blocks += _make_port_table(component_type)
     blocks += make_parameter_blocks(component_type)
     blocks += _make_frame_table(component_type)
@@ -76,6 +78,8 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
     if component_type.components:
         yield "Inside", inline_text.join_inlines((Text(name, code=True),) for name in component_type.components)
     words = "abstract: it has no instance of its own" if component_type.is_abstract else ""
+    yield from list_contact_facts(component_type)
+    yield from list_annotation_facts(lookup, component_type)
     count = inline_text.count_noun(len(_shown_instances(lookup, component_type)), "instance")
     yield "Instances", inline_text.to_inlines(", ".join(filter(None, (count, words))))
 

@@ -8,6 +8,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
 from archgen.views.elements import functional_level, port_tables
+from archgen.views.elements.annotation_facts import make_image_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -29,6 +30,7 @@ def make_composed_blocks(lookup: Lookup, shell: Component, *, with_texts: bool =
     blocks: list[Block] = [Facts(tuple(functional_level.list_component_facts(lookup, shell)))]
     if with_texts:
         blocks.append(functional_level.make_functionality_block(shell))
+        blocks += make_image_blocks(lookup, shell)
         blocks += [Markdown(shell.description)] if shell.description else []
     blocks.append(
         Figure(

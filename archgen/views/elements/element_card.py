@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
@@ -14,6 +14,7 @@ from archgen.model.node import Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import uses_ros, word_of_medium
 from archgen.views import inline_text
+from archgen.views.elements.annotation_facts import list_annotation_lines
 from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.parameter_blocks import (
     list_effective_lines,
@@ -126,8 +127,21 @@ def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     """Make the card of one element."""
     make_kind_card = _CARD_MAKERS.get(kind)
     if make_kind_card is None:
-        return _generic_card(lookup, kind, element_id)
-    return make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
+        card = _generic_card(lookup, kind, element_id)
+    else:
+        card = make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
+    further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind != "topic" else ()
+    return replace(card, facts=(*card.facts, *further_facts)) if further_facts else card
+
+
+def _list_further_facts(lookup: Lookup, kind: str, element_id: str) -> Iterator[tuple[str, str]]:
+    """Yield what elements of several kinds may say: status, contact, picture, documents, properties, hints."""
+    element = _elements_by_kind(lookup.architecture)[kind][element_id]
+    if kind in {"component", "composed", "component type"}:
+        yield from _known_facts([(key, _format_fact(getattr(element, key))) for key in ("status", "contact", "image")])
+    if kind in {"input", "output"} and element.urls:
+        yield "urls", ", ".join(f"{name}: {address}" for name, address in element.urls.items())
+    yield from list_annotation_lines(element)
 
 
 def _group_card(_lookup: Lookup, group: Group) -> ElementCard:

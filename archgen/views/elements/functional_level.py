@@ -10,6 +10,7 @@ from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
 from archgen.views import inline_text
 from archgen.views.elements import port_tables
+from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -61,7 +62,8 @@ def _group_facts(lookup: Lookup, group: Group) -> list[tuple[str, Inlines]]:
     if group.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(group.tags))))
     if group.urls:
-        rows.append(("Links", inline_text.link_urls(group.urls.items())))
+        rows.append(("Links", inline_text.link_urls(group.urls.items(), lookup.repository)))
+    rows += list_annotation_facts(lookup, group)
     return rows
 
 
@@ -130,6 +132,7 @@ def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, 
     blocks: list[Block] = [
         Facts(tuple(list_component_facts(lookup, component))),
         make_functionality_block(component),
+        *make_image_blocks(lookup, component),
     ]
     if component.description:
         blocks.append(Markdown(component.description))
@@ -190,7 +193,9 @@ def list_component_facts(lookup: Lookup, component: Component) -> list[tuple[str
     if component.tags:
         rows.append(("Tags", inline_text.to_inlines(", ".join(component.tags))))
     if component.urls:
-        rows.append(("Links", inline_text.link_urls(component.urls.items())))
+        rows.append(("Links", inline_text.link_urls(component.urls.items(), lookup.repository)))
+    rows += list_contact_facts(component)
+    rows += list_annotation_facts(lookup, component)
     return rows
 
 

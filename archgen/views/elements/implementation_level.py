@@ -5,6 +5,7 @@ from __future__ import annotations
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.views import element_references, inline_text
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
@@ -70,7 +71,8 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("Callbacks", inline_text.to_inlines(callbacks) if (callbacks := _describe_callbacks(node)) else ()),
         ("Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)),
         ("Tags", inline_text.to_inlines(", ".join(node.tags)) if node.tags else ()),
-        ("Links", inline_text.link_urls(node.urls.items())),
+        ("Links", inline_text.link_urls(node.urls.items(), lookup.repository)),
+        *list_annotation_facts(lookup, node),
     ]
     for component, timing in node.timing.items():
         # One timing for each activity; the key is "" for a node that implements no component.

@@ -6,6 +6,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import label_of_medium
 from archgen.views import inline_text
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Paragraph, Table, Text, drop_empty_columns
 
@@ -141,5 +142,7 @@ def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
     is_known = name in lookup.architecture.frames
     link = inline_text.frame_link(name) if name and is_known else (Text(name or "", code=True),)
     frame = (Text("in the frame "), *link) if name else ()
-    parts = [inline_text.to_inlines(optional), frame, inline_text.to_inlines(port.description or "")]
+    documents = inline_text.link_urls(port.urls.items(), lookup.repository)
+    parts = [inline_text.to_inlines(optional), frame, inline_text.to_inlines(port.description or ""), documents]
+    parts += [facts for _, facts in list_annotation_facts(lookup, port)]
     return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")

@@ -15,6 +15,7 @@ from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import list_medium_words
+from archgen.model.property_conditions import find_component_properties, find_node_properties
 from archgen.model.requirement_tree import add_above
 from archgen.views.lookup import Lookup
 
@@ -42,6 +43,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("is", name) for name in architecture.list_types_of(component)),
                     *(("library", name) for name in architecture.list_libraries_of(component)),
                     *(("parameter", name) for name in component.parameters),
+                    *_list_properties(find_component_properties(architecture, component)),
                 )
             )
         )
@@ -58,6 +60,7 @@ def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Ke
                 *(("owner", owner) for owner in shell.owners),
                 *((("role", shell.role),) if shell.role else ()),
                 *(("requirement", name) for name in _list_requirements(architecture, shell)),
+                *_list_properties(shell.annotations.properties),
             )
         )
     )
@@ -77,9 +80,15 @@ def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
                 *_list_behaviours(node.timing.values()),
                 *(("finding", rule) for rule in rules),
                 *(("parameter", name) for name in find_effective_parameters(lookup.architecture, node)),
+                *_list_properties(find_node_properties(lookup.architecture, node)),
             )
         )
     )
+
+
+def _list_properties(properties: Mapping[str, str]) -> Iterator[Key]:
+    """Yield properties as one text each, `sil=2`: the page takes them apart."""
+    return (("property", f"{name}={text}") for name, text in properties.items())
 
 
 def _list_requirements(architecture: Architecture, component: Component) -> Iterator[str]:

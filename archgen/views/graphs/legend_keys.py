@@ -32,9 +32,9 @@ def _legend_keys(graph: Graph) -> list[str]:
     keys += _change_keys(graph)
     keys += [key for key in _ARROW_KEYS if key in arrow_kinds]
     keys += ["star"] if any(line.startswith("*") for arrow in graph.arrows for line in arrow.label.split("\n")) else []
-    # Only these layouts draw the number of flows as width (`merged` in `style_graph`).
+    # Only these layouts draw the number of flows, as text and as width (`merged` in `style_graph`).
     has_widths = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
-    return [*keys, "width", "count"] if has_widths else keys
+    return [*keys, "count"] if has_widths else keys
 
 
 def _change_keys(graph: Graph) -> list[str]:

@@ -13,6 +13,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
     Block,
@@ -192,6 +193,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
         ("Message", architecture_tables.message_cell(lookup, conceptual_type)),
         ("Size", _size_cell(lookup, conceptual_type)),
         ("Remarks", inline_text.to_inlines(architecture_tables.describe_mapping(conceptual_type))),
+        *list_annotation_facts(lookup, conceptual_type),
     ]
     # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
@@ -232,6 +234,7 @@ def _use_case_page(lookup: Lookup, use_case_id: str) -> Page:
     serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
     table = requirement_tables.make_requirement_table(lookup, serving_requirements)
     blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
+    blocks += [Facts(facts)] if (facts := tuple(list_annotation_facts(lookup, use_case))) else []
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += [table] if table else []
     crumb = ("Requirements and use cases", "page:requirements")
@@ -245,6 +248,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        *list_annotation_facts(lookup, host),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
         (
             "Links",

@@ -14,6 +14,7 @@ from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titl
 from archgen.views.agreement.partner_exchanges import PartnerExchange, gather_exchanges
 from archgen.views.agreement.signature_record import SignedTag, write_signature_table
 from archgen.views.agreement.term_changes import InterfaceRecord
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
 from archgen.views.matrix_shapes import Matrix
@@ -245,8 +246,9 @@ def _partner_page(
 ) -> Page:
     """Make a partner's page: contact, what it gives and takes, components, and nodes that it owns or that implement them."""
     blocks: list[Block] = [Markdown(partner.description)] if partner.description else []
-    if partner.contact:
-        blocks.append(Facts((("Contact", inline_text.to_inlines(partner.contact)),)))
+    contact = (("Contact", inline_text.to_inlines(partner.contact)),) if partner.contact else ()
+    if facts := (*contact, *list_annotation_facts(lookup, partner)):
+        blocks.append(Facts(facts))
     if exchanges:
         blocks.append(_exchange_table(lookup, partner, exchanges))
     owned_components = [

@@ -19,7 +19,13 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter
 from archgen.views.pages.component_sections import ComponentSections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
+from archgen.views.tables import (
+    architecture_tables,
+    frame_table,
+    project_growth,
+    property_tables,
+    requirement_tables,
+)
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
@@ -214,6 +220,17 @@ class _ChapterMaker:
             requirement_tables.make_free_requirement_table(self.lookup),
         )
 
+    def make_properties(self) -> list[Section]:
+        """Make the appendix of properties."""
+        sections = property_tables.make_property_sections(self.lookup)
+        return (
+            [Section("page:properties", "Properties", (), sections, appendix=True, page_break=True)] if sections else []
+        )
+
+    def make_glossary(self) -> list[Section]:
+        """Make the appendix of terms."""
+        return self._make_appendix("glossary", "Glossary", property_tables.make_glossary_table(self.lookup))
+
     def make_open_points(self) -> list[Section]:
         """Make the appendix of findings."""
         summary = Paragraph(
@@ -249,8 +266,10 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "types": _ChapterMaker.make_types,
     "connections": _ChapterMaker.make_connections,
     "requirements": _ChapterMaker.make_requirements,
+    "properties": _ChapterMaker.make_properties,
     "open_points": _ChapterMaker.make_open_points,
     "statistics": _ChapterMaker.make_statistics,
+    "glossary": _ChapterMaker.make_glossary,
 }
 """What makes each of the generated chapters, by its name in `GENERATED_CHAPTERS`."""
 

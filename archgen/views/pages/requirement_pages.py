@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from archgen.model.requirement import Requirement
 from archgen.views import inline_text, requirement_servers
+from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.lookup import Lookup
 from archgen.views.pages.context_pages import make_page
@@ -49,7 +50,8 @@ def _list_facts(lookup: Lookup, requirement: Requirement) -> Iterator[tuple[str,
     use_cases = (requirement_tables.use_case_link(lookup, name) for name in requirement.use_cases)
     yield "Use cases", inline_text.join_inlines(use_cases)
     yield "Tags", inline_text.to_inlines(", ".join(requirement.tags)) if requirement.tags else ()
-    yield "Links", inline_text.link_urls(requirement.urls.items())
+    yield "Links", inline_text.link_urls(requirement.urls.items(), lookup.repository)
+    yield from list_annotation_facts(lookup, requirement)
 
 
 def _make_part_blocks(lookup: Lookup, requirement: Requirement) -> Iterator[Block]:

@@ -7,7 +7,14 @@ from itertools import chain
 
 from archgen.views.changes.site_changes import mark_page
 from archgen.views.lookup import Lookup
-from archgen.views.pages import context_pages, matrix_pages, page_marks, page_places, partner_pages
+from archgen.views.pages import (
+    context_pages,
+    matrix_pages,
+    page_marks,
+    page_places,
+    partner_pages,
+    requirement_pages,
+)
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.site_pages import PageMaker
 from archgen.views.shapes import Page
@@ -64,6 +71,7 @@ def _make_surrounding_pages(page_maker: PageMaker) -> Iterator[Page]:
     """Make the pages on what stands around the elements, one kind after the other."""
     lookup, edition = page_maker.lookup, page_maker.edition
     yield from context_pages.make_context_pages(lookup, page_maker.keep_drawn)
+    yield from requirement_pages.make_requirement_pages(lookup)
     yield from matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation")
     yield from page_maker.message_pages().make_pages()
     yield from partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags)

@@ -31,7 +31,13 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
-from archgen.views.tables import architecture_tables, frame_table, project_growth, requirement_tables
+from archgen.views.tables import (
+    architecture_tables,
+    frame_table,
+    project_growth,
+    property_tables,
+    requirement_tables,
+)
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
 
@@ -246,6 +252,10 @@ class PageMaker:
         yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
         if frames := frame_table.make_frame_table(self.lookup):
             yield self._spanning_page("frames", "Frames", *self.make_figures("frames"), frames)
+        if sections := property_tables.make_property_sections(self.lookup):
+            yield self._listing_page("properties", "Properties", sections)
+        if glossary_table := property_tables.make_glossary_table(self.lookup):
+            yield self._spanning_page("glossary", "Glossary", glossary_table)
         if self.edition.level == "implementation":
             yield self._spanning_page(
                 "nodes",
@@ -302,6 +312,11 @@ class PageMaker:
             shown_section = replace(section, blocks=shown_blocks)
             lead = "Chain of effect"
             yield Page(path, section.anchor, section.title, "chains", shown_section, crumbs, lead, waterfall=waterfall)
+
+    def _listing_page(self, name: str, title: str, sections: tuple[Section, ...]) -> Page:
+        """Make a page of sections, without anything before them."""
+        section = Section(f"page:{name}", title, (), sections)
+        return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME_CRUMB,))
 
     def _spanning_page(self, name: str, title: str, *blocks: Block | None, sections: tuple[Section, ...] = ()) -> Page:
         """Make a page for the whole architecture."""

@@ -23,6 +23,7 @@ def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEn
         *functional_entries.make_requirement_entries(lookup),
         *functional_entries.make_chain_entries(lookup),
         *functional_entries.make_partner_entries(lookup),
+        *functional_entries.make_vocabulary_entries(lookup),
         *implementation_entries.make_host_entries(lookup),
         *implementation_entries.make_frame_entries(lookup),
         *implementation_entries.make_message_entries(lookup),

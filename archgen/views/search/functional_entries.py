@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Component, Connection, Group, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
@@ -22,6 +23,23 @@ def make_owner_keys(owners: Iterable[str], tags: Iterable[str] = ()) -> tuple[st
     return (*(f"owner:{owner}" for owner in owners), *(f"tag:{tag}" for tag in tags))
 
 
+def make_property_keys(element: Annotated) -> tuple[str, ...]:
+    """Return the words that selectors have for the properties of an element."""
+    return tuple(f"property:{name}={text}" for name, text in element.annotations.properties.items())
+
+
+def make_vocabulary_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the declared properties, and the terms of the glossary."""
+    for each in lookup.architecture.properties.values():
+        line = join_words("property", ", ".join(kind.replace("_", " ") for kind in each.of), each.unit)
+        keys = (each.id, f"property:{each.id}")
+        text = to_plain_text(each.description)
+        yield SearchEntry("property", each.title, line, (f"property:{each.id}", "page:properties"), keys, text)
+    for term in lookup.architecture.glossary.values():
+        refs = (f"term:{term.term}", "page:glossary")
+        yield SearchEntry("term", term.term, "term of the glossary", refs, text=" ".join(term.text.split()))
+
+
 def make_group_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the shown groups."""
     for group_id in lookup.shown_groups():
@@ -32,7 +50,7 @@ def make_group_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             group.title,
             join_words(size, list_owner_titles(lookup, group.owners)),
             (f"group:{group.id}",),
-            (group.id, *make_owner_keys(group.owners, group.tags)),
+            (group.id, *make_owner_keys(group.owners, group.tags), *make_property_keys(group)),
             to_plain_text(group.description),
         )
 
@@ -48,8 +66,14 @@ def make_component_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             component.title,
             join_words(_join_place(lookup, component), list_owner_titles(lookup, component.owners)),
             (f"component:{component.id}",),
-            (component.id, *make_owner_keys(component.owners, tags)),
-            to_plain_text(component.functionality, component.description, *component.parameters, *component.operations),
+            (component.id, *make_owner_keys(component.owners, tags), *make_property_keys(component)),
+            to_plain_text(
+                component.functionality,
+                component.description,
+                *component.parameters,
+                *component.operations,
+                component.contact,
+            ),
         )
 
 
@@ -67,8 +91,8 @@ def make_composed_entries(lookup: Lookup) -> Iterator[SearchEntry]:
                     list_owner_titles(lookup, shell.owners),
                 ),
                 (f"component:{shell.id}",),
-                (shell.id, *make_owner_keys(shell.owners, shell.tags)),
-                to_plain_text(shell.functionality, shell.description),
+                (shell.id, *make_owner_keys(shell.owners, shell.tags), *make_property_keys(shell)),
+                to_plain_text(shell.functionality, shell.description, shell.contact),
             )
 
 
@@ -80,7 +104,7 @@ def make_component_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             component_type.title,
             "type of components",
             (f"component_type:{component_type.id}",),
-            (component_type.id, f"is:{component_type.id}"),
+            (component_type.id, f"is:{component_type.id}", *make_property_keys(component_type)),
             to_plain_text(component_type.functionality, component_type.description),
         )
 

@@ -8,7 +8,7 @@ from archgen.model.known_interfaces import Interface
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.lookup import Lookup
-from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys
+from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys, make_property_keys
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
 from archgen.views.used_messages import collect_messages
 
@@ -29,7 +29,7 @@ def make_node_entries(lookup: Lookup) -> Iterator[SearchEntry]:
                 list_owner_titles(lookup, node.owners),
             ),
             (f"node:{node.id}",),
-            (node.id, *([node.package] if node.package else []), *keys),
+            (node.id, *([node.package] if node.package else []), *keys, *make_property_keys(node)),
             to_plain_text(node.description, *node.parameters),
         )
 
@@ -55,7 +55,7 @@ def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     architecture = lookup.architecture
     for host in architecture.hosts.values():
         cores = inline_text.count_noun(host.cores, "core") if host.cores else None
-        keys = (host.id, f"host:{host.id}", *make_owner_keys((), host.tags))
+        keys = (host.id, f"host:{host.id}", *make_owner_keys((), host.tags), *make_property_keys(host))
         text = to_plain_text(host.description)
         yield SearchEntry("host", host.title, join_words("host", cores), (f"host:{host.id}",), keys, text)
     for container in architecture.containers.values():

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
+from archgen.model.annotated_elements import Annotated
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import uses_ros
 from archgen.views.elements import parameter_blocks
@@ -12,13 +13,15 @@ from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables, requirement_tables
 
 TextRow = tuple[str, ...]
+_ANNOTATED_TABLES = frozenset({"nodes", "groups", "types", "requirements", "chains", "hosts", "frames"})
+"""Tables of elements that may have properties; that of components has composed ones, too."""
 
 
 def list_element_rows(lookup: Lookup, kind: str) -> tuple[tuple[str, ...], list[TextRow]]:
     """Return the column names and rows for one kind of element (a key of `_TABLES_BY_KIND`)."""
     columns, make_rows = _TABLES_BY_KIND[kind]
     rows = list(make_rows(lookup))
-    for name, values in _list_further_columns(lookup, kind):
+    for name, values in (*_list_further_columns(lookup, kind), *_list_property_columns(lookup, kind, rows)):
         # A column that no row has a word in is that of a project without composition: its table stays as it was.
         if any(values):
             columns = (*columns, name)
@@ -40,6 +43,24 @@ def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list
         connections = architecture_tables.shown_connections(lookup)
         yield "through", [connection.shell_port or "" for connection in connections]
         yield "made_by", ["autoconnect" if connection.is_made else "" for connection in connections]
+
+
+def _list_property_columns(lookup: Lookup, kind: str, rows: list[TextRow]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a column for each property that a listed element has, declared ones first. Rows begin with the id."""
+    architecture = lookup.architecture
+    elements_by_id: Mapping[str, Annotated] = (
+        {**architecture.components, **architecture.shells}
+        if kind == "components"
+        else getattr(architecture, kind, {})
+        if kind in _ANNOTATED_TABLES
+        else {}
+    )
+    properties = [
+        each.annotations.properties if (each := elements_by_id.get(row[0])) is not None else {} for row in rows
+    ]
+    names = dict.fromkeys((*architecture.properties, *(name for each in properties for name in each)))
+    # Behind a word of its own: a property may be called as another column.
+    yield from ((f"property:{name}", [each.get(name, "") for each in properties]) for name in names)
 
 
 def _component_rows(lookup: Lookup) -> Iterator[TextRow]:

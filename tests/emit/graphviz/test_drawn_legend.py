@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import re
-
-import pytest
-
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import Scene
-from archgen.views.graph_shapes import Arrow, Graph
+from archgen.views.graph_shapes import Arrow, Box, Graph
+from archgen.views.graphs.legend_keys import add_legend_keys
 
 
-@pytest.mark.parametrize(
-    ("counts", "samples"),
-    [
-        ((1, 4), ["width1", "width4"]),
-        ((2, 3, 5), ["width2", "width4"]),
-        ((1, 2, 9), ["width1", "width2", "width4"]),
-    ],
-)
-def test_only_the_widths_of_the_picture_are_explained(counts: tuple[int, ...], samples: list[str]) -> None:
-    arrows = tuple(Arrow(str(count), "a", "b", count=count) for count in counts)
-    scene = add_graph_legend(Scene(), Graph("g", "G", "overview", (), arrows, kind="overview", legend=("width",)))
-    names = {found[1] for part in scene.parts if (found := re.fullmatch(r"k[0-9]+(width[0-9])[0-9]", part.name))}
-    assert sorted(names) == samples
+def test_widths_of_arrows_are_explained_with_their_numbers() -> None:
+    boxes = (Box("a", "A"), Box("b", "B"))
+    arrows = tuple(Arrow(str(count), "a", "b", str(count), count=count) for count in (1, 3, 7))
+    graph = add_legend_keys(Graph("g", "G", "overview", boxes, arrows, kind="overview"))
+    drawn = add_graph_legend(Scene(), graph)
+    # A sentence, no samples: three of them took more room than all other forms of a large picture.
+    assert [part.name for part in drawn.parts if part.kind == "label"] == ["notes"]
+    assert drawn.lines == ()
+    assert "the more, the thicker it is." in drawn.parts[0].attributes["label"]
 
 
 def test_a_picture_reaches_as_far_as_its_legend_in_the_widest_face() -> None:

@@ -153,8 +153,50 @@ def test_a_rename_is_no_removal(found: Compared) -> None:
             ("finder: {implements: finder", "finder: {implements: seeker"),
         )
     )
-    assert boxes(components) == ["sensing: Camera (grey)", "display: → Seeker (renamed)", "display: Screen (grey)"]
-    assert lines(components) == ["sensing.camera > display.seeker", "display.seeker > display.screen"]
+    assert boxes(components) == ["display: → Seeker (renamed)", "display: Screen (grey)", "None: Camera (grey)"]
+    assert lines(components) == ["<sensing > display.seeker", "display.seeker > display.screen"]
+
+
+def test_groups_in_which_nothing_changed_are_one_box_without_a_frame(tmp_path: Path) -> None:
+    text = """archgen: 1
+groups:
+  near: {title: Near, components: {core: {inputs: {a: e1.o, b: e2.o, c: far.o}, outputs: {o: T}}}}
+  eyes:
+    title: Eyes
+    components:
+      e1: {title: Left eye, outputs: {o: T}, inputs: {back: core.o}}
+      e2: {title: Right eye, outputs: {o: T}}
+  distant: {title: Distant, components: {far: {title: Far, outputs: {o: T}}, new: {title: Reader}}}
+"""
+    changed = text.replace("components: {core: {", "components: {core: {timing: {rate: 5 Hz}, ").replace(
+        "{title: Reader}", "{title: Reader, inputs: {x: e2.o}}"
+    )
+    sides = []
+    for name, content in (("before", text), ("after", changed)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "robot.yaml").write_text(content, encoding="utf-8")
+        sides.append(ProjectVersion(name, pipeline.check_project(tmp_path / name / "robot.yaml")))
+    (graph, *_) = draw_changes(compare_named_versions(*sides))
+    assert [cluster.id for cluster in graph.clusters] == ["near", "distant"]
+    drawn = {box.id: (box.cluster, box.title, box.lines) for box in graph.boxes}
+    assert drawn == {
+        "near.core": ("near", "~ Core", ()),
+        # A changed connection leaves here, so it keeps a box of its own.
+        "eyes.e2": (None, "Right eye", ("Eyes",)),
+        "distant.far": ("distant", "Far", ()),
+        "distant.new": ("distant", "~ Reader", ()),
+        # It feeds what changed and reads from it: a box at either end, and no arrow runs back.
+        "<eyes": (None, "Left eye", ("Eyes",)),
+        ">eyes": (None, "Left eye", ("Eyes",)),
+    }
+    assert lines(graph) == [
+        "<eyes > near.core",
+        "eyes.e2 > near.core",
+        "distant.far > near.core",
+        "near.core > >eyes",
+        "eyes.e2 > distant.new + T (added)",
+    ]
+    assert graph.asked == 5
 
 
 def test_quality_of_service_is_drawn_among_nodes(found: Compared) -> None:
@@ -192,7 +234,7 @@ def test_above_its_budget_groups_are_folded_and_the_picture_says_so(found: Compa
     change = found(("      finder:", f"{many}      finder:"))
     for budget in (SMALL_BUDGET, LARGE_BUDGET):
         (components,) = draw_changes(change, budget)
-        assert boxes(components) == ["sensing: Camera (grey)", "None: Display (added)"]
+        assert boxes(components) == ["None: Camera (grey)", "None: Display (added)"]
         assert components.boxes[1].lines == ("+ 60 components",)
         assert lines(components) == ["sensing.camera > group display + 60 connections (added)"]
         assert components.notes[-1] == "1 group folded to one box each, because the picture would be too large."

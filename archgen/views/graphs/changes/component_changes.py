@@ -20,6 +20,7 @@ from archgen.views.graphs.changes.merged_versions import (
     describe_changed_flows,
     merged_edges,
 )
+from archgen.views.graphs.changes.neighbour_folding import fold_neighbours
 from archgen.views.graphs.changes.picture_budget import PictureBudget
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
@@ -134,7 +135,7 @@ def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Gra
         alt=_alternative_text(overlay),
         kind="component-changes",
     )
-    graph = fold_to_budget(graph, budget)
+    graph = fold_to_budget(fold_neighbours(graph), budget)
     return add_legend_keys(replace(graph, asked=sum(arrow.count for arrow in graph.arrows)))
 
 

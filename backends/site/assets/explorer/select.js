@@ -90,7 +90,8 @@ archgenExplorer.makeSelector = function (model) {
 
   function hitOfKey(key, value) {
     const pattern = key === "type" ? value.split(BLANKS).filter(Boolean).join(" ") : value;
-    const wanted = new Set(numbers(model.keys).filter((at) => model.keys[at][0] === key && fits(pattern, model.keys[at][1])));
+    const matches = key === "property" ? archgenExplorer.propertyConditions.read(value, fits) ?? (() => false) : (text) => fits(pattern, text);
+    const wanted = new Set(numbers(model.keys).filter((at) => model.keys[at][0] === key && matches(model.keys[at][1])));
     const has = (each) => each.keys.some((at) => wanted.has(at));
     const pick = (things) => things.filter(has).map((each) => each.number);
     const nodes = key === "node" ? model.nodes.filter((node) => fits(value, node.id)).map((node) => node.number) : pick(model.nodes);

@@ -1,0 +1,152 @@
+"""Look for the files of the project that elements name: documents in `urls`, and pictures in `image`."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.link import mapping_values
+from archgen.link.report_chapters import ReportChapters
+from archgen.syntax.project_files import ProjectFiles
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+MISSING_FILE = Rule(
+    "missing-file",
+    Severity.WARNING,
+    """\
+An element names a document or a picture that is not in the project.
+
+Why: Readers of the report and the site would look for it in vain. The path of a document in `urls`, and that of a picture in
+`image`, begins at the project's folder and stays within it. A picture is a PNG, JPEG, SVG, GIF or WebP file of at most 16 MiB.
+
+Bad:
+
+    # file: archgen.yaml
+    archgen: 1
+    groups:
+      driving:
+        components:
+          motor:
+            functionality: Turns the wheel.
+            outputs: {speed: {type: std_msgs/msg/Float32, external: the ground, urls: {bus: motor.dbc}}}
+    nodes: {motor: {implements: motor}}
+
+Good:
+
+    # file: archgen.yaml
+    archgen: 1
+    groups:
+      driving:
+        components:
+          motor:
+            functionality: Turns the wheel.
+            outputs: {speed: {type: std_msgs/msg/Float32, external: the ground, urls: {bus: interfaces/motor.dbc}}}
+    nodes: {motor: {implements: motor}}
+    # file: interfaces/motor.dbc
+    VERSION ""
+""",
+)
+_PICTURE_ENDINGS = (".png", ".jpg", ".jpeg", ".svg", ".gif", ".webp")
+
+
+class NamedFile(NamedTuple):
+    """A path as it is written, with the element that names it."""
+
+    element: str
+    scalar: ScalarNode
+    is_image: bool = False
+
+
+def find_missing_files(
+    named_files: Iterable[NamedFile], chapters: ReportChapters, *, is_folder: bool
+) -> Iterator[Diagnostic]:
+    """Report what is not there. A project of one file is a whole: the documents that it names lie elsewhere."""
+    for named in named_files:
+        if named.is_image:
+            yield from _judge_image(chapters, named)
+        elif is_folder and is_file_path(named.scalar.text):
+            path = posixpath.normpath(named.scalar.text)
+            if _is_inside(path) and chapters.files.has_path(path):
+                continue
+            yield _report_missing(chapters.files, named, "the file")
+
+
+def is_file_path(address: str) -> bool:
+    """Whether an entry of `urls` is the path of a file: it has no scheme."""
+    return ":" not in address.partition("/")[0]
+
+
+def _judge_image(chapters: ReportChapters, named: NamedFile) -> Iterator[Diagnostic]:
+    path = posixpath.normpath(named.scalar.text)
+    if not path.lower().endswith(_PICTURE_ENDINGS):
+        message = f"`{named.scalar.text}` is no picture"
+        help_line = "name a PNG, JPEG or SVG file of the project"
+        yield Diagnostic("missing-file", message, named.scalar.span, help=help_line, element=named.element)
+    elif chapters.read_picture(path) is None:
+        if _is_inside(path) and chapters.files.has_path(path):
+            message = f"the picture `{named.scalar.text}` cannot be shown"
+            help_line = "a picture has at most 16 MiB, and an SVG is sound and names no entities"
+            yield Diagnostic("missing-file", message, named.scalar.span, help=help_line, element=named.element)
+        else:
+            yield _report_missing(chapters.files, named, "the picture")
+
+
+def _is_inside(path: str) -> bool:
+    """Whether a normal path stays within the project's folder: outside nobody looks, not even whether it exists."""
+    return not path.startswith(("/", "../")) and path not in (".", "..") and "\\" not in path and "\0" not in path
+
+
+def _report_missing(files: ProjectFiles, named: NamedFile, noun: str) -> Diagnostic:
+    text, span = named.scalar.text, named.scalar.span
+    path = posixpath.normpath(text)
+    if not _is_inside(path):
+        message = f"{noun} `{text}` lies outside the project's folder"
+        help_line = "copy it into the project, or write its address on the web"
+        return Diagnostic("missing-file", message, span, help=help_line, element=named.element)
+    parent, file_name = posixpath.split(path)
+    _, _, neighbours = next(iter(files.walk_folders(parent)), ("", [], []))
+    help_line = did_you_mean(file_name, neighbours) or (
+        "write its path from the project's folder; an address on the web begins with `https://`"
+    )
+    return Diagnostic("missing-file", f"{noun} `{text}` is not there", span, help=help_line, element=named.element)
+
+
+def list_image_paths(named_files: Iterable[NamedFile]) -> tuple[str, ...]:
+    """Return the normal paths of the pictures of components and types, each once."""
+    paths = (posixpath.normpath(each.scalar.text) for each in named_files if each.is_image)
+    return tuple(dict.fromkeys(paths))
+
+
+def list_named_files(root: MappingNode) -> Iterator[NamedFile]:
+    """Yield the documents and pictures that the elements of a project name, where they are written."""
+    for section in ("groups", "component_types"):
+        for name, _, body in mapping_values.iterate_elements(root, section):
+            yield from _list_below(name, body)
+    for section in ("nodes", "requirements"):
+        for name, _, body in mapping_values.iterate_elements(root, section):
+            yield from _list_own(name, body)
+
+
+def _list_below(element: str, body: MappingNode) -> Iterator[NamedFile]:
+    """Yield what a group, a component or a type names, with its ports, its node, and the components inside."""
+    yield from _list_own(element, body)
+    yield from _list_own(element, mapping_values.get_mapping(body, "node"))
+    for side in ("inputs", "outputs"):
+        for _, _, port in mapping_values.iterate_elements(body, side):
+            yield from _list_own(element, port)
+    for name, _, inner_body in mapping_values.iterate_elements(body, "components"):
+        yield from _list_below(f"{element}.{name}", inner_body)
+
+
+def _list_own(element: str, body: MappingNode) -> Iterator[NamedFile]:
+    urls = mapping_values.get_mapping(body, "urls")
+    for entry in urls:
+        scalar = mapping_values.get_scalar(urls, entry.key)
+        if scalar is not None:
+            yield NamedFile(element, scalar)
+    image = mapping_values.get_scalar(body, "image")
+    if image is not None:
+        yield NamedFile(element, image, is_image=True)

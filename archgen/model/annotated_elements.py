@@ -1,0 +1,76 @@
+"""All elements of an architecture that may have properties and hints, by kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple, Protocol
+
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.element_annotations import ElementAnnotations
+
+KINDS = (
+    *("partner", "use_case", "requirement", "component_type", "group", "component", "output", "input", "type", "node"),
+    *("host", "container", "resource", "link", "frame", "chain", "policy", "view"),
+)
+"""The kinds of elements, as `of` of a declared property names them."""
+
+
+class Annotated(Protocol):
+    """An element of any kind."""
+
+    @property
+    def annotations(self) -> ElementAnnotations:
+        """Its properties and hints."""
+
+    @property
+    def at(self) -> Span:
+        """Where it is written."""
+
+
+class AnnotatedElement(NamedTuple):
+    """An element with its kind, its complete id, and the id of the element that findings about it name."""
+
+    kind: str
+    id: str
+    element: Annotated
+    is_expected: bool = True
+    """Whether it has what is required of its kind: what holds others, and what nobody wrote, need not."""
+
+    @property
+    def owner_id(self) -> str:
+        """The component of a port; of anything else its own id."""
+        return self.id.rpartition(".")[0] if self.kind in {"input", "output"} else self.id
+
+
+def list_annotated_elements(architecture: Architecture) -> Iterator[AnnotatedElement]:
+    """Yield every element that was written; components and ports of instances included, types of libraries not."""
+    plain_sections: Mapping[str, Mapping[str, Annotated]] = {
+        "partner": architecture.partners,
+        "use_case": architecture.use_cases,
+        "requirement": architecture.requirements,
+        "group": architecture.groups,
+        "host": architecture.hosts,
+        "container": architecture.containers,
+        "resource": architecture.resources,
+        "link": architecture.links,
+        "frame": architecture.frames,
+        "chain": architecture.chains,
+        "policy": architecture.policies,
+        "view": architecture.views,
+    }
+    for kind, elements in plain_sections.items():
+        yield from (AnnotatedElement(kind, id_, element) for id_, element in elements.items())
+    for each in architecture.component_types.values():
+        if each.library is None:
+            yield AnnotatedElement("component_type", each.id, each, is_expected=not each.is_abstract)
+    for component in architecture.list_described_components():
+        yield AnnotatedElement("component", component.id, component, is_expected=not component.children)
+        yield from (AnnotatedElement("input", port.id, port) for port in component.inputs.values())
+        yield from (AnnotatedElement("output", port.id, port) for port in component.outputs.values())
+    for type_ in architecture.types.values():
+        if type_.origin == "project" and type_.at.file and type_.library is None:
+            yield AnnotatedElement("type", type_.name, type_)
+    for node in architecture.nodes.values():
+        if node.written:
+            yield AnnotatedElement("node", node.id, node)
