@@ -32,7 +32,9 @@ LISTABLE_KINDS = (
     "operations",
     "hosts",
     "frames",
+    "start_up",
     "component_types",
+    "variants",
     "backends",
 )
 
@@ -49,6 +51,7 @@ LISTABLE_KINDS = (
 )
 @click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
 @shared_options.project_option
+@shared_options.variant_option
 def command(selector: tuple[str, ...], sort: str, library: str | None, form: str, project: Path | None) -> None:
     """List what SELECTOR names; without one, everything.
 

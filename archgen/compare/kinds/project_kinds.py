@@ -19,9 +19,9 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo, UseCase
-from archgen.model.port_media import ROS
 from archgen.model.element_annotations import describe_range
 from archgen.model.path_resolver import title_from_id
+from archgen.model.port_media import ROS
 from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.use_case_steps import StepEnd

@@ -16,8 +16,9 @@ from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
-from archgen.views.pages import timing_chapter
+from archgen.views.pages import timing_chapter, variant_chapter
 from archgen.views.pages.component_sections import ComponentSections
+from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 from archgen.views.tables import (
     architecture_tables,
@@ -25,6 +26,7 @@ from archgen.views.tables import (
     project_growth,
     property_tables,
     requirement_tables,
+    start_table,
 )
 
 DetailLevel = Literal["functional", "implementation"]
@@ -56,6 +58,8 @@ class DocumentEdition:
     """The model has errors; documents show what is sound, and say so."""
     changes: SiteChanges | None = None
     """What changed since an earlier version, where the site is to show it."""
+    variants: Mapping[str, VariantDifference] = field(default_factory=dict)
+    """What is different in each variant of the project, by its id."""
     signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] = field(default_factory=dict)
     """The tags that record signatures of two partners, newest first."""
 
@@ -156,6 +160,16 @@ class _ChapterMaker:
         blocks = [*self._make_figures("frames"), *_drop_missing(frame_table.make_frame_table(self.lookup))]
         return [Section("page:frames", "Frames", tuple(blocks), page_break=True)] if blocks else []
 
+    def make_variants(self) -> list[Section]:
+        """Make the chapter of variants: a table of them, and what is different in each."""
+        architecture = self.lookup.architecture
+        table = variant_chapter.make_variant_table(architecture, self.edition.variants)
+        if table is None:
+            return []
+        lead = Paragraph(inline_text.to_inlines(variant_chapter.LEAD))
+        sections = tuple(variant_chapter.make_variant_sections(architecture, self.edition.variants))
+        return [Section("page:variants", "Variants", (lead, table), sections, page_break=True)]
+
     def make_deployment(self) -> list[Section]:
         """Make the chapter of hosts and links."""
         if self.edition.level == "functional":
@@ -167,6 +181,13 @@ class _ChapterMaker:
             ),
         ]
         return [Section("page:hosts", "Hosts and links", tuple(blocks), page_break=True)] if blocks else []
+
+    def make_start_up(self) -> list[Section]:
+        """Make the chapter of the start-up."""
+        if self.edition.level == "functional":
+            return []
+        blocks = (*self._make_figures("start_up"), *start_table.make_start_blocks(self.lookup))
+        return [Section("page:start_up", "Start-up", blocks, page_break=True)] if blocks else []
 
     def make_timing(self) -> list[Section]:
         """Make the chapter of figures of timing."""
@@ -259,7 +280,9 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "overview": _ChapterMaker.make_overview,
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,
+    "variants": _ChapterMaker.make_variants,
     "deployment": _ChapterMaker.make_deployment,
+    "start_up": _ChapterMaker.make_start_up,
     "timing": _ChapterMaker.make_timing,
     "chains": _ChapterMaker.make_chains,
     "views": _ChapterMaker.make_views,
