@@ -167,7 +167,7 @@ class _RefusedSource(NamedTuple):
 def _find_refused_sources(
     architecture: Architecture, demand: SourceDemand, judged: Collection[str], allowed: Collection[str]
 ) -> Iterator[_RefusedSource]:
-    both_ways = {o.id for o in architecture.outputs.values() if flow_of(architecture.message_of(o)) != "topic"}
+    both_ways = {o.id for o in architecture.outputs.values() if architecture.flow_of(o) != "topic"}
     for connection in architecture.connections:
         input_ = architecture.inputs[connection.input]
         for output_id in connection.outputs:
