@@ -228,7 +228,7 @@ nodes:
 @pytest.mark.parametrize(
     "case",
     [
-        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "phase of its start `core` → `network`"),
+        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "start phase `core` → `network`"),
         ("after: na", "after: [na, m]", "nb", "start.after", ["na"], ["m", "na"], " now starts after `m`"),
         ("topic: up", "topic: /up", "na", "start.ready.topic", None, None, None),
         ("topic: up", "topic: ~/up", "na", "start.ready.topic", "/up", "/na/up", "topic that shows it is up `/up` → `/na/up`"),
