@@ -234,7 +234,7 @@ groups: {g: {components: {a: {is: station}, b: {is: station, node: {start: {read
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ("phase: core", "phase: network", "component type `station`: start phase of the node `core` → `network`; in 2 instances: `g.a` and `g.b`"),
+        ("phase: core", "phase: network", "component type `station`: start phase of the node `core` → `network`, so earlier than before; in 2 instances: `g.a` and `g.b`"),
         ("[serve, x]", "[serve]", "component type `station`: command of the node `serve x` → `serve`; in 2 instances: `g.a` and `g.b`"),
         ("port: 81", "port: 80", "component type `station`: port that shows it is up of the node 81 → 80; in its instance `g.a`"),
         ("after: first", "after: third", "node `second`: start after `g.c.first` → `g.c.third`"),
