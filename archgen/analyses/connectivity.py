@@ -229,7 +229,8 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         component = architecture.components[output.component]
         group = component.group
         is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
-        if output.id in taken_outputs or is_suspected:
+        # That nobody reads what is going away is as it should be.
+        if output.id in taken_outputs or is_suspected or output.deprecated is not None:
             continue
         # What a library offers for calls waits for whoever needs it; of what it sends, something should be read.
         is_spare = _kind_of_output(architecture, output) in _CALLED_KINDS or any(

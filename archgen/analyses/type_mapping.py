@@ -137,7 +137,9 @@ def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
         named_types.update(name for operation in component_type.operations.values() for name in operation.type_names)
         used_types |= named_types.difference(component_type.generic)
     for type_ in architecture.types.values():
+        # What replaces a type that is going away waits for those who still use that one.
         used_types |= {type_.request, type_.response, type_.feedback}
+        used_types |= {type_.deprecated.target} if type_.deprecated else set()
         used_types |= {field.element_type for _, field in type_.list_fields()}.difference(type_.generic)
     used_types |= set(_list_arguments(used_types))
     used_messages = _list_used_messages(architecture)

@@ -11,6 +11,7 @@ from archgen.views.elements.annotation_facts import list_annotation_facts, list_
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.elements.instance_values import OwnValue, TypeTexts
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
+from archgen.views.elements.promise_words import write_badges, write_deprecation
 from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns
@@ -25,7 +26,7 @@ def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Ta
     architecture = lookup.architecture
     rows = tuple(
         (
-            (type_page_link(each),),
+            (type_page_link(each), *write_badges(each)),
             _make_code_cell(each.library),
             inline_text.value_or_unknown(first_sentence(each.functionality)),
             _make_base_cell(lookup, each),
@@ -70,6 +71,10 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
         yield "Owner", inline_text.owner_links(architecture, [component_type.owner])
     if component_type.base:
         yield "Made from", _make_base_cell(lookup, component_type)
+    if component_type.version:
+        yield "Version", inline_text.to_inlines(component_type.version)
+    if component_type.deprecated:
+        yield "Deprecated", write_deprecation(architecture, "component_type", component_type)
     if component_type.generic:
         yield "Generic names", inline_text.join_inlines((Text(name, code=True),) for name in component_type.generic)
     derived = [each for each in architecture.component_types.values() if each.base_name == component_type.id]

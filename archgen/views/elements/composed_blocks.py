@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
-from archgen.views.elements import functional_level, port_tables
+from archgen.views.elements import functional_level, port_tables, promise_words
 from archgen.views.elements.annotation_facts import make_image_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup
@@ -101,7 +101,7 @@ def _list_output_cells(lookup: Lookup, port: Output) -> tuple[Inlines, ...]:
     if port.external:
         cells.append(inline_text.to_inlines(Text("outside: ", muted=True), port.external))
     return (
-        inline_text.to_inlines(Text(port.name, code=True)),
+        inline_text.to_inlines(Text(port.name, code=True), *promise_words.write_badges(port)),
         inline_text.type_link(port.type),
         _list_behind(lookup, "output", port),
         inline_text.join_lines(cells) or inline_text.to_inlines(Text("nobody yet", muted=True)),

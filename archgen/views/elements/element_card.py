@@ -14,6 +14,7 @@ from archgen.model.deployment import Container
 from archgen.model.node import Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
+from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_lines
 from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.parameter_blocks import (
@@ -70,6 +71,7 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "chain": a.chains,
         "view": a.views,
         "policy": a.policies,
+        "variant": a.variants,
     }
 
 
@@ -131,7 +133,7 @@ def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
         card = _generic_card(lookup, kind, element_id)
     else:
         card = make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
-    further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind != "topic" else ()
+    further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind not in {"topic", "variant"} else ()
     return replace(card, facts=(*card.facts, *further_facts)) if further_facts else card
 
 
@@ -173,7 +175,7 @@ def _component_card(lookup: Lookup, component: Component) -> ElementCard:
         f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}" for port in component.inputs.values()
     )
     outputs = tuple(
-        f"{port.name} ({port.type or '?'}) -> {', '.join(_list_readers(lookup, port)) or 'nobody'}"
+        f"{port.name} ({port.type or '?'}){_mark_deprecated(port)} -> {', '.join(_list_readers(lookup, port)) or 'nobody'}"
         for port in component.outputs.values()
     )
     nodes = tuple(
@@ -218,7 +220,7 @@ def _composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         for port in shell.inputs.values()
     )
     outputs = tuple(
-        f"{port.name} ({port.type or '?'}) <= {', '.join(architecture.shell_ports[f'output {port.id}']) or '?'}"
+        f"{port.name} ({port.type or '?'}){_mark_deprecated(port)} <= {', '.join(architecture.shell_ports[f'output {port.id}']) or '?'}"
         f"{' (autoconnect)' if port.is_made else ''}"
         for port in shell.outputs.values()
     )
@@ -241,6 +243,7 @@ def _component_type_card(lookup: Lookup, component_type: ComponentType) -> Eleme
         ("generic", ", ".join(component_type.generic)),
         ("abstract", "yes" if component_type.is_abstract else ""),
         ("owner", component_type.owner or ""),
+        *promise_words.list_card_facts(component_type),
         ("functionality", " ".join((component_type.functionality or "").split())),
     ]
     instances = tuple(
@@ -296,6 +299,10 @@ def _format_findings(lookup: Lookup, element_id: str) -> Iterator[str]:
         yield f"{finding.severity}[{finding.rule}]: {finding.message}"
 
 
+def _mark_deprecated(port: Output) -> str:
+    return " (deprecated)" if port.deprecated else ""
+
+
 def _port_card(lookup: Lookup, port: Input | Output) -> ElementCard:
     facts = [
         ("component", port.component),
@@ -306,6 +313,7 @@ def _port_card(lookup: Lookup, port: Input | Output) -> ElementCard:
     ]
     if isinstance(port, Output):
         facts.append(("message", lookup.architecture.message_of(port) or ("" if port.physical else "?")))
+        facts += promise_words.list_card_facts(port)
         readers = ("readers", tuple(_list_readers(lookup, port)))
         return ElementCard("output", port.id, port.name, port.at, _known_facts(facts), (readers,))
     facts.append(("freshness", _format_fact(port.freshness)))
@@ -417,10 +425,14 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             "rate",
             "deadline",
             "show",
+            "of",
+            "without",
+            "drop",
         )
     ]
     lists: list[tuple[str, tuple[str, ...]]] = []
     if kind == "type":
+        facts += promise_words.list_card_facts(element)
         facts += [("values", _format_fact(element.values)), ("generic", _format_fact(element.generic))]
         field_lines = tuple(list_field_lines(element))
         lists += [("fields", field_lines)] if field_lines else []
@@ -455,6 +467,8 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     elif kind == "frame":
         facts.append(("static", "yes" if element.static else ""))
         lists += list_frame_users(architecture, element)
+    elif kind == "variant":
+        lists.append(("changes", tuple(f"{change.path}: {change.value}" for change in element.changes)))
     elif kind == "chain":
         chain = architecture.chains[element_id]
         facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]

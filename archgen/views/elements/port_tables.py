@@ -5,6 +5,7 @@ from __future__ import annotations
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
+from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Paragraph, Table, Text, drop_empty_columns
@@ -51,7 +52,8 @@ def make_output_blocks(lookup: Lookup, component: Component) -> list[Block]:
 
 
 def _port_name(port: Input | Output) -> Inlines:
-    return inline_text.to_inlines(Text(port.name, code=True))
+    badges = promise_words.write_badges(port) if isinstance(port, Output) else ()
+    return inline_text.to_inlines(Text(port.name, code=True), *badges)
 
 
 def make_source_cell(lookup: Lookup, port: Input) -> Inlines:
@@ -59,6 +61,7 @@ def make_source_cell(lookup: Lookup, port: Input) -> Inlines:
     sources = [
         (
             *inline_text.describe_source(lookup.architecture, connection),
+            *promise_words.mark_source(lookup, connection),
             *_other_owners(lookup, port.component, connection.outputs),
         )
         for connection in port.connections
@@ -141,7 +144,15 @@ def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
     is_known = name in lookup.architecture.frames
     link = inline_text.frame_link(name) if name and is_known else (Text(name or "", code=True),)
     frame = (Text("in the frame "), *link) if name else ()
-    documents = inline_text.link_urls(port.urls.items(), lookup.repository)
-    parts = [inline_text.to_inlines(optional), frame, inline_text.to_inlines(port.description or ""), documents]
-    parts += [facts for _, facts in list_annotation_facts(lookup, port)]
+    words = promise_words.write_remarks(lookup.architecture, port) if isinstance(port, Output) else ()
+    fresh = f"no older than {port.freshness}" if isinstance(port, Input) and port.freshness else ""
+    parts = [
+        inline_text.to_inlines(optional),
+        inline_text.to_inlines(fresh),
+        frame,
+        *words,
+        inline_text.to_inlines(port.description or ""),
+        inline_text.link_urls(port.urls.items(), lookup.repository),
+        *(facts for _, facts in list_annotation_facts(lookup, port)),
+    ]
     return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")

@@ -8,6 +8,7 @@ from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Component, Connection, Group, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
+from archgen.views.elements import promise_words
 from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
@@ -102,7 +103,7 @@ def make_component_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "component type",
             component_type.title,
-            "type of components",
+            join_words("type of components", *promise_words.list_text_remarks(component_type)),
             (f"component_type:{component_type.id}",),
             (component_type.id, f"is:{component_type.id}", *make_property_keys(component_type)),
             to_plain_text(component_type.functionality, component_type.description),
@@ -126,7 +127,11 @@ def make_port_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             yield SearchEntry(
                 "port",
                 _port_title(component, port.name),
-                join_words(f"{direction} of {suffix}", port.type),
+                join_words(
+                    f"{direction} of {suffix}",
+                    port.type,
+                    *(promise_words.list_text_remarks(port) if isinstance(port, Output) else ()),
+                ),
                 (f"table:{direction}s/{component.id}", f"component:{component.id}"),
                 (),
                 to_plain_text(port.description, port.external),
@@ -200,12 +205,16 @@ def make_partner_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 
 
 def make_chain_entries(lookup: Lookup) -> Iterator[SearchEntry]:
-    """Yield chains of effect, views and policies."""
+    """Yield chains of effect, variants and views."""
     architecture = lookup.architecture
     for chain in architecture.chains.values():
         deadline = f"deadline {chain.deadline}" if chain.deadline else ""
         line = join_words("chain of effect", deadline, ", ".join(chain.requirements))
         yield SearchEntry("chain", chain.title, line, (f"chain:{chain.id}", "page:chains"), (chain.id,))
+    for variant in architecture.variants.values():
+        line = join_words("variant", f"without {variant.without}" if variant.without else "")
+        text = to_plain_text(variant.description)
+        yield SearchEntry("variant", variant.title, line, (f"variant:{variant.id}",), (variant.id,), text)
     for view in architecture.views.values():
         line = join_words("view", view.show)
         yield SearchEntry("view", view.title, line, (f"figure:views/{view.id}", "page:views"), (view.id,))

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from archgen.model.known_interfaces import Interface
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_shown_frames, name_writer
+from archgen.views.elements.promise_words import list_text_remarks
 from archgen.views.lookup import Lookup
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys, make_property_keys
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
@@ -81,7 +82,7 @@ def make_frame_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 def make_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the conceptual types."""
     for conceptual_type in lookup.architecture.types.values():
-        line = join_words("type", conceptual_type.message, conceptual_type.status)
+        line = join_words("type", conceptual_type.message, conceptual_type.status, *list_text_remarks(conceptual_type))
         text = to_plain_text(conceptual_type.comment)
         yield SearchEntry("type", conceptual_type.name, line, (f"type:{conceptual_type.name}",), text=text)
 

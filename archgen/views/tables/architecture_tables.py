@@ -17,6 +17,7 @@ from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
 from archgen.views import element_references, inline_text
+from archgen.views.elements import promise_words
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text
@@ -123,7 +124,7 @@ def make_type_table(lookup: Lookup) -> Table | None:
     """List conceptual types with the messages that carry them."""
     rows = tuple(
         (
-            inline_text.type_link(conceptual_type.name),
+            (*inline_text.type_link(conceptual_type.name), *promise_words.write_badge(conceptual_type)),
             message_cell(lookup, conceptual_type),
             size_cell(lookup, conceptual_type),
             inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
@@ -179,8 +180,9 @@ def describe_mapping(conceptual_type: ConceptualType) -> str:
     planned_remark = "message is planned" if conceptual_type.status == "planned" else ""
     frame_remark = f"in the frame {conceptual_type.frame}" if conceptual_type.frame else ""
     comment = " ".join((conceptual_type.comment or "").split())
+    life = promise_words.list_text_remarks(conceptual_type)
     content = type_fields.describe_content(conceptual_type)
-    return "; ".join(part for part in (comment, planned_remark, frame_remark, *content, *inner_messages) if part)
+    return "; ".join(part for part in (*life, comment, planned_remark, frame_remark, *content, *inner_messages) if part)
 
 
 def make_finding_table(

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from archgen.model.annotated_elements import Annotated
+from archgen.model.component import Connection
+from archgen.model.counted_outputs import find_counted_output
 from archgen.model.parameter_values import find_effective_parameters
-from archgen.views.elements import parameter_blocks
+from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables, requirement_tables
@@ -42,7 +44,25 @@ def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list
     if kind == "connections":
         connections = architecture_tables.shown_connections(lookup)
         yield "through", [connection.shell_port or "" for connection in connections]
+        words = [_describe_words(lookup, connection) for connection in connections]
+        yield from (
+            (name, [each[index] for each in words]) for index, name in enumerate(("promise", "version", "deprecated"))
+        )
         yield "made_by", ["autoconnect" if connection.is_made else "" for connection in connections]
+
+
+def _describe_words(lookup: Lookup, connection: Connection) -> tuple[str, str, str]:
+    """Return what the outputs that a connection names promise, their versions, and until when they may be used."""
+    architecture = lookup.architecture
+    leaves = (architecture.outputs[output] for output in connection.outputs)
+    ports = {port.id: port for leaf in leaves for port in (find_counted_output(architecture, connection, leaf),)}
+    facts = [tuple(value for _, value in promise_words.list_card_facts(port)) for port in ports.values()]
+    promises, versions, deprecations = (
+        ("; ".join(dict.fromkeys(filter(None, values))) for values in zip(*facts, strict=True))
+        if facts
+        else ("", "", "")
+    )
+    return promises, versions, deprecations
 
 
 def _list_property_columns(lookup: Lookup, kind: str, rows: list[TextRow]) -> Iterator[tuple[str, list[str]]]:
@@ -234,6 +254,19 @@ def _frame_rows(lookup: Lookup) -> Iterator[TextRow]:
         yield (frame.id, frame.title, frame.parent or "", frame.by or "", rate, ports, str(frame.at))
 
 
+def _variant_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for each in lookup.architecture.variants.values():
+        yield (
+            each.id,
+            each.title,
+            ", ".join(each.of),
+            each.without or "",
+            ", ".join(each.drop),
+            str(len(each.changes)),
+            str(each.at),
+        )
+
+
 # The column names are the header of what `archgen list` writes, so they are visible to users.
 _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
@@ -261,4 +294,5 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
     "start_up": (START_COLUMNS, list_start_rows),
     "frames": (("id", "title", "parent", "by", "rate", "ports", "place"), _frame_rows),
+    "variants": (("id", "title", "of", "without", "drop", "changes", "place"), _variant_rows),
 }

@@ -1,0 +1,102 @@
+"""Promises, versions and deprecations on pages, in cards, lists and the search."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen.pipeline import check_project
+from archgen.views.elements.component_type_blocks import make_type_blocks
+from archgen.views.elements.composed_blocks import make_composed_blocks
+from archgen.views.elements.element_card import make_card
+from archgen.views.elements.port_tables import make_input_blocks, make_output_blocks
+from archgen.views.elements.promise_words import describe_promise
+from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.search import make_search_entries
+from archgen.views.shapes import Block, Facts, Table
+from archgen.views.tables.architecture_tables import make_type_table
+from archgen.views.tables.element_rows import list_element_rows
+from tests.agreeing import text
+
+ROBOT = """\
+component_types:
+  m1: {version: 1, deprecated: {until: 2999-01-01, use: m2}}
+  m2: {outputs: {o: T}}
+groups:
+  g:
+    components:
+      a:
+        outputs:
+          rows: {type: T, promise: {rate: 10 Hz, max_gap: 150 ms, max_age: 200 ms, unit: m, frame: base, range: [0, 30]}, version: 2, deprecated: {until: 2999-06-01, use: new}}
+          new: {type: T, promise: {unit: cm}}
+          far: {type: T, deprecated: {use: g.b.x}}
+          none: {deprecated: {}, external: the world}
+      b: {inputs: {i: {from: a.rows, freshness: 1 s}, j: a.new}, outputs: {x: T}}
+      w: {outputs: {o: {from: in.o, version: 3, deprecated: {}}}, components: {in: {is: m2}}}
+      c: {inputs: {k: w.o}}
+types: {T: {message: std_msgs/msg/Bool, version: 5, deprecated: {use: U}}, U: std_msgs/msg/Bool}
+"""
+
+
+@pytest.fixture
+def lookup(tmp_path: Path) -> Lookup:
+    (tmp_path / "robot.yaml").write_text(ROBOT, encoding="utf-8")
+    checked = check_project(tmp_path / "robot.yaml")
+    return make_lookup(checked.architecture, checked.findings)
+
+
+def _rows(blocks: list[Block], row: int) -> list[str]:
+    table = next(block for block in blocks if isinstance(block, Table))
+    return [text(cell) for cell in table.rows[row]]
+
+
+def test_outputs_have_badges_and_say_what_they_promise(lookup: Lookup) -> None:
+    blocks = make_output_blocks(lookup, lookup.architecture.components["g.a"])
+    first, last = _rows(blocks, 0), _rows(blocks, 1)
+    assert first[0] == "rows version 2 deprecated"
+    assert first[-1] == (
+        "promised: 10 Hz, gaps up to 150 ms, no older than 200 ms, 0 to 30 m, in the frame base; "
+        "deprecated until 2999-06-01: use new"
+    )
+    assert (last[0], last[-1]) == ("new", "promised: in cm")
+    assert _rows(blocks, 2)[-1] == "deprecated: use B · x"
+    assert _rows(blocks, 3)[-1] == "deprecated"
+
+
+def test_readers_are_marked_where_they_name_what_is_going_away(lookup: Lookup) -> None:
+    blocks = make_input_blocks(lookup, lookup.architecture.components["g.b"])
+    assert _rows(blocks, 0)[1] == "A · rows deprecated"
+    assert _rows(blocks, 0)[-1] == "no older than 1 s"
+    assert _rows(blocks, 1)[1] == "A · new"
+    (cell,) = (_rows(make_input_blocks(lookup, lookup.architecture.components["g.c"]), 0)[1],)
+    assert cell.endswith(" deprecated")
+
+
+def test_composed_components_types_and_component_types(lookup: Lookup) -> None:
+    architecture = lookup.architecture
+    tables = [b for b in make_composed_blocks(lookup, architecture.shells["g.w"]) if isinstance(b, Table)]
+    assert text(next(t for t in tables if t.anchor == "table:outputs/g.w").rows[0][0]) == "o version 3 deprecated"
+    facts = next(b for b in make_type_blocks(lookup, architecture.component_types["m1"]) if isinstance(b, Facts))
+    said = {name: text(value) for name, value in facts.rows}
+    assert (said["Version"], said["Deprecated"]) == ("1", "deprecated until 2999-01-01: use M2")
+    table = make_type_table(lookup)
+    assert table
+    assert [text(cell) for cell in table.rows[0]][-1].startswith("version 5; deprecated (no day named, use U instead)")
+
+
+def test_cards_lists_and_the_search(lookup: Lookup) -> None:
+    card = make_card(lookup, "output", "g.a.rows")
+    assert dict(card.facts)["deprecated"] == "until 2999-06-01, use new instead"
+    assert dict(make_card(lookup, "type", "T").facts)["version"] == "5"
+    assert dict(make_card(lookup, "component type", "m1").facts)["deprecated"] == "until 2999-01-01, use m2 instead"
+    columns, rows = list_element_rows(lookup, "connections")
+    row = dict(zip(columns, rows[0], strict=True))
+    assert (row["version"], row["deprecated"]) == ("2", "until 2999-06-01, use new instead")
+    assert row["promise"].startswith("10 Hz, gaps up to 150 ms")
+    lines = {entry.title: entry.line for entry in make_search_entries(lookup, ())}
+    assert "version 2 · deprecated (until 2999-06-01, use new instead)" in lines["A · rows"]
+
+
+def test_nothing_is_described_where_nothing_is_promised() -> None:
+    assert describe_promise(None) == ""
