@@ -60,6 +60,8 @@ class ArchitectureSize:
     frames: int = 0
     steps: int = 0
     """The steps of all use cases."""
+    programs: int = 0
+    """Those among the nodes that are no ROS: simulators, registries, brokers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +125,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         made_connections=sum(connection.is_made for connection in arch.connections),
         frames=len(arch.frames),
         steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
+        programs=sum("program" in node.kinds for node in arch.nodes.values()),
     )
 
 

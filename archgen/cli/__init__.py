@@ -23,6 +23,7 @@ VERBS = {
     "list": "List elements, connections or backends, as text, CSV or JSON.",
     "interfaces": "Write what flows between two partners, to be signed by both.",
     "owners": "Show who owns what, or write CODEOWNERS.",
+    "start": "Show the plan of the start-up: steps, commands, what each waits for.",
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project, or take one over from a spreadsheet.",

@@ -32,6 +32,7 @@ LISTABLE_KINDS = (
     "operations",
     "hosts",
     "frames",
+    "start_up",
     "component_types",
     "backends",
 )

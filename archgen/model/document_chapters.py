@@ -9,6 +9,7 @@ GENERATED_CHAPTERS = (
     "groups",
     "frames",
     "deployment",
+    "start_up",
     "timing",
     "chains",
     "views",

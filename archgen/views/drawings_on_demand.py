@@ -19,7 +19,12 @@ from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.timing import chain_charts
 
 # One without boxes is not shown: there may be neither hosts nor frames.
-_WHOLE_GRAPHS = {"ros": graphs.draw_ros_graph, "hosts": graphs.draw_hosts, "frames": graphs.draw_frames}
+_WHOLE_GRAPHS = {
+    "ros": graphs.draw_ros_graph,
+    "hosts": graphs.draw_hosts,
+    "frames": graphs.draw_frames,
+    "start_up": graphs.draw_start,
+}
 
 
 class DrawingsOnDemand(Mapping[str, Drawing]):

@@ -128,6 +128,7 @@ GraphKind = Literal[
     "ros",
     "hosts",
     "frames",
+    "start",
     "timing",
     "group-timing",
     "view",

@@ -69,6 +69,7 @@ def packed_again(checked: CheckedProject, folder: Path) -> CheckedProject:
         "examples/cleaning_robot",
         "examples/arm",
         "examples/vehicle/two_lasers",
+        "examples/bringup",
         "example_ramcip",
     ],
 )

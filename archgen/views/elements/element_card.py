@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -25,6 +26,7 @@ from archgen.views.elements.requirement_facts import list_requirement_facts, lis
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state
 from archgen.views.sequences.step_words import describe_total, list_step_lines
+from archgen.views.start_phrases import describe_start
 from archgen.views.tables.type_fields import list_field_lines
 from archgen.views.timing.element_timing import make_whole_fact
 
@@ -333,6 +335,8 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         ("status", node.status or "?"),
         ("package", node.package or "?"),
         ("executable", node.executable or ""),
+        ("command", shlex.join(node.command)),
+        ("start", describe_start(node)),
         ("host", node.host or "?"),
         ("container", node.container or ""),
         ("threads", _format_fact(node.threads)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.views import element_references, inline_text
@@ -9,6 +11,7 @@ from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+from archgen.views.start_phrases import describe_start
 from archgen.views.timing import element_timing
 
 _USE_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
@@ -66,6 +69,8 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("ROS name", inline_text.to_inlines(Text(node.full_name, code=True))),
         ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
         ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
+        ("Command", inline_text.to_inlines(Text(shlex.join(node.command), code=True)) if node.command else ()),
+        ("Start", _start_facts(node)),
         ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         ("Runs on", _location_cell(lookup, node)),
         ("Callbacks", inline_text.to_inlines(callbacks) if (callbacks := _describe_callbacks(node)) else ()),
@@ -81,6 +86,12 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         rows.append((name, inline_text.to_inlines(sentence) if sentence else ()))
     rows += element_timing.make_node_facts(lookup, node)
     return [(name, value) for name, value in rows if value]
+
+
+def _start_facts(node: Node) -> Inlines:
+    """Return what a node says of its start, with a link to the plan."""
+    words = describe_start(node)
+    return (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()
 
 
 def _program_parts(node: Node) -> Inlines:

@@ -34,6 +34,7 @@ from archgen.views.graphs.host_graph import draw_hosts
 from archgen.views.graphs.implementation_graph import draw_implementation
 from archgen.views.graphs.overview_graphs import draw_components, draw_overview
 from archgen.views.graphs.ros_graph import draw_ros_graph
+from archgen.views.graphs.start_graph import draw_start
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -47,6 +48,7 @@ __all__ = [
     "draw_implementation",
     "draw_overview",
     "draw_ros_graph",
+    "draw_start",
     "make_all_graphs",
     "selection_graphs",
     "timing_graphs",
@@ -108,6 +110,7 @@ def _iterate_graphs(
         yield draw_ros_graph(lookup)
         yield draw_hosts(lookup)
         yield draw_frames(lookup)
+        yield draw_start(lookup)
     else:
         yield selection_graphs.draw_implementation_part(lookup, "ros", "Nodes of the selected part", selection.nodes)
     if lookup.timing is not None:

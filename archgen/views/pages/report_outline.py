@@ -25,6 +25,7 @@ from archgen.views.tables import (
     project_growth,
     property_tables,
     requirement_tables,
+    start_table,
 )
 
 DetailLevel = Literal["functional", "implementation"]
@@ -168,6 +169,13 @@ class _ChapterMaker:
         ]
         return [Section("page:hosts", "Hosts and links", tuple(blocks), page_break=True)] if blocks else []
 
+    def make_start_up(self) -> list[Section]:
+        """Make the chapter of the start-up."""
+        if self.edition.level == "functional":
+            return []
+        blocks = (*self._make_figures("start_up"), *start_table.make_start_blocks(self.lookup))
+        return [Section("page:start_up", "Start-up", blocks, page_break=True)] if blocks else []
+
     def make_timing(self) -> list[Section]:
         """Make the chapter of figures of timing."""
         timing_lookup = self.lookup.timing
@@ -260,6 +268,7 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,
     "deployment": _ChapterMaker.make_deployment,
+    "start_up": _ChapterMaker.make_start_up,
     "timing": _ChapterMaker.make_timing,
     "chains": _ChapterMaker.make_chains,
     "views": _ChapterMaker.make_views,

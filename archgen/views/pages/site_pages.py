@@ -37,6 +37,7 @@ from archgen.views.tables import (
     project_growth,
     property_tables,
     requirement_tables,
+    start_table,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
@@ -271,6 +272,8 @@ class PageMaker:
                 architecture_tables.make_link_table(self.lookup),
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
+            if start_blocks := start_table.make_start_blocks(self.lookup):
+                yield self._spanning_page("start_up", "Start-up", *self.make_figures("start_up"), *start_blocks)
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""

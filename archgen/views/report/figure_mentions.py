@@ -32,6 +32,8 @@ _BLOCK_WORDS = {
     "table:hosts": "lists what runs on which host",
     "table:links": "lists how the hosts are connected",
     "figure:ros": "shows all nodes",
+    "figure:start_up": "shows what starts after what",
+    "table:start/": "lists what starts in a phase, how, and what it waits for",
     "figure:frames": "shows what each frame is placed in, and who writes it",
     "table:frames": "lists how often, and whose data is in it",
     "table:periods": "sorts what the nodes do by how often they do it",

@@ -12,6 +12,7 @@ from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import architecture_tables, requirement_tables
+from archgen.views.tables.start_rows import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
 _ANNOTATED_TABLES = frozenset({"nodes", "groups", "types", "requirements", "chains", "hosts", "frames"})
@@ -278,5 +279,6 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     ),
     "operations": (("id", "component", "request", "response", "call", "visibility", "place"), _operation_rows),
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
+    "start_up": (START_COLUMNS, list_start_rows),
     "frames": (("id", "title", "parent", "by", "rate", "ports", "place"), _frame_rows),
 }

@@ -1,0 +1,55 @@
+"""`archgen start`: print the plan of the start-up. Nothing of it is run."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import Severity
+
+if TYPE_CHECKING:
+    from archgen.model.architecture import Architecture
+
+
+@click.command("start")
+@shared_options.project_argument
+@click.option("--host", metavar="ID", help="Only the steps on this host, with what they wait for elsewhere.")
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+def command(project: Path | None, host: str | None, form: str) -> None:
+    """Print in which order the nodes and programs of PROJECT start, with which commands, and what each waits for.
+
+    archgen starts nothing itself: it runs no command, program or launch file of a project.
+    """
+    from archgen.bringup.start_plan import make_start_plan
+    from archgen.emit.terminal.start_text import format_plan
+    from archgen.views.start_plan_record import record_plan
+
+    checked_project = command_support.check_or_exit(project)
+    command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+    architecture = checked_project.architecture
+    if host is not None:
+        _require_host(architecture, host)
+    plan = make_start_plan(architecture)
+    shown_ids = None if host is None else {step.id for step in plan.steps if step.host == host}
+    if form == "json":
+        click.echo(json.dumps(record_plan(architecture, plan, shown_ids), ensure_ascii=False, indent=2))
+    else:
+        # Not wrapped: commands are there to be copied.
+        sys.stdout.writelines(f"{line}\n" for line in format_plan(architecture.project.title, plan, shown_ids))
+    command_support.exit_by_findings(checked_project)
+
+
+def _require_host(architecture: Architecture, host: str) -> None:
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    if host not in architecture.hosts:
+        known = f"the hosts are {', '.join(architecture.hosts)}" if architecture.hosts else "the project has no hosts"
+        raise click.UsageError(
+            make_visible(f"there is no host '{host}'; {did_you_mean(host, architecture.hosts) or known}")
+        )

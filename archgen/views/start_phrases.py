@@ -1,0 +1,157 @@
+"""The words of a start-up's plan: why a step waits, until when, and what shows that it is up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitReason
+from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import dataclass
+from archgen.model.node import Node
+from archgen.model.quantity import Quantity
+from archgen.model.start_up import ReadyConditions
+
+KIND_WORDS = {"program": "program", "node": "node", "container": "container", "composable": "loaded node"}
+_MAX_PORTS = 2
+"""So many outputs are named for which a step waits; the rest is counted."""
+_PORT_VERBS: Mapping[WaitReason, str] = {
+    "service": "calls",
+    "data": "reads",
+    "sampled": "samples",
+    "optional": "may read",
+    "managed": "activates what it reads:",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class NamedWait:
+    """All for which a step waits for one other: until when (`ready`, `ended`, `started`), and why."""
+
+    awaited: str
+    until: str
+    reasons: tuple[str, ...]
+    waits: tuple[Wait, ...]
+
+
+def name_waits(step: StartStep, steps: Mapping[str, StartStep]) -> list[NamedWait]:
+    """Return what a step waits for, each other step once, what is needed most first."""
+    waits_by_step: dict[str, list[Wait]] = {}
+    for wait in step.waits:
+        waits_by_step.setdefault(wait.awaited, []).append(wait)
+    return [
+        NamedWait(
+            awaited,
+            find_end(waits, steps[awaited]),
+            tuple(dict.fromkeys(describe_reason(wait) for wait in waits)),
+            tuple(waits),
+        )
+        for awaited, waits in waits_by_step.items()
+    ]
+
+
+def find_end(waits: Sequence[Wait], awaited: StartStep) -> str:
+    """Return until when a step is awaited: a manager only needs that what it manages was started."""
+    if awaited.once:
+        return "ended"
+    return "started" if all(wait.reason == "manages" for wait in waits) else "ready"
+
+
+def describe_reason(wait: Wait) -> str:
+    """Return why a step waits, with its first outputs: `reads a.b.scan and 2 more`."""
+    if wait.reason == "container":
+        return "is loaded there"
+    if wait.reason == "after":
+        return "as written"
+    if wait.reason == "manages":
+        return "manages it"
+    outputs = list(dict.fromkeys(output for output, _ in wait.ports))
+    more = f" and {len(outputs) - _MAX_PORTS} more" if len(outputs) > _MAX_PORTS else ""
+    return f"{_PORT_VERBS[wait.reason]} {', '.join(outputs[:_MAX_PORTS])}{more}"
+
+
+def describe_dropped(dropped: DroppedWait, steps: Mapping[str, StartStep]) -> str:
+    """Return a sentence on a wait that was given up, without its end."""
+    wait = dropped.wait
+    opening = f"{wait.waiting} does not wait for {wait.awaited} ({describe_reason(wait)})"
+    if not dropped.circle:
+        return f"{opening}: its phase {steps[wait.waiting].phase} is over before {steps[wait.awaited].phase} begins"
+    between = dropped.circle[1:-1]
+    if not between:
+        return f"{opening}: {wait.awaited} waits for {wait.waiting}"
+    return f"{opening}: {wait.awaited} waits for {wait.waiting}, by way of {join_words(list(reversed(between)))}"
+
+
+def describe_circle(dropped: DroppedWait, steps: Mapping[str, StartStep]) -> str:
+    """Return what is contradictory in waits that never give way."""
+    wait = dropped.wait
+    if not dropped.circle:
+        phases = f"{steps[wait.waiting].phase} is over before {steps[wait.awaited].phase} begins"
+        return f"{wait.waiting} cannot start after {wait.awaited}: {phases}"
+    if len(dropped.circle) == 1:
+        return f"{wait.waiting} cannot start after itself"
+    return f"{wait.waiting} cannot start after {' after '.join([*reversed(dropped.circle[1:]), wait.waiting])}"
+
+
+def list_ready_phrases(ready: ReadyConditions) -> Iterator[str]:
+    """Yield what must hold so that something counts as up."""
+    if ready.port is not None:
+        yield f"the port {ready.port} accepts connections"
+    if ready.file is not None:
+        yield f"the file {ready.file} is there"
+    if ready.topic is not None:
+        yield f"a message has come on {ready.topic}"
+    if ready.service is not None:
+        yield f"{ready.service} is offered"
+    if ready.log is not None:
+        yield f"its output holds “{ready.log}”"
+    if ready.wait is not None:
+        yield f"{ready.wait} have passed"
+
+
+def describe_ready(step: StartStep) -> str:
+    """Return when what starts after a step goes on; empty where that is at once."""
+    within = f", within {step.ready.within}" if step.ready.within is not None else ""
+    if step.once:
+        return f"it has ended{within}"
+    phrases = list(list_ready_phrases(step.ready))
+    return f"{join_words(phrases)}{within}" if phrases else ""
+
+
+def describe_state(step: StartStep) -> str:
+    """Return what brings a lifecycle node into which state; empty for all others."""
+    if step.state is None:
+        return ""
+    if step.manager:
+        return f"{step.state}, by {join_words(list(step.manager))}"
+    return f"{step.state} ({', '.join(words[-1] for words in step.transitions)})" if step.transitions else step.state
+
+
+def describe_process(step: StartStep) -> list[str]:
+    """Return how a step runs: folder, user, variables, whether it is started again."""
+    phrases = [f"in {step.directory}"] if step.directory else []
+    phrases += [f"as the user {step.user}"] if step.user else []
+    phrases += [f"with {name}={value}" for name, value in step.environment.items()]
+    phrases += [_describe_respawn(step.respawn_delay)] if step.respawn else []
+    return phrases
+
+
+def describe_start(node: Node) -> str:
+    """Return what a node says of its start-up, in a line; empty where it says nothing."""
+    start = node.start
+    if start is None:
+        return ""
+    within = f" within {start.ready.within}" if start.ready.within is not None else ""
+    signs = join_words(list(list_ready_phrases(start.ready)))
+    parts = [f"in the phase {start.phase}" if start.phase else ""]
+    parts.append(f"after {join_words([target.id for target in start.after])}" if start.after else "")
+    parts.append(f"once, to its end{within}" if start.once else f"up when {signs}{within}" if signs else "")
+    parts.append(f"brought into the state {start.wanted_state}" if start.wanted_state else "")
+    parts[-1] += f" by {start.by.id}" if start.by and start.wanted_state else ""
+    parts += [f"in {start.directory}" if start.directory else "", f"as the user {start.user}" if start.user else ""]
+    parts += [f"with {name}={value}" for name, value in start.environment.items()]
+    parts.append(_describe_respawn(start.respawn_delay) if start.respawn else "")
+    return "; ".join(part for part in parts if part)
+
+
+def _describe_respawn(delay: Quantity | None) -> str:
+    return f"started again after {delay}" if delay is not None else "started again at once"
