@@ -45,9 +45,13 @@ _FIGURE_LABELS = {
     "frames": "Coordinate frames",
     "steps": "Steps of use cases",
     "programs": "Programs that are no ROS",
+    "promises": "Outputs with promises",
+    "deprecated": "Deprecated outputs and types",
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
-_RARE_FIGURES = frozenset({"composed", "component_types", "made_connections", "frames", "steps", "programs"})
+_RARE_FIGURES = frozenset(
+    {"composed", "component_types", "made_connections", "frames", "steps", "programs", "promises", "deprecated"}
+)
 """Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""
 PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")
 """The steps that progress counts, in order; each is a field of `Progress` and of the history's `Row`."""
