@@ -80,6 +80,13 @@ class Project:
         """How complete the project, each group and each partner are, as counts of components."""
         return size_analysis.measure_progress(self.architecture)
 
+    def in_variant(self, *names: str) -> Project:
+        """Return the project as it stands in a variant, or in several, laid over it in this order.
+
+        Raises `archgen.pipeline.UnknownVariantError` for a variant that it does not have.
+        """
+        return Project(pipeline.stand_in_variants(self.checked, names))
+
     def timing(self) -> Analysis:
         """Analyse rates, response times, loads and traffic. Durations are in ns, rates in Hz; all values are exact."""
         return analyse_architecture(self.architecture)

@@ -8,15 +8,17 @@ project -> syntax -> schema -> compose -> link -> model -> transform -> analyses
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import field
 from pathlib import Path
 
 from archgen import analyses, compose, findings, link, project, schema, transform
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.findings import (
     error_aftermath,
     finding_limit,
@@ -31,6 +33,7 @@ from archgen.link import (
     element_outline,
     interface_sources,
     library_merging,
+    mapping_values,
     named_files,
     parameter_files,
     parameter_reading,
@@ -44,10 +47,13 @@ from archgen.link.interface_sources import TypeMessages
 from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
 from archgen.link.project_types import declare_project_types
 from archgen.link.report_chapters import ReportChapters
+from archgen.link.variants import variant_order
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
+from archgen.model.variant import BASE_NAME
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.project.commit_days import find_commit_day
+from archgen.project.variant_settings import adopt_settings, changes_settings
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
@@ -90,6 +96,12 @@ class CheckedProject:
     """The texts of the parameter files that nodes name and the project holds, by path."""
     packed_parameters: Mapping[str, str] = field(default_factory=dict)
     """The same by the name under which a packed file holds them."""
+    variants: Mapping[str, CheckedProject] = field(default_factory=dict)
+    """The project as it stands in each of its variants, each with the findings that hold there."""
+    own_findings: tuple[Diagnostic, ...] = ()
+    """The findings that hold in the project itself, whatever its variants give; empty where it has no variants."""
+    steps: tuple[str, ...] = ()
+    """The variants that are laid over the project as it stands here, in order."""
 
     @property
     def root(self) -> Path:
@@ -136,11 +148,12 @@ class CheckedProject:
     def pack_project(self) -> PackedProject:
         """Return the whole project as one mapping, with the contents of interface files, chapters and pictures."""
         texts, _ = read_interface_files(self.loaded_project)
+        judged_variants = tuple(self.variants.values())
         attachments = PackedAttachments(
             {name: text for file, text in texts.items() if (name := interface_sources.interface_name_of(file))},
             {path: chapter.text for path, chapter in self.chapters.texts.items()},
             self.chapters.read_pictures(),
-            self.packed_parameters,
+            {**self.packed_parameters, **{k: t for each in judged_variants for k, t in each.packed_parameters.items()}},
         )
         ignores = [ignore for file_ignores in self.loaded_project.ignores.values() for ignore in file_ignores]
         silenced_lines = {(each.span.file, each.span.line) for each in self.silenced_findings}
@@ -148,7 +161,17 @@ class CheckedProject:
         ignores += (
             each for each in self.loaded_project.library_ignores if (each.span.file, each.span.line) in silenced_lines
         )
-        return pack_project(self.merged_table, self.architecture, ignores, attachments, self.silenced_findings)
+        silenced_findings = dict.fromkeys(
+            finding for each in (self, *judged_variants) for finding in each.silenced_findings
+        )
+        return pack_project(
+            self.merged_table,
+            self.architecture,
+            ignores,
+            attachments,
+            tuple(silenced_findings),
+            [each.architecture for each in judged_variants],
+        )
 
 
 class VersionCache:
@@ -164,14 +187,17 @@ class VersionCache:
         self.analysis_memory = AnalysisMemory()
 
 
-def check_project(path: Path | None = None, version_cache: VersionCache | None = None) -> CheckedProject:
+def check_project(
+    path: Path | None = None, version_cache: VersionCache | None = None, variants: Sequence[str] | None = None
+) -> CheckedProject:
     """Read and check the project at a path (a folder, a file, or None for the one around the current folder).
 
-    Raises `project.ProjectNotFoundError` if there is no project.
+    `variants` are those that are asked for: others are not judged; None is all of them. Raises `project.ProjectNotFoundError` if there is no project.
     """
     version_cache = version_cache or VersionCache()
     with _pause_garbage_collection():
-        return judge_project(project.load_project(path, version_cache.parsed_slices), version_cache.analysis_memory)
+        loaded_project = project.load_project(path, version_cache.parsed_slices)
+        return judge_project(loaded_project, version_cache.analysis_memory, variants)
 
 
 def check_at_revision(path: Path | None, revision: str, version_cache: VersionCache | None = None) -> CheckedProject:
@@ -223,20 +249,189 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
         return check_project(file).findings
 
 
-def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory | None = None) -> CheckedProject:
-    """Run all stages on a loaded project, up to its findings.
+def judge_project(
+    loaded_project: LoadedProject,
+    analysis_memory: AnalysisMemory | None = None,
+    variant_names: Sequence[str] | None = None,
+) -> CheckedProject:
+    """Run all stages on a loaded project, up to its findings; of one with variants, on it in each of them, too.
+
+    `variant_names` are those that are asked for, None for all of them.
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
+    analysis_memory = analysis_memory or AnalysisMemory()
+    merged_project = _merge_project(loaded_project)
+    checked_project = _judge_merged(merged_project, analysis_memory)
+    if "variants" not in merged_project.table.entries:
+        return checked_project
+    from archgen.findings import variant_findings
+
+    judge = _VariantJudge(merged_project, checked_project, analysis_memory)
+    variants = {
+        name: judge.judge_steps(judge.list_steps([name]))
+        for name in checked_project.architecture.variants
+        if variant_names is None or name in variant_names
+    }
+    judged_projects = {BASE_NAME: checked_project, **variants}
+    joined_findings = variant_findings.join_findings(
+        {name: each.findings for name, each in judged_projects.items()},
+        {name: each.waiting_rules for name, each in judged_projects.items()},
+    )
+    return replace(
+        checked_project,
+        findings=finding_limit.limit_findings(joined_findings),
+        own_findings=checked_project.findings,
+        variants=variants,
+    )
+
+
+def stand_in_variants(
+    checked_project: CheckedProject, names: Sequence[str], analysis_memory: AnalysisMemory | None = None
+) -> CheckedProject:
+    """Return a checked project as it stands in some of its variants, laid over it in this order; `base` is the project.
+
+    Raises `UnknownVariantError` for a name that is none of them.
+    """
+    _refuse_unknown(checked_project, names)
+    wanted_names = [name for name in names if name != BASE_NAME]
+    if not wanted_names:
+        if not checked_project.architecture.variants:
+            return checked_project
+        from archgen.link.variants.variant_laying import remove_variants
+
+        return replace(
+            checked_project,
+            architecture=replace(checked_project.architecture, variants={}),
+            merged_table=remove_variants(checked_project.merged_table),
+            findings=checked_project.own_findings,
+            variants={},
+        )
+    if len(wanted_names) == 1 and wanted_names[0] in checked_project.variants:
+        return checked_project.variants[wanted_names[0]]
+    merged_project = _merge_project(checked_project.loaded_project)
+    judge = _VariantJudge(merged_project, checked_project, analysis_memory or AnalysisMemory())
+    return judge.judge_steps(judge.list_steps(wanted_names))
+
+
+def keep_variant_findings(checked_project: CheckedProject, names: Sequence[str]) -> CheckedProject:
+    """Return a checked project with the findings that hold in some of its variants; `base` is the project itself.
+
+    Raises `UnknownVariantError` for a name that is none of them.
+    """
+    _refuse_unknown(checked_project, names)
+    kept = tuple(each for each in checked_project.findings if not each.variants or set(names) & set(each.variants))
+    return replace(checked_project, findings=kept)
+
+
+def list_variant_names(path: Path | None) -> tuple[str, ...]:
+    """Return the variants of the project at a path, without judging it. Raises `project.ProjectNotFoundError`."""
+    table, _ = slice_merging.merge_documents(project.load_project(path).documents)
+    return tuple(mapping_values.get_mapping(table, "variants").entries)
+
+
+def _refuse_unknown(checked_project: CheckedProject, names: Sequence[str]) -> None:
+    known_names = (BASE_NAME, *checked_project.architecture.variants)
+    for name in names:
+        if name not in known_names:
+            raise UnknownVariantError(name, known_names)
+
+
+class UnknownVariantError(Exception):
+    """A variant is asked for that the project does not have."""
+
+    def __init__(self, name: str, known_names: Sequence[str]) -> None:
+        """Take the name, and the variants that there are."""
+        help_line = (
+            did_you_mean(name, known_names) or f"there are {join_words([f'`{each}`' for each in known_names], 'and')}"
+        )
+        super().__init__(f"no variant named `{name}`: {help_line}")
+
+
+class _VariantJudge:
+    """Judges a project in its variants; steps that several have in common are laid over it once."""
+
+    def __init__(
+        self, merged_project: _MergedProject, checked_project: CheckedProject, analysis_memory: AnalysisMemory
+    ) -> None:
+        from archgen.link.variants import variant_laying, variant_order
+
+        loaded_project = merged_project.loaded_project
+        self._merged_project = merged_project
+        self._memory = analysis_memory
+        self._variants = checked_project.architecture.variants
+        self._written = mapping_values.get_mapping(merged_project.table, "variants").entries
+        self._order = variant_order
+        self._layer = variant_laying.VariantLayer(
+            loaded_project.lost_keys, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
+        )
+        base = replace(merged_project, table=variant_laying.remove_variants(merged_project.table))
+        self._merged: dict[tuple[str, ...], _MergedProject] = {(): base}
+        self._checked: dict[tuple[str, ...], CheckedProject] = {(): checked_project}
+
+    def list_steps(self, names: Sequence[str]) -> tuple[str, ...]:
+        return self._order.list_steps(self._variants, names)
+
+    def judge_steps(self, steps: tuple[str, ...]) -> CheckedProject:
+        if steps not in self._checked:
+            merged_project = self._lay_steps(steps)
+            self._checked[steps] = replace(_judge_merged(merged_project, self._memory), steps=steps)
+        return self._checked[steps]
+
+    def _lay_steps(self, steps: tuple[str, ...]) -> _MergedProject:
+        for count in range(1, len(steps) + 1):
+            if steps[:count] not in self._merged:
+                self._merged[steps[:count]] = self._lay_step(steps[: count - 1], steps[count - 1])
+        return self._merged[steps]
+
+    def _lay_step(self, steps: tuple[str, ...], name: str) -> _MergedProject:
+        before = self._merged[steps]
+        laid = self._layer.lay_variant(before.table, self._written[name], lambda: self.judge_steps(steps).architecture)
+        loaded_project = before.loaded_project
+        if changes_settings(self._written[name]):
+            loaded_project = adopt_settings(loaded_project, laid.root)
+        return replace(
+            before,
+            loaded_project=loaded_project,
+            table=laid.root,
+            diagnostics=(*before.diagnostics, *laid.diagnostics),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _MergedProject:
+    """A loaded project whose slices and libraries are one table, and what was found on the way."""
+
+    loaded_project: LoadedProject
+    table: MappingNode
+    diagnostics: tuple[Diagnostic, ...]
+    reading_errors: tuple[Diagnostic, ...]
+    damaged_elements: frozenset[str]
+
+
+def _merge_project(loaded_project: LoadedProject) -> _MergedProject:
     # These errors mean that something is missing in the architecture: the findings that they explain wait, so that one
     # mistake is reported once.
-    reading_errors = _list_structural_errors(loaded_project.diagnostics)
+    reading_errors = tuple(_list_structural_errors(loaded_project.diagnostics))
     damaged_elements = frozenset(error.element for error in reading_errors if error.element)
     merged_table, merge_findings = slice_merging.merge_documents(
         loaded_project.documents, loaded_project.lost_keys, damaged_elements
     )
     merged_table, library_findings = library_merging.merge_libraries(merged_table, loaded_project.libraries)
-    merge_findings += library_findings
+    variant_findings = (
+        tuple(variant_order.check_variant_order(merged_table, loaded_project.lost_keys))
+        if "variants" in merged_table.entries
+        else ()
+    )
+    all_findings = (*merge_findings, *library_findings, *variant_findings)
+    return _MergedProject(loaded_project, merged_table, all_findings, reading_errors, damaged_elements)
+
+
+def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:
+    """Run the stages behind merging."""
+    loaded_project, merged_table = merged_project.loaded_project, merged_project.table
+    merge_findings, reading_errors = merged_project.diagnostics, merged_project.reading_errors
+    damaged_elements = merged_project.damaged_elements
     expansion = compose.expand_project(
         merged_table, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
     )
@@ -265,7 +460,7 @@ def judge_project(loaded_project: LoadedProject, analysis_memory: AnalysisMemory
     commit_day = find_commit_day(loaded_project.files, architecture)
     if commit_day is not None:
         architecture = replace(architecture, commit_day=commit_day)
-    analysis = analyses.analyse_timing(architecture, analysis_memory or AnalysisMemory())
+    analysis = analyses.analyse_timing(architecture, analysis_memory)
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
     missing_pictures = chapter_pictures.find_missing_pictures(
         project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources

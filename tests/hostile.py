@@ -49,11 +49,12 @@ ELEMENTS = {
     "chains": "chain",
     "views": "view",
     "policies": "policy",
+    "variants": "variant",
     "properties": "property_declaration",
 }
 NAMES = {
     *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
-    *(("view", "show"), ("forbid", "from"), ("forbid", "to")),
+    *(("view", "show"), ("forbid", "from"), ("forbid", "to"), ("variant", "without")),
 }
 """Text by the schema, but with a grammar of their own."""
 
@@ -136,6 +137,15 @@ def project(text: str) -> dict[str, Any]:
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
         "policies": {"q": {"forbid": {"from": "b.y", "to": "a.x"}}},
+        "variants": {
+            "s": {
+                "without": "b.w",
+                "changes": {
+                    "nodes": {"n": {"title": text, "parameters": {text[:60]: text}}},
+                    "groups": {"a": {"title": text}},
+                },
+            }
+        },
         "properties": {"declared": {}, "chosen": {"of": ["component"], "choices": [text]}},
         "glossary": {kind[:90].strip(): text, "functionality": text},
     }

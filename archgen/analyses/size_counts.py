@@ -58,6 +58,7 @@ class ArchitectureSize:
     made_connections: int = 0
     """Those among `connections` that `autoconnect` made."""
     frames: int = 0
+    variants: int = 0
     steps: int = 0
     """The steps of all use cases."""
     programs: int = 0
@@ -132,6 +133,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         deprecated=sum(each.deprecated is not None for each in arch.outputs.values())
         + sum(each.deprecated is not None for each in arch.types.values())
         + sum(each.deprecated is not None for each in arch.component_types.values()),
+        variants=len(arch.variants),
         steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
         programs=sum("program" in node.kinds for node in arch.nodes.values()),
     )

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 @click.command("build")
 @shared_options.project_argument
+@shared_options.variant_option
 @shared_options.output_option("The folder", "")
 @click.option(
     "--backend",

@@ -31,6 +31,11 @@ _MAX_CURED_LINES = 20
     default="text",
     show_default=True,
 )
+@click.option(
+    "--variant",
+    metavar="NAMES",
+    help="Show only what holds in these variants: `simulation`, `base,home`; `base` is the project itself.",
+)
 @shared_options.strict_option
 @click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and nothing else.")
 @click.option(
@@ -46,6 +51,7 @@ def command(  # noqa: PLR0913 - one for each option
     *,
     project: Path | None,
     form: str,
+    variant: str | None,
     strict: bool,
     quiet: bool,
     baseline: Path | None,
@@ -56,13 +62,17 @@ def command(  # noqa: PLR0913 - one for each option
 
     PROJECT is a folder or a single file; left out, it is the project around the current folder. The exit status is 0
     without errors, 1 with errors (with --strict also with warnings, and with findings of the baseline that are cured),
-    2 for wrong usage. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
+    2 for wrong usage. A project with variants is checked in each of them; a finding that does not hold in all of them says
+    in which. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
     """
     if update_baseline:
         if form != "text" or changed_since is not None:
             msg = (
                 "--update-baseline takes in all findings of now and says what it wrote: no --format, no --changed-since"
             )
+            raise click.UsageError(msg)
+        if variant is not None:
+            msg = "--update-baseline takes in the findings of all variants: no --variant"
             raise click.UsageError(msg)
         _update_baseline(command_support.check_or_exit(project), baseline)
     if baseline is not None and not os.path.lexists(baseline):
@@ -73,6 +83,8 @@ def command(  # noqa: PLR0913 - one for each option
 
     version_cache = VersionCache()
     checked_project = command_support.check_or_exit(project, version_cache)
+    if variant is not None:
+        checked_project = _keep_variants(checked_project, variant)
     earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
 
     reported = check_findings.report_findings(checked_project, baseline, earlier_project)
@@ -92,6 +104,17 @@ def command(  # noqa: PLR0913 - one for each option
     sys.exit(
         command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
     )
+
+
+def _keep_variants(checked_project: CheckedProject, text: str) -> CheckedProject:
+    """Return a checked project with the findings that hold in some of its variants."""
+    from archgen import pipeline
+
+    names = shared_options.split_variants(text)
+    try:
+        return pipeline.keep_variant_findings(checked_project, names)
+    except pipeline.UnknownVariantError as error:
+        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _renew_editor_schema(checked_project: CheckedProject) -> None:

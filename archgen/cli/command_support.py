@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
+from archgen.cli.shared_options import VARIANT_KEY
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, sort_gravest_first
 
 if TYPE_CHECKING:
@@ -23,14 +24,28 @@ if TYPE_CHECKING:
 
 
 def check_or_exit(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
-    """Check a project. It is wrong usage if there is none."""
+    """Check a project, as it stands in the variants that `--variant` names. It is wrong usage if there is none."""
     from archgen import pipeline
     from archgen.project import ProjectNotFoundError
 
+    context = click.get_current_context(silent=True)
+    names = context.meta.get(VARIANT_KEY, ()) if context else ()
     try:
-        return pipeline.check_project(project, version_cache)
+        checked_project = pipeline.check_project(project, version_cache, names or None)
     except ProjectNotFoundError as error:
         raise click.UsageError(str(error)) from None
+    return stand_or_exit(checked_project, names) if names else checked_project
+
+
+def stand_or_exit(checked_project: CheckedProject, names: Sequence[str]) -> CheckedProject:
+    """Return a checked project as it stands in variants. It is wrong usage if it has one of them not."""
+    from archgen import pipeline
+    from archgen.diagnostics.safe_text import make_visible
+
+    try:
+        return pipeline.stand_in_variants(checked_project, names)
+    except pipeline.UnknownVariantError as error:
+        raise click.UsageError(make_visible(str(error))) from None
 
 
 def find_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:

@@ -17,6 +17,7 @@ DIAGRAM_FORMATS = ("svg", "png", "pdf", "dot")
 
 @click.command("diagram")
 @shared_options.project_argument
+@shared_options.variant_option
 @shared_options.output_option("The folder", "diagrams")
 @click.option(
     "--format",

@@ -31,6 +31,32 @@ def _read_versions(
         return read_versions(before, after, project)
 
 
+def _read_variants(
+    before: str | None, after: str | None, project: Path | None, variants: Sequence[str]
+) -> tuple[ProjectVersion, ProjectVersion]:
+    """Read two versions as they stand in a variant, or one as it stands in two."""
+    from archgen.products.compared_versions import read_variant, read_version
+
+    if len(variants) > 2:  # noqa: PLR2004 - a comparison has two sides
+        msg = "`--variant` once is that of both versions; twice they are compared: not more often"
+        raise click.UsageError(msg)
+    names = [shared_options.split_variants(text) for text in variants]
+    if len(names) == 1:
+        return tuple(  # type: ignore[return-value]
+            read_variant(version, command_support.stand_or_exit(version.checked_project, names[0]), names[0])
+            for version in _read_versions(before, after, project)
+        )
+    if after is not None:
+        msg = "two variants are those of one version: name one, or none for the working tree"
+        raise click.UsageError(msg)
+    with command_support.explain_missing_versions():
+        version = read_version(before, project)
+    first, second = (
+        read_variant(version, command_support.stand_or_exit(version.checked_project, each), each) for each in names
+    )
+    return first, second
+
+
 def _select_changes(
     comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion, selector: str | None
 ) -> Comparison:
@@ -167,6 +193,13 @@ def _write_output(document: str | bytes, output: Path | None) -> None:
     "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
 )
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: standard output]")
+@click.option(
+    "--variant",
+    "variants",
+    metavar="NAMES",
+    multiple=True,
+    help="Compare both as they stand in a variant; given twice, two variants of one version: `--variant base --variant sim`.",
+)
 @click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
 @shared_options.select_option
 @shared_options.project_option
@@ -178,6 +211,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     breaking: bool,
     output: Path | None,
     exit_code: bool,
+    variants: tuple[str, ...],
     select: str | None,
     project: Path | None,
 ) -> None:
@@ -186,7 +220,8 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     A and B are revisions of git (`main`, `v1.2`, `HEAD~3`), folders, or single or packed files. B left out is the working
     tree; A left out is the commit at which the branch left its main line. `A..B` and `A...B` mean what they mean to git.
     Order, comments, formatting and moves between files are no changes. In a folder that only holds projects, such as the
-    top of a repository, each of them has a line: what changed, and in which library.
+    top of a repository, each of them has a line: what changed, and in which library. With --variant twice, A is the version
+    whose variants are compared, left out the working tree.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
     from archgen.products import compared_versions, repository_comparison
@@ -194,7 +229,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     project = project or _find_meant_project(before, after)
     projects = _list_compared_projects(before, after, project)
     if projects:
-        if form != "text" or select is not None or output is not None:
+        if form != "text" or select is not None or output is not None or variants:
             msg = f"this folder only holds projects: name one with -C, such as `-C {projects[0].folder}`"
             raise click.UsageError(msg)
         with command_support.explain_missing_versions():
@@ -202,7 +237,10 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
         _print_comparisons(comparisons)
         is_refused = breaking and any(each.is_refused for each in comparisons)
         sys.exit(1 if is_refused or (exit_code and any(each.has_changes for each in comparisons)) else 0)
-    old_version, new_version = _read_versions(before, after, project)
+    if variants:
+        old_version, new_version = _read_variants(before, after, project, variants)
+    else:
+        old_version, new_version = _read_versions(before, after, project)
     comparison = _select_changes(
         compared_versions.compare_named_versions(old_version, new_version), old_version, new_version, select
     )

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 @shared_options.keep_going_option
 @shared_options.trust_option
 @shared_options.project_option
+@shared_options.variant_option
 def command(  # noqa: PLR0913 - one for each option
     *,
     name: str,

@@ -21,6 +21,7 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx")
 
 @click.command("interfaces")
 @shared_options.project_argument
+@shared_options.variant_option
 @click.option(
     "--between", "pair", nargs=2, metavar="PARTNER PARTNER", required=True, help="The ids of the two partners."
 )

@@ -34,6 +34,7 @@ LISTABLE_KINDS = (
     "frames",
     "start_up",
     "component_types",
+    "variants",
     "backends",
 )
 
@@ -50,6 +51,7 @@ LISTABLE_KINDS = (
 )
 @click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
 @shared_options.project_option
+@shared_options.variant_option
 def command(selector: tuple[str, ...], sort: str, library: str | None, form: str, project: Path | None) -> None:
     """List what SELECTOR names; without one, everything.
 

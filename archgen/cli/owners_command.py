@@ -23,6 +23,7 @@ _TEXT_WIDTH = 96
 
 @click.command("owners")
 @shared_options.project_argument
+@shared_options.variant_option
 @click.option("--format", "form", type=click.Choice(["text", "codeowners"]), default="text", show_default=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: the terminal]")
 @shared_options.keep_going_option

@@ -11,6 +11,7 @@ from archgen.cli import command_support, shared_options
 
 @click.command("pack")
 @shared_options.project_argument
+@shared_options.variant_option
 @shared_options.output_option("The file", "packed.yaml")
 @click.option(
     "--resolved",

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 @click.command("report")
 @shared_options.project_argument
+@shared_options.variant_option
 @shared_options.output_option("The file", "report.docx")
 @click.option("--format", "form", type=click.Choice(["docx", "pdf", "xlsx"]), default="docx", show_default=True)
 @click.option(

@@ -38,6 +38,45 @@ select_option = click.option(
     metavar="WORDS",
     help="Show only what a selector names, neighbours grey: `owner:certh`, `sensing+`, `a..b`, `tag:safety -x`.",
 )
+VARIANT_KEY = "archgen.variants"
+"""Where the variants that a verb is asked for stand in click's context."""
+
+
+def split_variants(text: str | None) -> tuple[str, ...]:
+    """Return the names in a list with commas, each once."""
+    return tuple(dict.fromkeys(name for word in (text or "").split(",") if (name := word.strip())))
+
+
+def _keep_variants(context: click.Context, _parameter: click.Parameter, text: str | None) -> None:
+    names = split_variants(text)
+    if text is not None and not names:
+        msg = "`--variant` takes the ids of variants, such as `simulation`"
+        raise click.UsageError(msg)
+    context.meta[VARIANT_KEY] = names
+
+
+def _complete_variants(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the last of several variants of the project around the current folder."""
+    from archgen import pipeline
+    from archgen.project.project_search import ProjectNotFoundError
+
+    try:
+        names = pipeline.list_variant_names(None)
+    except ProjectNotFoundError:
+        return []
+    head, comma, last_name = incomplete.rpartition(",")
+    return [f"{head}{comma}{name}" for name in names if name.startswith(last_name)]
+
+
+variant_option = click.option(
+    "--variant",
+    metavar="NAMES",
+    callback=_keep_variants,
+    expose_value=False,
+    shell_complete=_complete_variants,
+    help="Take the project as it stands in a variant; in several, laid over it in this order: `indoor,simulation`.",
+)
+"""The variant that a verb looks at: `command_support.check_or_exit` reads it off click's context."""
 level_option = click.option(
     "--level",
     type=click.Choice(["functional", "implementation"]),

@@ -23,6 +23,7 @@ _TEXT_WIDTH = 96
 @click.command("show")
 @click.argument("words", nargs=-1, required=True)
 @shared_options.project_option
+@shared_options.variant_option
 def command(words: tuple[str, ...], project: Path | None) -> None:
     """Show each element that WORDS name: ports, readers, nodes, place in the files.
 

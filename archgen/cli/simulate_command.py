@@ -16,6 +16,7 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 
 @click.command("simulate")
 @shared_options.project_argument
+@shared_options.variant_option
 @click.option("--seconds", type=click.IntRange(1, 86_400), default=60, show_default=True, help="Simulated time.")
 @click.option("--seeds", type=click.IntRange(1, 10_000), default=20, show_default=True, help="How many runs.")
 @click.option("--seed", type=click.IntRange(0), metavar="N", help="Only the run with this number, as one of --seeds.")

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 @click.command("site")
 @shared_options.project_argument
+@shared_options.variant_option
 @shared_options.output_option("The folder", "site")
 @shared_options.select_option
 @shared_options.level_option

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 @click.command("stats")
 @shared_options.project_argument
+@shared_options.variant_option
 @click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
 @click.option("--history", is_flag=True, help="Show how size, progress and findings grew, from git's history.")
 @click.option(

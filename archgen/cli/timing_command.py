@@ -33,6 +33,7 @@ class TimingRequest:
 
 @click.command("timing")
 @shared_options.project_argument
+@shared_options.variant_option
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
 @click.option(

@@ -56,6 +56,10 @@ class InstanceOverlay:
         """Return a type with another made from it laid over: it may add ports, components and parameters."""
         return self._lay_component(base, derived, type_name, is_open=True)
 
+    def lay_components(self, base: MappingNode | None, over: MappingNode, holder_id: str) -> MappingNode:
+        """Return components with others laid over them by their ids; new ones are added."""
+        return self._lay_parts(base, over, "component", holder_id, is_open=True)
+
     def lay_over_instance(self, base: MappingNode, instance: MappingNode, instance_id: str) -> MappingNode:
         """Return a type's body with an instance laid over, which adds neither ports nor components."""
         return self._lay_component(base, instance, instance_id, is_open=False)
@@ -100,7 +104,7 @@ class InstanceOverlay:
                 is_instance = not {"is", "same_as"}.isdisjoint({*body.entries, *own.entries})
                 value = self._lay_component(body, own, inner_id, is_open=is_open or is_instance)
             else:
-                value = _lay_mapping(body, own)
+                value = lay_mapping(body, own)
             entries[entry.key] = MappingEntry(entry.key, below.key_span, value)
         return MappingNode(entries, base.span if base else over.span)
 
@@ -133,7 +137,7 @@ def _diagnose_unknown_part(
     )
 
 
-def _lay_mapping(base: MappingNode, over: MappingNode, holder_key: str = "") -> MappingNode:
+def lay_mapping(base: MappingNode, over: MappingNode, holder_key: str = "") -> MappingNode:
     """Return a mapping with another laid over it, key by key, to any depth. `holder_key` is the key that holds it."""
     entries = dict(base.entries)
     for entry in over:
@@ -155,7 +159,7 @@ def _lay_entry(entries: dict[str, MappingEntry], entry: MappingEntry, *, has_ids
     elif entry.key == "qos" and "profile" in entry.value.entries:
         entries[entry.key] = entry  # a profile is a value for every key of the quality of service
     else:
-        value = _lay_mapping(below.value, entry.value, entry.key)
+        value = lay_mapping(below.value, entry.value, entry.key)
         if entry.key == "timing":
             _drop_period(value, entry.value)
         entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
@@ -174,7 +178,7 @@ def lay_data(base: MappingNode, over: MappingNode) -> MappingNode:
 
 def lay_node(base: MappingNode, over: MappingNode) -> MappingNode:
     """Lay a node over another. Its parameters are data: each whole one replaces the other."""
-    node = _lay_mapping(base, over)
+    node = lay_mapping(base, over)
     base_parameters, parameters = base.get("parameters"), over.entries.get("parameters")
     if parameters and isinstance(base_parameters, MappingNode) and isinstance(parameters.value, MappingNode):
         entries = {**base_parameters.entries, **parameters.value.entries}

@@ -48,6 +48,8 @@ class ComponentShell:
     """The id of the component around it, None where it stands directly in its group."""
     entry: MappingEntry
     children: tuple[str, ...] = ()
+    parts: dict[str, MappingEntry] = field(default_factory=dict)
+    """What stands directly inside, by id, as it is written there or in the type: instances are not written out."""
 
 
 @dataclass(slots=True)
@@ -321,7 +323,10 @@ class _ProjectExpander:
             return
         self._report_duplicates(component_id, expansion)
         children = tuple(f"{component_id}.{name}" for name in expansion.parts)
-        self._result.shells[component_id] = ComponentShell(component_id, group_id, parent, entry, children)
+        written_parts = {name: inner_part for name, (inner_part, _) in expansion.parts.items()}
+        self._result.shells[component_id] = ComponentShell(
+            component_id, group_id, parent, entry, children, written_parts
+        )
         for name, (inner_part, inner_expansion) in expansion.parts.items():
             self._flatten_part(group_id, inner_part, inner_expansion, f"{path}.{name}", component_id, leaves)
 

@@ -80,6 +80,8 @@ class Diagnostic:
     help: str | None = None
     element: str | None = None
     asked_name: AskedName | None = None
+    variants: tuple[str, ...] = ()
+    """The variants in which it holds, `base` for the project itself; empty where it holds in all that were judged."""
 
     @property
     def effective_severity(self) -> Severity:

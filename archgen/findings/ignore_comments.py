@@ -157,6 +157,7 @@ def find_first_lines(architecture: Architecture) -> Mapping[str, LineSet]:
         ),
         *(model.hosts, model.containers, model.resources, model.links, model.chains, model.views, model.policies),
         model.frames,
+        model.variants,
     )
     for elements in element_maps:
         for key, element in elements.items():

@@ -10,6 +10,7 @@ from archgen.link.named_files import MISSING_FILE
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
+from archgen.link.variants import variant_rules
 from archgen.link.verification_files import MISSING_VERIFICATION
 
 RULES = (
@@ -17,6 +18,7 @@ RULES = (
     *reference_rules.RULES,
     *composition_rules.RULES,
     *type_rules.RULES,
+    *variant_rules.RULES,
     DUPLICATE_FRAME,
     MISSING_CHAPTER,
     MISSING_PICTURE,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from collections.abc import Sequence
 
 from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -53,14 +54,14 @@ def _merge_content(written: MappingNode, library: LoadedLibrary) -> tuple[Mappin
     return merge_documents((*own_documents, *library.documents))
 
 
-def keep_used_libraries(root: MappingNode, architecture: Architecture) -> MappingNode:
-    """Return a merged project whose libraries hold only what it uses, and no paths."""
+def keep_used_libraries(root: MappingNode, architectures: Sequence[Architecture]) -> MappingNode:
+    """Return a merged project whose libraries hold only what it uses, also in its variants, and no paths."""
     if "libraries" not in root.entries:
         return root
     libraries = {
         library.key: MappingEntry(library.key, library.key_span, body)
         for library in list_libraries(root)
-        if (body := _keep_used_types(library, architecture)).entries
+        if (body := _keep_used_types(library, architectures)).entries
     }
     section = root.entries["libraries"]
     kept_section = MappingEntry("libraries", section.key_span, MappingNode(libraries, section.value.span))
@@ -70,18 +71,21 @@ def keep_used_libraries(root: MappingNode, architecture: Architecture) -> Mappin
     return MappingNode(entries, root.span)
 
 
-def _keep_used_types(library: MappingEntry, architecture: Architecture) -> MappingNode:
+def _keep_used_types(library: MappingEntry, architectures: Sequence[Architecture]) -> MappingNode:
     body = mapping_values.get_body(library)
     component_types = [
         entry
         for entry in mapping_values.get_mapping(body, "component_types")
-        if f"{library.key}.{entry.key}" in architecture.component_types
+        if any(f"{library.key}.{entry.key}" in each.component_types for each in architectures)
     ]
     types = [
         entry
         for entry in mapping_values.get_mapping(body, "types")
-        if (used_type := architecture.types.get(mapping_values.normalise_type_name(entry.key)))
-        and used_type.library == library.key
+        if any(
+            (used_type := each.types.get(mapping_values.normalise_type_name(entry.key)))
+            and used_type.library == library.key
+            for each in architectures
+        )
     ]
     used_entries = {
         name: MappingEntry(name, body.entries[name].key_span, MappingNode({e.key: e for e in entries}, body.span))

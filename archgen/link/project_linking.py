@@ -16,6 +16,7 @@ from archgen.link.declare.node_declaration import NodeContext, declare_nodes, re
 from archgen.link.declare.requirement_declaration import declare_requirements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
+from archgen.link.declare.variant_declaration import declare_variants
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
@@ -51,7 +52,7 @@ def link_project(  # noqa: PLR0913 - all by name
     diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
-    resolver = _make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
+    resolver = make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
     parameters = HandedParameters(element_outline, diagnostics)
     declared_groups = declare_groups(element_outline, resolver, types, parameters)
     components, shells = declared_groups.components, declared_groups.shells
@@ -106,6 +107,7 @@ def link_project(  # noqa: PLR0913 - all by name
         chains=chains,
         views=section_declaration.declare_views(root),
         policies=section_declaration.declare_policies(root),
+        variants=declare_variants(root),
         properties=properties,
         glossary=glossary,
         review=section_declaration.declare_review(root),
@@ -119,13 +121,14 @@ def link_project(  # noqa: PLR0913 - all by name
     return architecture, tuple(diagnostics)
 
 
-def _make_resolver(
+def make_resolver(
     root: MappingNode,
     element_outline: ElementOutline,
     diagnostics: list[Diagnostic],
-    lost_keys: frozenset[str],
-    damaged_elements: frozenset[str],
+    lost_keys: frozenset[str] = frozenset(),
+    damaged_elements: frozenset[str] = frozenset(),
 ) -> ReferenceResolver:
+    """Return what resolves the references of a merged project in which all types are written out."""
     spans: dict[str, dict[str, Span]] = {
         "group": {name: entry.key_span for name, entry in element_outline.groups.items()},
         "component": {

@@ -104,16 +104,19 @@ class _CommentPlacer:
         return comments
 
 
-def pack_project(
+def pack_project(  # noqa: PLR0913, PLR0917 - all that a packed file is made of
     root: MappingNode,
     architecture: Architecture,
     ignores: Iterable[IgnoreComment],
     attachments: PackedAttachments,
     silenced_findings: Iterable[Diagnostic] = (),
+    variant_architectures: Iterable[Architecture] = (),
 ) -> PackedProject:
-    """Return the packed project. `silenced_findings` are what the comments silence."""
+    """Return the packed project. `silenced_findings` are what the comments silence; what only a variant uses of a
+    library is packed, too.
+    """
     placer = _CommentPlacer(ignores, silenced_findings)
-    root = keep_used_libraries(root, architecture)
+    root = keep_used_libraries(root, (architecture, *variant_architectures))
     project_data = _pack_mapping(root, (), placer, is_raw=False)
     packed_project = PackedProject(comments=placer.place_comments())
     project_identity = {"id": architecture.project.id, "title": architecture.project.title}

@@ -85,6 +85,8 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
 def _is_parameter(path: KeyPath) -> bool:
     # `nodes, id, parameters, name` or `ros, parameters, name`: a parameter is one value even if it is a mapping, and is
     # never merged. At components it is a declaration, which several files may complete.
+    if path[0] == "variants" and path[2:3] == ("changes",):
+        path = path[3:]
     return path[-2:-1] == ("parameters",) and (path[:1], len(path)) in {(("nodes",), 4), (("ros",), 3)}
 
 
@@ -156,19 +158,19 @@ def list_supported_elements(groups: MappingNode) -> Iterator[KeyPath]:
 
 def _list_supported_below(path: KeyPath, holder: YamlNode) -> Iterator[KeyPath]:
     for component in _components_of(holder):
-        if not _declares_itself(component.value):
+        if not declares_itself(component.value):
             yield (*path, component.key)
         # What an instance has inside is declared by its type: writing out types judges that.
         elif _INSTANCE_KEYS.isdisjoint(component.value.entries if isinstance(component.value, MappingNode) else ()):
             yield from _list_supported_below((*path, component.key), component.value)
 
 
-def _declares_itself(body: YamlNode) -> bool:
+def declares_itself(body: YamlNode) -> bool:
     """Whether a component's body declares it: it has more than supporting keys, or a component inside that declares itself."""
     if not isinstance(body, MappingNode):
         return True
     own_keys = body.entries.keys() - _SUPPORTING_KEYS - {"components"}
-    return (bool(own_keys) and body.declares) or any(_declares_itself(inner.value) for inner in _components_of(body))
+    return (bool(own_keys) and body.declares) or any(declares_itself(inner.value) for inner in _components_of(body))
 
 
 def _components_of(group: YamlNode) -> Iterable[MappingEntry]:

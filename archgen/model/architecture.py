@@ -21,6 +21,7 @@ from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.source_repository import SourceRepository
 from archgen.model.use_case_steps import Actor, Step
+from archgen.model.variant import Variant
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -206,6 +207,8 @@ class Architecture:
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
+    variants: Mapping[str, Variant] = field(default_factory=dict)
+    """The variants that the project describes; none in the project as it stands in one of them."""
     properties: Mapping[str, PropertyDeclaration] = field(default_factory=dict)
     """What the project says of properties, by id; others are free."""
     glossary: Mapping[str, GlossaryTerm] = field(default_factory=dict)

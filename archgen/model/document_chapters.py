@@ -8,6 +8,7 @@ GENERATED_CHAPTERS = (
     "overview",
     "groups",
     "frames",
+    "variants",
     "deployment",
     "start_up",
     "timing",

@@ -185,7 +185,11 @@ class SelectorEvaluator:
 
     def _evaluate_atom(self, atom: SelectorAtom, problems: list[SelectorProblem]) -> SelectorHit:
         if atom.key is not None:
-            hit = find_by_key(self.architecture, atom.key, atom.value, self.findings)
+            hit = (
+                self._find_by_variant(atom.value)
+                if atom.key == "variant"
+                else find_by_key(self.architecture, atom.key, atom.value, self.findings)
+            )
             # Only a warning, unlike a path that names nothing: a tag may be selected before anything has it.
             if not hit.components and not hit.nodes:
                 message = f"nothing has `{atom.key}:{atom.value}`"
@@ -200,6 +204,25 @@ class SelectorEvaluator:
                 problems.append(SelectorProblem(f"nothing fits `{atom.value}`", atom.start, atom.end, "warning"))
             return hit
         return self._evaluate_path(atom, problems)
+
+    def _find_by_variant(self, pattern: str) -> SelectorHit:
+        """Return what is different in some variants: what they take out, drop keys of, or write to."""
+        variants = [each for name, each in self.architecture.variants.items() if matches_wildcard(pattern, name)]
+        components, nodes = set[str](), set[str]()
+        for variant in variants:
+            for path in (*variant.drop, *(change.path for change in variant.changes)):
+                component_id, node_id = _find_written_element(path)
+                components.update(each for each in self.architecture.leaves_of(component_id) if each)
+                nodes.add(node_id)
+            # A `without` that names variants itself would go in a circle.
+            if variant.without and "variant:" not in variant.without:
+                selection, _ = self.evaluate(variant.without)
+                components |= selection.components
+                nodes |= selection.nodes
+        return SelectorHit(
+            frozenset(components & self.architecture.components.keys()),
+            frozenset(nodes & self.architecture.nodes.keys()),
+        )
 
     def _evaluate_path(self, atom: SelectorAtom, problems: list[SelectorProblem]) -> SelectorHit:
         """Resolve a path by the rules of references. If no group, component or output fits, try nodes, then inputs."""
@@ -280,3 +303,17 @@ def _matches_ending(path_parts: list[str], pattern_parts: list[str]) -> bool:
     return len(path_parts) >= len(pattern_parts) and all(
         map(matches_wildcard, pattern_parts, path_parts[-len(pattern_parts) :])
     )
+
+
+def _find_written_element(path: str) -> tuple[str, str]:
+    """Return the component and the node that a path of keys leads into, by id; empty for none."""
+    keys = path.split(".")
+    if keys[0] == "nodes" and len(keys) > 1:
+        return "", keys[1]
+    if keys[0] != "groups":
+        return "", ""
+    ids, rest = keys[1:2], keys[2:]
+    while len(rest) > 1 and rest[0] == "components":
+        ids.append(rest[1])
+        rest = rest[2:]
+    return (".".join(ids), "") if len(ids) > 1 else ("", "")

@@ -34,6 +34,7 @@ SELECTOR_KEYS = (
     "library",
     "parameter",
     "property",
+    "variant",
 )
 ALL_STEPS = -1
 """Any number of steps."""
@@ -103,6 +104,11 @@ def parse_selector(text: str) -> ParsedSelector:
     if not words and not problems:
         problems.append(SelectorProblem("the selector is empty", 0, len(text), help=_FORMS_HELP))
     return ParsedSelector(tuple(words), tuple(problems))
+
+
+def split_words(text: str) -> Iterator[str]:
+    """Yield the words of a selector as they are written, with their `-`."""
+    return (match[0] for match in _WORD_PATTERN.finditer(text))
 
 
 def _parse_word(text: str, start: int, end: int) -> SelectorWord | SelectorProblem:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from archgen.compare import ArchitectureVersion, Comparison, compare_versions
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.link.type_patterns import link_type_patterns
+from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project.project_search import find_project
 from archgen.syntax.yaml_tree import MappingNode
@@ -182,6 +184,12 @@ def _find_fork(left: str, right: str, path: Path | None) -> git.BaseCommit:
 def _is_path(version_text: str) -> bool:
     """Whether a text can only be a path, judged by its form."""
     return version_text.startswith(_PATH_PREFIXES) or version_text in {".", ".."} or os.path.isabs(version_text)  # noqa: PTH117 - Windows' drives
+
+
+def read_variant(version: ProjectVersion, standing_project: CheckedProject, names: Sequence[str]) -> ProjectVersion:
+    """Return a version as it stands in variants, under a name that says so."""
+    suffix = f"variant {', '.join(names)}" if tuple(names) != (BASE_NAME,) else "without variants"
+    return replace(version, name=f"{version.name}, {suffix}", checked_project=standing_project)
 
 
 def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Comparison:

@@ -28,6 +28,7 @@ from archgen.views.changes.site_changes import mark_drawings
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
+from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.tables import project_growth, statistics_tables
 from archgen.views.timing.timing_lookup import complete_with_chains
 
@@ -98,9 +99,22 @@ def make_views(
     edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)
     signed_tags = list_signed_tags(checked_project) if options.show_history else {}
     edition = replace(
-        edition, changes=options.changes, date=_find_date(checked_project, options), signed_tags=signed_tags
+        edition,
+        variants=_find_differences(checked_project),
+        changes=options.changes,
+        date=_find_date(checked_project, options),
+        signed_tags=signed_tags,
     )
     return ProjectViews(lookup, edition, all_drawings)
+
+
+def _find_differences(checked_project: CheckedProject) -> Mapping[str, VariantDifference]:
+    """Return what is different in each variant; nothing is loaded for a project without any."""
+    if not checked_project.variants:
+        return {}
+    from archgen.products.variant_differences import find_variant_differences
+
+    return find_variant_differences(checked_project)
 
 
 def make_edition(

@@ -137,9 +137,9 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         diagnostics=tuple(state.diagnostics),
         ignores={document.file: document.ignores for document in state.documents if document.ignores},
         rule_settings={
-            entry.key: Severity(severity.text) for entry in rule_entries if (severity := _severity_of(entry.value))
+            entry.key: Severity(severity.text) for entry in rule_entries if (severity := severity_of(entry.value))
         },
-        rule_options=_read_rule_options(rule_entries),
+        rule_options=read_rule_options(rule_entries),
         rule_spans={entry.key: entry.key_span for entry in rule_entries},
         distro=distro,
         interface_files=tuple(dict.fromkeys(interface_files)),
@@ -157,13 +157,13 @@ def _list_rule_entries(state: ReadingState) -> Iterator[MappingEntry]:
         yield from mapping if isinstance(mapping, MappingNode) else ()
 
 
-def _severity_of(setting: YamlNode) -> ScalarNode | None:
+def severity_of(setting: YamlNode) -> ScalarNode | None:
     """Return where a rule's severity is written: as its setting, or below `severity`; None where it is not."""
     node = setting.get("severity") if isinstance(setting, MappingNode) else setting
     return node if isinstance(node, ScalarNode) and node.value is not None else None
 
 
-def _read_rule_options(rule_entries: Iterable[MappingEntry]) -> dict[str, dict[str, WrittenOption]]:
+def read_rule_options(rule_entries: Iterable[MappingEntry]) -> dict[str, dict[str, WrittenOption]]:
     """Return the options by rule and name. Two files may set different options of one rule."""
     rule_options: dict[str, dict[str, WrittenOption]] = {}
     for rule_entry in rule_entries:

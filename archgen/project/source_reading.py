@@ -35,7 +35,7 @@ _OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
 
-_UNMARKING_SECTIONS = frozenset({"frames", "glossary", "libraries", "properties"})
+_UNMARKING_SECTIONS = frozenset({"frames", "glossary", "libraries", "properties", "variants"})
 """Sections that other programs' files may have, too: one of these alone makes no slice of a file that nobody names."""
 
 

@@ -31,6 +31,7 @@ _HOMES = {
     "chain": "`chains: {{CHAIN: {{{key}: ...}}}}`",
     "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
     "frame": "`frames: {{FRAME: {{{key}: ...}}}}`",
+    "variant": "`variants: {{VARIANT: {{{key}: ...}}}}`",
     "use_case": "`use_cases: {{USE-CASE: {{{key}: ...}}}}`",
 }
 """Where the keys of each kind are written. The first kind that has a key is its home."""
@@ -56,6 +57,7 @@ _ELEMENT_SECTIONS = {
     "partners": "partner",
     "requirements": "requirement",
     "frames": "frame",
+    "variants": "variant",
     "use_cases": "use_case",
 }
 

@@ -31,7 +31,7 @@ _BOOLEAN_WORDS = {
 }
 SECTIONS_BY_ID = frozenset(
     {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
-    | {"resources", "views", "policies", "component_types", "frames", "libraries", "properties"}
+    | {"resources", "views", "policies", "component_types", "frames", "libraries", "properties", "variants"}
 )
 """The top-level sections that hold elements by id."""
 _UNQUOTED_VALUE = re.compile(r"-?[0-9]+|true|false", re.IGNORECASE)
@@ -264,6 +264,8 @@ def element_of_path(path: tuple[str | int, ...]) -> str | None:
         return None
     if path[0] not in SECTIONS_BY_ID:
         return None
+    if path[0] == "variants" and path[2:3] == ("changes",):
+        return element_of_path(path[3:]) or str(path[1])
     ids = [str(path[1])]
     # A component inside another has an id of as many parts as it lies deep.
     rest = path[2:] if path[0] in {"groups", "component_types"} else ()

@@ -112,6 +112,7 @@ _ROOT_FORM = ElementForm(
         "chains": ElementForm(("through",), frozenset({"through"})),
         "views": ElementForm(("show",)),
         "policies": _PLAIN_FORM,
+        "variants": ElementForm(("title",), frozenset({"of", "drop"}), raw_keys=frozenset({"changes"})),
         "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
@@ -123,7 +124,7 @@ _ROOT_FORM = ElementForm(
 
 def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Bring a validated document into the normal form. Its tree is changed in place."""
-    library_diagnostics = tuple(_normalise_libraries(document))
+    inner_diagnostics = (*_normalise_libraries(document), *_normalise_changes(document))
     # Types and indicators first: both look at short forms that _normalise_mapping expands.
     types = document.root.get("types")
     type_diagnostics = tuple(_fold_type_names(types)) if isinstance(types, MappingNode) else ()
@@ -140,7 +141,7 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
     for entry in accepted if isinstance(accepted, MappingNode) else ():
         entry.value = _list_accepted(entry)
-    return library_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
+    return inner_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
 
 
 def _drop_empty_step_keys(root: MappingNode) -> None:
@@ -159,6 +160,15 @@ def _normalise_libraries(document: YamlDocument) -> Iterator[Diagnostic]:
     for library in libraries if isinstance(libraries, MappingNode) else ():
         if isinstance(library.value, MappingNode):
             yield from normalise_document(replace(document, root=library.value))
+
+
+def _normalise_changes(document: YamlDocument) -> Iterator[Diagnostic]:
+    """Normalise what each variant writes over the project, each as if it were a file of its own."""
+    variants = document.root.get("variants")
+    for variant in variants if isinstance(variants, MappingNode) else ():
+        changes = variant.value.get("changes") if isinstance(variant.value, MappingNode) else None
+        if isinstance(changes, MappingNode):
+            yield from normalise_document(replace(document, root=changes))
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:

@@ -34,20 +34,27 @@ def analyse_architecture(architecture: Architecture, *, judging: bool = False) -
     return analyse_system(system, notes, judging=judging)
 
 
+_MAX_ANALYSES = 4
+
+
 class AnalysisMemory:
-    """Remembers the last analysis of one who judges many versions of a project, which mostly leave timing as it was."""
+    """Remembers the last analyses of one who judges many versions of a project, which mostly leave timing as it was."""
 
     def __init__(self) -> None:
         """Start without any analysis."""
-        self._last_analysis: Analysis | None = None
+        self._analyses: list[Analysis] = []
+        """The one that was asked for last comes first."""
 
     def judge_architecture(self, architecture: Architecture) -> Analysis:
-        """Analyse an architecture for judging; the last analysis, where every figure and every place is the same."""
+        """Analyse an architecture for judging; an earlier analysis, where every figure and every place is the same."""
         system, notes = build(architecture)
-        # Only the last one is kept: versions come in their order, and one that returns to older figures is rare.
-        if self._last_analysis is None or not _is_same_system(self._last_analysis, system, notes):
-            self._last_analysis = analyse_system(system, notes, judging=True)
-        return self._last_analysis
+        known = next((each for each in self._analyses if _is_same_system(each, system, notes)), None)
+        analysis = known or analyse_system(system, notes, judging=True)
+        others = [each for each in self._analyses if each is not analysis]
+        # Only a few are kept: a variant may have the figures of the project itself, or of another one; of versions in
+        # their order, one that returns to older figures is rare.
+        self._analyses = [analysis, *others[: _MAX_ANALYSES - 1]]
+        return analysis
 
 
 def complete_analysis(analysis: Analysis) -> Analysis:

@@ -27,6 +27,7 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         ("container", architecture.containers),
         ("link", architecture.links),
         ("frame", architecture.frames),
+        ("variant", architecture.variants),
         ("type", architecture.types),
         ("topic", architecture.topics),
         ("partner", architecture.partners),
@@ -73,6 +74,16 @@ def owner_cell(architecture: Architecture, element_id: str | None) -> Inlines:
 def link_message(architecture: Architecture, finding: Diagnostic) -> Inlines:
     """Return a finding's message, with a link at each name that it quotes and that is an element's."""
     return tuple(_link_run(architecture, finding, run) for run in inline_text.message_to_inlines(finding.message))
+
+
+def link_names(architecture: Architecture, sentence: str) -> Inlines:
+    """Return a sentence with a link at each name that it quotes and that is an element's."""
+    return tuple(
+        Text(run.text, ref=reference, code=True)
+        if run.code and (reference := find_reference(architecture, run.text))
+        else run
+        for run in inline_text.message_to_inlines(sentence)
+    )
 
 
 def link_help(architecture: Architecture, finding: Diagnostic) -> Inlines:

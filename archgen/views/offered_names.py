@@ -63,6 +63,7 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
             "chains",
             "views",
             "policies",
+            "variants",
         )
     }
     own_types = {id_: each for id_, each in architecture.component_types.items() if each.library is None}

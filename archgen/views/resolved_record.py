@@ -68,7 +68,18 @@ def make_record(lookup: Lookup) -> Record:
         "links": {link.id: _record_link(link) for link in architecture.links.values()},
         **_record_frames(architecture),
         "chains": {chain.id: _record_chain(chain) for chain in architecture.chains.values()},
+        **_record_variants(architecture),
     }
+
+
+def _record_variants(architecture: Architecture) -> dict[str, object]:
+    """Return the section of variants, empty in a project without any, and in one as it stands in one of them."""
+    variants = {
+        each.id: pick_fields(each, "title", "description", "of", "without", "drop")
+        | drop_unknown({"changes": {change.path: change.value for change in each.changes}})
+        for each in architecture.variants.values()
+    }
+    return drop_unknown({"variants": variants})
 
 
 def _record_vocabulary(architecture: Architecture) -> dict[str, object]:

@@ -28,6 +28,7 @@ nodes:
 chains: {c: {through: [a, b], deadline: 500 ms}}
 views: {v: {show: "g.a+"}}
 policies: {p: {forbid: {from: g.a, to: "role:sink"}}}
+variants: {low: Low, sim: {without: "tag:t g.a", drop: [links.lan], changes: {hosts: {pc: {cores: 2}}}}}
 project: {id: robot, title: Robot}
 """
 
@@ -54,6 +55,10 @@ project: {id: robot, title: Robot}
         ('show: "g.a+"', 'show: "g.a+", depth: 2', "view v", "depth", None, 2, "view `v`: depth set to 2"),
         ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
         ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
+        ("without: ", "of: [low], without: ", "variant sim", "of", None, ["low"], "variant `sim` is now built on `low`"),
+        ("tag:t g.a", "tag:u", "variant sim", "without", "tag:t g.a", "tag:u", "variant `sim` now is without `tag:u` instead of `tag:t g.a`"),
+        ("[links.lan]", "[links.lan.title]", "variant sim", "drop", ["links.lan"], ["links.lan.title"], None),
+        ("pc: {cores: 2}", "pc: {cores: 3}", "variant sim", "changes", ["hosts.pc.cores: 2"], ["hosts.pc.cores: 3"], None),
         ("topic: /x", "topic: /y", "port na.publishes.x", "topic", ["/x"], ["/y"], "`na.publishes.x`: topic `/x` → `/y`"),
         ("on: true", "on: false", "node na", "parameters.deep.on", True, False, "node `na`: parameter `deep.on` true → false"),
         ("level: 1", 'level: "1"', "node na", "parameters.deep.level", 1, "1", None),

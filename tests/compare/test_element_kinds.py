@@ -25,6 +25,7 @@ from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
 from archgen.model.requirement import Requirement
+from archgen.model.variant import Variant
 from archgen.views.elements.element_card import kinds_by_id, make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.resolved_record import make_record
@@ -50,6 +51,7 @@ MODEL_CLASSES: Mapping[str, type] = {
     "frame": Frame,
     "chain": Chain,
     "policy": Policy,
+    "variant": Variant,
     "view": View,
 }
 SECTIONS = {
@@ -70,6 +72,7 @@ SECTIONS = {
     "frame": "frames",
     "chain": "chains",
     "policy": "policies",
+    "variant": "variants",
     "view": "views",
 }
 """Each kind with its section of the architecture."""
@@ -129,7 +132,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 MODEL_ONLY = {
-    **{f"{kind} annotations": "the keys `properties` and `hints`" for kind in SECTIONS},
+    **{f"{kind} annotations": "the keys `properties` and `hints`" for kind in SECTIONS if kind != "variant"},
     "component parent": "the beginning of the id",
     "component children": "elements of their own",
     "component component_type": "the key `is`",
@@ -167,7 +170,12 @@ MODEL_ONLY = {
     "frame by_written": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
-    **{f"{kind} {key}": "the field `annotations`" for kind in SECTIONS for key in ("properties", "hints")},
+    **{
+        f"{kind} {key}": "the field `annotations`"
+        for kind in SECTIONS
+        if kind != "variant"
+        for key in ("properties", "hints")
+    },
     "component is": "the fields `component_type` and `is_reference`",
     **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "component_type is": "the field `base`",
@@ -336,6 +344,9 @@ frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1], properties: {q: 1}, hints: {x: {a: 1}}}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}, properties: {q: 1}, hints: {x: {a: 1}}}}
 policies: {p: {title: P, forbid: {from: g, to: g}, properties: {q: 1}, hints: {x: {a: 1}}}}
+variants:
+  in: {title: I}
+  sim: {title: S, description: D, of: [in], without: "g.whole", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
 """
 """A project in which every kind has every field."""
 
@@ -461,9 +472,9 @@ def test_the_order_of_the_report() -> None:
         *("project", "chapter", "partner", "use_case", "requirement", "component_type", "group", "composed"),
         *("component", "output", "input"),
         *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "frame"),
-        *("chain", "policy", "view"),
+        *("chain", "policy", "variant", "view"),
     ]
-    assert list(KIND_ORDER.values()) == list(range(24))
+    assert list(KIND_ORDER.values()) == list(range(25))
 
 
 def test_the_schema_of_comparisons_knows_every_kind() -> None:
@@ -535,7 +546,7 @@ def test_how_far_a_changed_key_reaches(effect: Effect, keys: str) -> None:
 def test_how_far_a_whole_element_reaches() -> None:
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.TEXT} == {"chapter", "view", "use_case"}
     assert {kind for kind in ELEMENT_KINDS if find_effect(kind, None) is Effect.SYSTEM} == {
-        *("project", "partner", "requirement", "policy", "component_type", "composed", "frame")
+        *("project", "partner", "requirement", "policy", "component_type", "composed", "frame", "variant")
     }
 
 

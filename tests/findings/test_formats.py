@@ -36,6 +36,7 @@ def test_json_says_everything_by_its_schema() -> None:
         "message": "no output named `x`: 100 %,\nsaid ::error::",
         "help": "did you mean `y`?",
         "element": "g.c",
+        "variants": [],
         "span": {
             "file": "groups/a, b.yaml",
             "start": {"line": 41, "column": 11},

@@ -327,6 +327,36 @@ PROJECTS = st.fixed_dictionaries(
         "frames": st.dictionaries(
             IDS, st.one_of(st.none(), IDS, st.fixed_dictionaries({"by": IDS, "static": st.booleans()}))
         ),
+        "variants": st.dictionaries(
+            st.sampled_from(["sim", "indoor", "base"]),
+            st.one_of(
+                st.none(),
+                WORDS,
+                st.fixed_dictionaries(
+                    {},
+                    optional={
+                        "of": st.sampled_from(["sim", "indoor", ["indoor"], "x"]),
+                        "without": st.sampled_from(["a", "tag:t", "*.a", "", "-a"]),
+                        "drop": st.sampled_from(["nodes.a", ["nodes", "x.y"], "links.a.b"]),
+                        "changes": st.fixed_dictionaries(
+                            {},
+                            optional={
+                                "groups": st.dictionaries(
+                                    IDS, st.fixed_dictionaries({"components": st.dictionaries(IDS, COMPONENT)})
+                                ),
+                                "nodes": st.dictionaries(
+                                    IDS,
+                                    st.fixed_dictionaries(
+                                        {}, optional={"implements": IDS, "parameters": st.dictionaries(IDS, DATA)}
+                                    ),
+                                ),
+                            },
+                        ),
+                    },
+                ),
+            ),
+            max_size=2,
+        ),
         "properties": st.dictionaries(
             IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"range": st.lists(st.integers(), max_size=3)}))
         ),

@@ -20,6 +20,7 @@ from archgen.compare.kinds.shared_keys import (
     requirements_key,
     text_feature,
 )
+from archgen.compare.kinds.variant_kind import VARIANT
 from archgen.compare.normal_values import parameter_leaves
 from archgen.model.architecture import Chain
 from archgen.model.deployment import Container, Host, Resource
@@ -219,4 +220,4 @@ VIEW = KindSpec(
     lambda version: version.architecture.views,
     (*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
 )
-SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VIEW)
+SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VARIANT, VIEW)

@@ -73,6 +73,8 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "type.frame": ("frames",),
     "type.message": ("topic_messages", "call_messages"),
     "type_name": ("types",),
+    "variant.of": ("variants",),
+    "variant.without": ("selectors",),
     "view": ("selectors",),
     "view.show": ("selectors",),
 }
@@ -95,7 +97,7 @@ _SECTIONS = (
         "links",
         "chains",
     ),
-    *("resources", "frames", "views", "policies"),
+    *("resources", "frames", "views", "policies", "variants"),
 )
 """Sections whose ids are offered as keys: a second file may add to an element of the first."""
 

@@ -39,6 +39,7 @@ def finding_to_json(diagnostic: Diagnostic) -> dict[str, Any]:
         "message": diagnostic.message,
         "help": diagnostic.help,
         "element": diagnostic.element,
+        "variants": list(diagnostic.variants),
         "span": _span_to_json(diagnostic.span),
         "labels": [
             {"span": _span_to_json(label.span), "text": label.text} for label in diagnostic.labels if label.span.file

@@ -125,6 +125,8 @@ def _result_to_sarif(diagnostic: Diagnostic, scan: SarifScan) -> dict[str, Any]:
     result["locations"] = [location] if location else []
     if scan.is_compared:
         result["baselineState"] = "new"
+    if diagnostic.variants:
+        result["properties"] = {"variants": list(diagnostic.variants)}
     if labels:
         result["relatedLocations"] = [
             {"id": number, "physicalLocation": label_place, "message": {"text": _plain_text(label.text)}}

@@ -9,6 +9,7 @@ from archgen.diagnostics.safe_text import make_visible, measure_width
 from archgen.diagnostics.text_columns import wrap_cell, wrap_line
 from archgen.emit.terminal import findings_summary
 from archgen.emit.terminal.line_excerpt import ExcerptMark, quote_line
+from archgen.findings.variant_findings import phrase_absence
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -93,6 +94,9 @@ def render_finding_text(
             for part in [text] if mark is None else _wrap_mark(text, width and width - gutter - 6):
                 painted = _paint_text(part, text_colour, colour=colour and bool(text_colour))
                 yield f"   {_paint_text(f'{margin} |', '34', colour=colour)} {painted}".rstrip()
+    absence = phrase_absence(diagnostic)
+    if absence:
+        yield f"   {_paint_text('=', '34', colour=colour)} {_paint_text('note:', '1', colour=colour)} {make_visible(absence)}"
     if diagnostic.help:
         # 11: what stands before the text.
         first, *others = (

@@ -71,6 +71,7 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "chain": a.chains,
         "view": a.views,
         "policy": a.policies,
+        "variant": a.variants,
     }
 
 
@@ -132,7 +133,7 @@ def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
         card = _generic_card(lookup, kind, element_id)
     else:
         card = make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
-    further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind != "topic" else ()
+    further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind not in {"topic", "variant"} else ()
     return replace(card, facts=(*card.facts, *further_facts)) if further_facts else card
 
 
@@ -424,6 +425,9 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             "rate",
             "deadline",
             "show",
+            "of",
+            "without",
+            "drop",
         )
     ]
     lists: list[tuple[str, tuple[str, ...]]] = []
@@ -463,6 +467,8 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     elif kind == "frame":
         facts.append(("static", "yes" if element.static else ""))
         lists += list_frame_users(architecture, element)
+    elif kind == "variant":
+        lists.append(("changes", tuple(f"{change.path}: {change.value}" for change in element.changes)))
     elif kind == "chain":
         chain = architecture.chains[element_id]
         facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]

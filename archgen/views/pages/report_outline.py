@@ -16,8 +16,9 @@ from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
-from archgen.views.pages import timing_chapter
+from archgen.views.pages import timing_chapter, variant_chapter
 from archgen.views.pages.component_sections import ComponentSections
+from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 from archgen.views.tables import (
     architecture_tables,
@@ -57,6 +58,8 @@ class DocumentEdition:
     """The model has errors; documents show what is sound, and say so."""
     changes: SiteChanges | None = None
     """What changed since an earlier version, where the site is to show it."""
+    variants: Mapping[str, VariantDifference] = field(default_factory=dict)
+    """What is different in each variant of the project, by its id."""
     signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] = field(default_factory=dict)
     """The tags that record signatures of two partners, newest first."""
 
@@ -156,6 +159,16 @@ class _ChapterMaker:
         """Make the chapter of coordinate frames."""
         blocks = [*self._make_figures("frames"), *_drop_missing(frame_table.make_frame_table(self.lookup))]
         return [Section("page:frames", "Frames", tuple(blocks), page_break=True)] if blocks else []
+
+    def make_variants(self) -> list[Section]:
+        """Make the chapter of variants: a table of them, and what is different in each."""
+        architecture = self.lookup.architecture
+        table = variant_chapter.make_variant_table(architecture, self.edition.variants)
+        if table is None:
+            return []
+        lead = Paragraph(inline_text.to_inlines(variant_chapter.LEAD))
+        sections = tuple(variant_chapter.make_variant_sections(architecture, self.edition.variants))
+        return [Section("page:variants", "Variants", (lead, table), sections, page_break=True)]
 
     def make_deployment(self) -> list[Section]:
         """Make the chapter of hosts and links."""
@@ -267,6 +280,7 @@ _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] 
     "overview": _ChapterMaker.make_overview,
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,
+    "variants": _ChapterMaker.make_variants,
     "deployment": _ChapterMaker.make_deployment,
     "start_up": _ChapterMaker.make_start_up,
     "timing": _ChapterMaker.make_timing,

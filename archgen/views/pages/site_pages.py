@@ -24,6 +24,7 @@ from archgen.views.pages import (
     requirement_pages,
     timing_chapter,
     undrawn_pictures,
+    variant_chapter,
 )
 from archgen.views.pages.component_pages import ComponentPages, drop_facts
 from archgen.views.pages.context_pages import HOME_CRUMB
@@ -251,6 +252,7 @@ class PageMaker:
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
+        yield from self.variant_pages()
         if frames := frame_table.make_frame_table(self.lookup):
             yield self._spanning_page("frames", "Frames", *self.make_figures("frames"), frames)
         if sections := property_tables.make_property_sections(self.lookup):
@@ -274,6 +276,18 @@ class PageMaker:
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
             if start_blocks := start_table.make_start_blocks(self.lookup):
                 yield self._spanning_page("start_up", "Start-up", *self.make_figures("start_up"), *start_blocks)
+
+    def variant_pages(self) -> Iterator[Page]:
+        """Make a page of all variants, and one for each."""
+        table = variant_chapter.make_variant_table(self.architecture, self.edition.variants)
+        if table is None:
+            return
+        lead = Paragraph(inline_text.to_inlines(variant_chapter.LEAD))
+        yield self._spanning_page("variants", "Variants", lead, table)
+        crumbs = (HOME_CRUMB, ("Variants", "page:variants"))
+        for section in variant_chapter.make_variant_sections(self.architecture, self.edition.variants):
+            name = section.anchor.partition(":")[2]
+            yield Page(f"variants/{name}.html", section.anchor, section.title, "variants", section, crumbs, "Variant")
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""

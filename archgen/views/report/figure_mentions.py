@@ -35,6 +35,7 @@ _BLOCK_WORDS = {
     "figure:start_up": "shows what starts after what",
     "table:start/": "lists what starts in a phase, how, and what it waits for",
     "figure:frames": "shows what each frame is placed in, and who writes it",
+    "table:variants": "lists what each is built on, and how much is different in it",
     "table:frames": "lists how often, and whose data is in it",
     "table:periods": "sorts what the nodes do by how often they do it",
     "table:chains": "compares the bound of each chain with its deadline",

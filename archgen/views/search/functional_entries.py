@@ -205,12 +205,16 @@ def make_partner_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 
 
 def make_chain_entries(lookup: Lookup) -> Iterator[SearchEntry]:
-    """Yield chains of effect, views and policies."""
+    """Yield chains of effect, variants and views."""
     architecture = lookup.architecture
     for chain in architecture.chains.values():
         deadline = f"deadline {chain.deadline}" if chain.deadline else ""
         line = join_words("chain of effect", deadline, ", ".join(chain.requirements))
         yield SearchEntry("chain", chain.title, line, (f"chain:{chain.id}", "page:chains"), (chain.id,))
+    for variant in architecture.variants.values():
+        line = join_words("variant", f"without {variant.without}" if variant.without else "")
+        text = to_plain_text(variant.description)
+        yield SearchEntry("variant", variant.title, line, (f"variant:{variant.id}",), (variant.id,), text)
     for view in architecture.views.values():
         line = join_words("view", view.show)
         yield SearchEntry("view", view.title, line, (f"figure:views/{view.id}", "page:views"), (view.id,))

@@ -254,6 +254,19 @@ def _frame_rows(lookup: Lookup) -> Iterator[TextRow]:
         yield (frame.id, frame.title, frame.parent or "", frame.by or "", rate, ports, str(frame.at))
 
 
+def _variant_rows(lookup: Lookup) -> Iterator[TextRow]:
+    for each in lookup.architecture.variants.values():
+        yield (
+            each.id,
+            each.title,
+            ", ".join(each.of),
+            each.without or "",
+            ", ".join(each.drop),
+            str(len(each.changes)),
+            str(each.at),
+        )
+
+
 # The column names are the header of what `archgen list` writes, so they are visible to users.
 _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
@@ -281,4 +294,5 @@ _TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[Te
     "hosts": (("id", "title", "cores", "nodes", "place"), _host_rows),
     "start_up": (START_COLUMNS, list_start_rows),
     "frames": (("id", "title", "parent", "by", "rate", "ports", "place"), _frame_rows),
+    "variants": (("id", "title", "of", "without", "drop", "changes", "place"), _variant_rows),
 }

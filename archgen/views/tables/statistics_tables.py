@@ -43,6 +43,7 @@ _FIGURE_LABELS = {
     "component_types": "Component types",
     "made_connections": "Connections made by themselves",
     "frames": "Coordinate frames",
+    "variants": "Variants",
     "steps": "Steps of use cases",
     "programs": "Programs that are no ROS",
     "promises": "Outputs with promises",
@@ -50,7 +51,17 @@ _FIGURE_LABELS = {
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
 _RARE_FIGURES = frozenset(
-    {"composed", "component_types", "made_connections", "frames", "steps", "programs", "promises", "deprecated"}
+    {
+        "composed",
+        "component_types",
+        "made_connections",
+        "frames",
+        "variants",
+        "steps",
+        "programs",
+        "promises",
+        "deprecated",
+    }
 )
 """Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""
 PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")

@@ -1,0 +1,42 @@
+"""Variants: what each is built on, what it takes out, and what it writes over the project."""
+
+from __future__ import annotations
+
+from archgen.compare.kinds.kind_spec import Effect, KeySpec, KindSpec, ReadContext
+from archgen.compare.kinds.shared_keys import DESCRIPTION, TITLE
+from archgen.model.variant import Variant
+
+
+def _read_selector(variant: Variant, context: ReadContext) -> str | None:
+    return context.matched_ids.rename_in_text(" ".join(variant.without.split())) if variant.without else None
+
+
+def _read_drop(variant: Variant, context: ReadContext) -> frozenset[str]:
+    return frozenset(context.matched_ids.rename_in_text(path) for path in variant.drop)
+
+
+def _read_changes(variant: Variant, context: ReadContext) -> frozenset[str]:
+    return frozenset(context.matched_ids.rename_in_text(f"{each.path}: {each.value}") for each in variant.changes)
+
+
+VARIANT = KindSpec(
+    "variant",
+    "Variants",
+    (
+        TITLE,
+        DESCRIPTION,
+        # The order counts: the later wins.
+        KeySpec(
+            "of",
+            lambda variant, _: variant.of or None,
+            list_verbs=("is now built on", "is no longer built on"),
+            new_verb="is built on",
+        ),
+        KeySpec("without", _read_selector, verb="is without"),
+        KeySpec("drop", _read_drop, list_verbs=("now drops", "no longer drops")),
+        KeySpec("changes", _read_changes, list_verbs=("now writes", "no longer writes")),
+    ),
+    # What a change of a variant does to the robot shows where the project is compared as it stands in the variant.
+    Effect.SYSTEM,
+    elements=lambda version: version.architecture.variants,
+)

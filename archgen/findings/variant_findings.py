@@ -1,0 +1,111 @@
+"""Say of each finding in which variants it holds: one that holds in all of them, and in the project itself, is told once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.variant import BASE_NAME
+
+UNUSED_RULES = frozenset(
+    {
+        "uncovered-requirement",
+        "unread-input",
+        "unread-output",
+        "unused-ignore",
+        "unused-node",
+        "unused-parameter-file",
+        "unused-type",
+    }
+)
+"""Rules that report what nothing needs: what the project itself or one of its variants needs, something needs."""
+MISSING_RULES = frozenset(
+    {
+        "absent-core",
+        "disconnected-component",
+        "empty-reference",
+        "half-written",
+        "missing-detail",
+        "unaccounted-topic",
+        "unfed-input",
+        "unfed-output",
+        "unjustified-component",
+        "unjustified-node",
+        "unlinked-hosts",
+        "unmapped-component",
+        "unmapped-type",
+        "unnamed-source",
+        "unpublished-frame",
+        "unpublished-output",
+        "unset-parameter",
+        "unsubscribed-input",
+    }
+)
+"""Rules that report what is not written: what every variant writes is not missing in the project itself."""
+
+
+def join_findings(
+    findings_by_variant: Mapping[str, Sequence[Diagnostic]], waiting_rules: Mapping[str, frozenset[str]]
+) -> tuple[Diagnostic, ...]:
+    """Return the findings of a project and its variants, by name, each once and with the variants in which it holds.
+
+    A rule that waits in a variant says nothing of it: what it finds in the project itself counts as found there. What is missing in the project itself and given by every variant is not missing; what one of them needs is not
+    unused.
+    """
+    names = tuple(findings_by_variant)
+    holding: dict[Diagnostic, list[str]] = {}
+    for name, findings in findings_by_variant.items():
+        for finding in findings:
+            holders = holding.setdefault(replace(finding, labels=(), help=None), [])
+            if not holders or holders[-1] != name:
+                holders.append(name)
+    for finding, holders in holding.items():
+        if holders[0] == BASE_NAME:
+            holders += [name for name in names if finding.rule in waiting_rules[name] and name not in holders]
+    joined: dict[Diagnostic, Diagnostic] = {}
+    for findings in findings_by_variant.values():
+        for finding in findings:
+            identity = replace(finding, labels=(), help=None)
+            if identity not in joined and not _is_explained(finding, holding[identity], names):
+                holders = holding[identity]
+                joined[identity] = finding if len(holders) == len(names) else _name_variants(finding, holders)
+    return tuple(sorted(joined.values(), key=lambda each: each.sort_key))
+
+
+def _is_explained(finding: Diagnostic, holders: Sequence[str], names: Sequence[str]) -> bool:
+    """Whether what a finding says is right in each variant by itself, and not of the project with all of them."""
+    if len(names) == 1 or len(holders) == len(names):
+        return False
+    if finding.rule in UNUSED_RULES:
+        return True
+    return finding.rule in MISSING_RULES and BASE_NAME in names and list(holders) == [BASE_NAME]
+
+
+def _name_variants(finding: Diagnostic, holders: Sequence[str]) -> Diagnostic:
+    """Return a finding with the variants in which it holds; one that does not hold in the project itself says it."""
+    quoted_names = [f"`{name}`" for name in holders if name != BASE_NAME]
+    message, help_line = finding.message, finding.help
+    if finding.rule == "unknown-reference" and BASE_NAME not in holders and help_line is None:
+        help_line = "it is not there in this variant: drop what names it, or write in `changes` what is there instead"
+    if BASE_NAME not in holders:
+        # In the message, by which findings are told apart: a baseline knows one of a variant as such.
+        plural = "s" if len(quoted_names) > 1 else ""
+        message = f"{message} (in the variant{plural} {join_words(quoted_names, 'and')})"
+    return replace(finding, message=message, help=help_line, variants=tuple(holders))
+
+
+def phrase_absence(finding: Diagnostic) -> str:
+    """Return where a finding of the project itself holds, in words; empty where that is everywhere, or in its message."""
+    if BASE_NAME not in finding.variants:
+        return ""
+    quoted_names = [f"`{name}`" for name in finding.variants if name != BASE_NAME]
+    if not quoted_names:
+        return "it holds in no variant"
+    plural = "s" if len(quoted_names) > 1 else ""
+    return (
+        f"of the variants it holds in {join_words(quoted_names, 'and')}"
+        if plural
+        else f"of the variants it holds in {quoted_names[0]} only"
+    )

@@ -1,0 +1,151 @@
+"""Lay one variant over a merged project: keys that it drops go, what it writes wins, what it selects is taken out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from archgen.compose import expand_project
+from archgen.compose.type_table import MissingTypeDescriber
+from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.link import mapping_values
+from archgen.link.missing_keys import find_incomplete
+from archgen.link.variants.change_targets import ChangeTargets, list_declared_anew
+from archgen.link.variants.element_removal import ElementRemover
+from archgen.link.variants.variant_selectors import prune_selectors, select_elements
+from archgen.model.architecture import Architecture
+from archgen.model.selector_evaluation import SelectorEvaluator
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+_KEPT_SECTIONS = frozenset({"archgen", "project", "sources", "libraries", "variants", "review"})
+"""Sections that no variant changes: what the project is, its files, and who judges it."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaidVariant:
+    """A merged project with a variant laid over it, and what is wrong with the variant."""
+
+    root: MappingNode
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+class VariantLayer:
+    """Lays variants over one project. `lost_keys` are the keys of what could not be read."""
+
+    def __init__(
+        self,
+        lost_keys: frozenset[str] = frozenset(),
+        incomplete_libraries: frozenset[str] = frozenset(),
+        describe_missing_type: MissingTypeDescriber | None = None,
+    ) -> None:
+        """Take what is known of files and libraries that could not be read, as for writing types out."""
+        self._lost_keys = lost_keys
+        self._incomplete_libraries = incomplete_libraries
+        self._describe_missing_type = describe_missing_type
+
+    def lay_variant(
+        self, root: MappingNode, variant: MappingEntry, find_architecture: Callable[[], Architecture]
+    ) -> LaidVariant:
+        """Return a project with a variant laid over it.
+
+        `find_architecture` returns the architecture of the project before: only a variant with `without` asks for it.
+        """
+        body = mapping_values.get_body(variant)
+        diagnostics: list[Diagnostic] = []
+        laid = root
+        node = body.entries.get("drop")
+        for scalar in mapping_values.get_scalars(body, "drop") if node else ():
+            laid = self._drop_path(laid, scalar, variant.key, diagnostics)
+        changes = mapping_values.get_mapping(body, "changes")
+        if changes.entries:
+            targets = ChangeTargets(laid, changes, self._lost_keys)
+            diagnostics += targets.diagnostics
+            laid, findings = lay_changes(laid, targets.sound, self._incomplete_libraries)
+            diagnostics += [*findings, *find_incomplete(laid)]
+        selector = mapping_values.get_scalar(body, "without")
+        if selector is not None:
+            laid = self._take_out(laid, selector, variant.key, changes, find_architecture(), diagnostics)
+        return LaidVariant(laid, tuple(diagnostics))
+
+    def _drop_path(
+        self, root: MappingNode, scalar: ScalarNode, variant_id: str, diagnostics: list[Diagnostic]
+    ) -> MappingNode:
+        section = scalar.text.partition(".")[0]
+        if section in _KEPT_SECTIONS:
+            message = f"no variant drops anything of `{section}`: it says what the project is"
+            diagnostics.append(Diagnostic("missing-variant-part", message, scalar.span, element=variant_id))
+            return root
+        kept = drop_key(root, scalar.text)
+        if not isinstance(kept, MissingKey):
+            return kept
+        if kept.word not in self._lost_keys:
+            place = f"in `{'.'.join(kept.keys_before)}`" if kept.keys_before else "at the top of the project"
+            near_keys = [key for key in kept.known_keys if kept.keys_before or key not in _KEPT_SECTIONS]
+            help_line = did_you_mean(kept.word, near_keys) or "`drop` takes keys from the top: `nodes.laser.container`"
+            diagnostics.append(
+                Diagnostic(
+                    "missing-variant-part",
+                    f"there is no `{kept.word}` {place} to drop",
+                    scalar.span,
+                    help=help_line,
+                    element=variant_id,
+                )
+            )
+        return root
+
+    def _take_out(  # noqa: PLR0913, PLR0917 - what laying knows by then
+        self,
+        root: MappingNode,
+        selector: ScalarNode,
+        variant_id: str,
+        changes: MappingNode,
+        architecture: Architecture,
+        diagnostics: list[Diagnostic],
+    ) -> MappingNode:
+        evaluator = SelectorEvaluator(architecture)
+        selected = select_elements(selector, evaluator, variant_id)
+        if not architecture.partial:
+            diagnostics += selected.diagnostics
+        anew = frozenset(list_declared_anew(changes))
+        leaves = frozenset(leaf for leaf in selected.components if anew.isdisjoint(_list_paths(leaf)))
+        if not leaves and not selected.nodes:
+            return root
+        expansion = expand_project(root, self._incomplete_libraries, self._describe_missing_type)
+        remover = ElementRemover(expansion, leaves, selected.nodes)
+        diagnostics += _find_lost_changes(changes, remover.removed.components)
+        return prune_selectors(remover.remove_from(root), remover.removed, evaluator)
+
+
+def _list_paths(component_id: str) -> Iterator[str]:
+    """Yield a component and those around it, by complete ids."""
+    yield component_id
+    while component_id.count(".") > 1:
+        component_id = component_id.rpartition(".")[0]
+        yield component_id
+
+
+def _find_lost_changes(changes: MappingNode, removed_components: frozenset[str]) -> Iterator[Diagnostic]:
+    """Report what a variant writes to components that it takes out."""
+    for group in mapping_values.get_mapping(changes, "groups"):
+        pending = [(group.key, group)]
+        while pending:
+            holder_id, holder = pending.pop()
+            for part in mapping_values.get_mapping(mapping_values.get_body(holder), "components"):
+                part_id = f"{holder_id}.{part.key}"
+                if part_id in removed_components:
+                    yield Diagnostic(
+                        "missing-variant-part",
+                        f"the variant takes `{part_id}` out, and changes it",
+                        part.key_span,
+                        help="take the changes out, or write what it is in this variant: `outputs`, or `is`",
+                        element=part_id,
+                    )
+                else:
+                    pending.append((part_id, part))
+
+
+def remove_variants(root: MappingNode) -> MappingNode:
+    """Return a merged project without its variants: as it stands in one of them it has none."""
+    return MappingNode({e.key: e for e in root if e.key != "variants"}, root.span, root.declares)

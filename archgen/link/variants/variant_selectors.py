@@ -1,0 +1,140 @@
+"""Selectors in variants: what `without` takes out, and what is left of the selectors that named some of it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.link.variants.removed_elements import RemovedElements
+from archgen.model.selector_evaluation import SelectorEvaluator
+from archgen.model.selector_parser import parse_selector, split_words
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+_SELECTOR_SECTIONS = ("views", "policies")
+_SELECTOR_KEYS = frozenset({"show", "from", "to", "of", "inputs_from", "outputs_to"})
+
+
+class SelectedElements(NamedTuple):
+    """What a selector of a variant selects: leaves and nodes by complete ids; and what is wrong with it."""
+
+    components: frozenset[str]
+    nodes: frozenset[str]
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+def select_elements(selector: ScalarNode, evaluator: SelectorEvaluator, variant_id: str) -> SelectedElements:
+    """Return what a variant is without, and what is wrong with its selector."""
+    selection, problems = evaluator.evaluate(selector.text)
+    errors = [problem for problem in problems if problem.severity == "error"]
+    if errors:
+        return SelectedElements(
+            frozenset(),
+            frozenset(),
+            tuple(
+                Diagnostic(
+                    "wrong-selector",
+                    problem.message,
+                    _find_span(selector, problem.start, problem.end),
+                    severity=Severity.ERROR,
+                    help=problem.help,
+                    element=variant_id,
+                )
+                for problem in errors
+            ),
+        )
+    idle_words = [
+        Diagnostic(
+            "empty-variant-selector",
+            f"`without` takes nothing out: {problem.message}",
+            _find_span(selector, problem.start, problem.end),
+            help=problem.help or "it selects components and nodes of the project that the variant is built on",
+            element=variant_id,
+        )
+        for problem in problems
+    ]
+    if not selection.components and not selection.nodes and not idle_words:
+        idle_words = [
+            Diagnostic("empty-variant-selector", "`without` takes nothing out", selector.span, element=variant_id)
+        ]
+    return SelectedElements(selection.components, selection.nodes, tuple(idle_words))
+
+
+def _find_span(selector: ScalarNode, start: int, end: int) -> Span:
+    """Return the place of some characters of a selector, quoted or not; of one over several lines that of all."""
+    span = selector.span
+    quote_width = span.end_column - span.column - len(selector.text)
+    if span.line != span.end_line or quote_width not in {0, 2}:
+        return span
+    first = span.column + quote_width // 2
+    return span._replace(column=first + start, end_column=first + max(end, start + 1))
+
+
+def prune_selectors(root: MappingNode, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingNode:
+    """Return a merged project whose views and policies name nothing that is gone; those that named nothing else go too."""
+    entries = dict(root.entries)
+    for section_name in _SELECTOR_SECTIONS:
+        section = entries.get(section_name)
+        if section is None or not isinstance(section.value, MappingNode):
+            continue
+        kept = {
+            entry.key: pruned
+            for entry in section.value
+            if (pruned := _prune_holder(entry, removed, evaluator)) is not None
+        }
+        entries[section_name] = MappingEntry(section_name, section.key_span, MappingNode(kept, section.value.span))
+    return MappingNode(entries, root.span, root.declares)
+
+
+def _prune_holder(entry: MappingEntry, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingEntry | None:
+    """Return an element with selectors, to any depth, that names nothing that is gone; None where a selector is empty then."""
+    if not isinstance(entry.value, MappingNode):
+        return entry
+    entries: dict[str, MappingEntry] = {}
+    for each in entry.value:
+        kept: MappingEntry | None = each
+        if isinstance(each.value, MappingNode):
+            kept = _prune_holder(each, removed, evaluator)
+        elif each.key in _SELECTOR_KEYS and isinstance(each.value, ScalarNode):
+            text = _prune_text(each.value.text, removed, evaluator)
+            if text is None:
+                return None
+            if text != each.value.text:
+                scalar = ScalarNode(text, text, each.value.span, is_plain=False)
+                kept = MappingEntry(each.key, each.key_span, scalar)
+        if kept is None:
+            return None
+        entries[each.key] = kept
+    if all(entries[each.key] is each for each in entry.value):
+        return entry
+    return MappingEntry(entry.key, entry.key_span, MappingNode(entries, entry.value.span, entry.value.declares))
+
+
+def _prune_text(text: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> str | None:
+    """Return a selector without the words that select only what is gone; None where no word is left of some."""
+    words = list(split_words(text))
+    gone_words = {word for word in words if _means_removed(word, removed, evaluator)}
+    if not gone_words:
+        return text
+    kept = [word for word in words if word not in gone_words]
+    had_wanted = any(not word.startswith("-") for word in words)
+    has_wanted = any(not word.startswith("-") for word in kept)
+    if had_wanted and not has_wanted:
+        return None
+    return " ".join(kept) or "*"  # nothing is taken away any more
+
+
+def _means_removed(word: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> bool:
+    """Whether what a word names is gone: one end of a range, or that whose neighbours it wants, is enough."""
+    parsed_words = parse_selector(word).words
+    atoms = [atom for each in parsed_words for atom in (each.atom, each.range_end) if atom is not None]
+    return any(_selects_removed(word[atom.start : atom.end], removed, evaluator) for atom in atoms)
+
+
+def _selects_removed(text: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> bool:
+    selection, problems = evaluator.evaluate(text)
+    if any(problem.severity == "error" for problem in problems):
+        return False  # told where the selector is judged
+    if selection.components:
+        return removed.components.issuperset(selection.components)
+    return bool(selection.nodes) and removed.nodes.issuperset(selection.nodes)
