@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.model.message_types import flow_of
 from archgen.model.selector_evaluation import SelectorEvaluator
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ def find_forbidden_flows(
     Senders and receivers are complete ids of components. A service or action carries data both ways: from its client to
     its server, and back. What a component sends to itself does not count.
     """
-    both_ways = {o.id for o in architecture.outputs.values() if flow_of(architecture.message_of(o)) != "topic"}
+    both_ways = {o.id for o in architecture.outputs.values() if architecture.flow_of(o) != "topic"}
     for connection in architecture.connections:
         reader = architecture.inputs[connection.input].component
         forbidden_outputs = []

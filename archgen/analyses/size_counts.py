@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from archgen.frozen import dataclass
+from archgen.model.port_media import uses_ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -20,7 +21,7 @@ class ArchitectureSize:
     """Counts of elements, and means as exact fractions (0 if there is nothing to divide by).
 
     `connections` are references as written, `edges` the pairs of output and input that they make. A connection is mapped
-    if all outputs that it carries have a message (a planned message counts); physical outputs need none. `nodes` are
+    if all outputs that it carries have a message (a planned message counts); what is no ROS needs none. `nodes` are
     those written in the project, `planned_nodes` those that archgen adds. `messages` are distinct names.
     """
 
@@ -142,7 +143,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
 def count_mapped_connections(architecture: Architecture) -> int:
     """Count the connections whose outputs all have a message, from their type or from the node that publishes them."""
     named_outputs = {e.port for e in architecture.endpoints if e.message and e.use in {"publishes", "serves"}}
-    named_outputs.update(o.id for o in architecture.outputs.values() if o.physical or architecture.message_of(o))
+    named_outputs.update(o.id for o in architecture.outputs.values() if not uses_ros(o) or architecture.message_of(o))
     return sum(bool(c.outputs) and named_outputs.issuperset(c.outputs) for c in architecture.connections)
 
 

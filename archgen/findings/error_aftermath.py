@@ -77,9 +77,11 @@ _FILE_RULES = frozenset(
         "unchecked-message",
         "unjustified-node",
         "unknown-parameter",
+        "unlisted-medium",
         "unmapped-type",
         "unnamed-source",
         "unpublished-frame",
+        "unused-ros-setting",
         "wrong-section",
     }
 )

@@ -9,6 +9,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, View, Waypoint
 from archgen.model.path_resolver import ElementRef
+from archgen.model.port_media import ROS
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -25,6 +26,7 @@ def declare_project(root: MappingNode, default_id: str, default_title: str) -> P
         title=mapping_values.get_text(body, "title") or default_title,
         version=mapping_values.get_text(body, "version"),
         description=mapping_values.get_text(body, "description"),
+        middleware=mapping_values.get_medium(body, "middleware") or ROS,
         # Without the section the field keeps its default, which this module would otherwise have to repeat.
         **({"at": entry.key_span} if entry else {}),
     )
