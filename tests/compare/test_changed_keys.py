@@ -234,7 +234,9 @@ nodes:
 @pytest.mark.parametrize(
     "case",
     [
-        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "phase of its start `core` → `network`"),
+        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "start phase `core` → `network`, so earlier than before"),
+        ("phase: core, ", "", "na", "start.phase", "core", None, "start phase no longer given (it was `core`), so later than before"),
+        ("user: robot", "user: robot, phase: components", "nb", "start.phase", None, "components", "start phase set to `components`, as before"),
         ("after: na", "after: [na, m]", "nb", "start.after", ["na"], ["m", "na"], " now starts after `m`"),
         ("topic: up", "topic: /up", "na", "start.ready.topic", None, None, None),
         ("topic: up", "topic: ~/up", "na", "start.ready.topic", "/up", "/na/up", "topic that shows it is up `/up` → `/na/up`"),
