@@ -54,6 +54,7 @@ project: {id: robot, title: Robot}
         ('show: "g.a+"', "show: g", "view v", "show", "g.a+", "g", "view `v`: selector `g.a+` → `g`"),
         ('show: "g.a+"', 'show: "g.a+", depth: 2', "view v", "depth", None, 2, "view `v`: depth set to 2"),
         ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
+        ('from: g.a, to: "role:sink"}', 'from: g.a, to: "role:sink"}, accepted: {b.x: why}', "policy p", "accepted.g.b.x", None, "why", "policy `p`: accepted input `g.b.x` set to `why`"),
         ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
         ("without: ", "of: [low], without: ", "variant sim", "of", None, ["low"], "variant `sim` is now built on `low`"),
         ("tag:t g.a", "tag:u", "variant sim", "without", "tag:t g.a", "tag:u", "variant `sim` now is without `tag:u` instead of `tag:t g.a`"),
@@ -233,7 +234,9 @@ nodes:
 @pytest.mark.parametrize(
     "case",
     [
-        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "phase of its start `core` → `network`"),
+        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "start phase `core` → `network`, so earlier than before"),
+        ("phase: core, ", "", "na", "start.phase", "core", None, "start phase no longer given (it was `core`), so later than before"),
+        ("user: robot", "user: robot, phase: components", "nb", "start.phase", None, "components", "start phase set to `components`, as before"),
         ("after: na", "after: [na, m]", "nb", "start.after", ["na"], ["m", "na"], " now starts after `m`"),
         ("topic: up", "topic: /up", "na", "start.ready.topic", None, None, None),
         ("topic: up", "topic: ~/up", "na", "start.ready.topic", "/up", "/na/up", "topic that shows it is up `/up` → `/na/up`"),
