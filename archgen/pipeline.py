@@ -270,7 +270,7 @@ def judge_project(
     judge = _VariantJudge(merged_project, checked_project, analysis_memory)
     variants = {
         name: judge.judge_steps(judge.list_steps([name]))
-        for name in checked_project.architecture.variants
+        for name in variant_order.list_judged(checked_project.architecture.variants)
         if variant_names is None or name in variant_names
     }
     judged_projects = {BASE_NAME: checked_project, **variants}

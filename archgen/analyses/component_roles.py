@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass
-from archgen.model.message_types import flow_of
+from archgen.model.port_media import is_physical
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,7 +40,7 @@ class PortSummary:
 def summarise_ports(architecture: Architecture, component: Component) -> PortSummary:
     """Summarise the properties of a component's ports that its role depends on."""
     outputs = component.outputs.values()
-    flows = [flow_of(architecture.message_of(o)) for o in outputs if not o.physical]
+    flows = [architecture.flow_of(o) for o in outputs if not is_physical(o)]
     open_inputs = [i for i in component.inputs.values() if not (i.connections or i.external or i.optional)]
     return PortSummary(
         has_outputs=bool(outputs),
@@ -49,12 +49,13 @@ def summarise_ports(architecture: Architecture, component: Component) -> PortSum
         ),
         may_be_fed=bool(open_inputs),
         has_digital_output=bool(flows),
-        acts_outside=any(o.physical or o.external for o in outputs),
+        acts_outside=any(is_physical(o) or o.external for o in outputs),
         sends_messages=any(
-            o.type and flow == "topic" for o, flow in zip((o for o in outputs if not o.physical), flows, strict=True)
+            o.type and flow == "topic"
+            for o, flow in zip((o for o in outputs if not is_physical(o)), flows, strict=True)
         ),
         serves_calls=any(flow != "topic" for flow in flows),
-        may_serve_calls=any(architecture.message_of(o) is None and not o.physical for o in outputs),
+        may_serve_calls=any(architecture.message_of(o) is None and not is_physical(o) for o in outputs),
     )
 
 
@@ -148,7 +149,7 @@ def _brings_component_data(architecture: Architecture, component: Component, con
     """Whether a reference brings data from another component; answers to calls do not count."""
     if connection.kind == "output":
         output = architecture.outputs[connection.target]
-        flow = "topic" if output.physical else flow_of(architecture.message_of(output))
+        flow = architecture.flow_of(output)
         return output.component != component.id and flow == "topic"
     if connection.outputs:
         return any(architecture.outputs[o].component != component.id for o in connection.outputs)

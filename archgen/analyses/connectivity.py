@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.model.library_ports import is_offered_by_library, waits_for_calls
-from archgen.model.message_types import flow_of
+from archgen.model.port_media import is_physical
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -259,7 +259,7 @@ _KIND_PHRASES = {"service": "a service", "action": "an action", "physical": "phy
 
 
 def _kind_of_output(architecture: Architecture, output: Output) -> str:
-    return "physical" if output.physical else flow_of(architecture.message_of(output))
+    return "physical" if is_physical(output) else architecture.flow_of(output)
 
 
 def _reading_verb(architecture: Architecture, output: Output) -> str:

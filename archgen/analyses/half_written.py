@@ -59,12 +59,13 @@ def half_written(architecture: Architecture) -> Iterator[Diagnostic]:
                 element=node.id,
             )
     for link in architecture.links.values():
-        if len(link.connects) == 1 and not link.unresolved:
+        ends = (*link.connects, *link.devices)
+        if len(ends) == 1 and not link.unresolved:
             yield Diagnostic(
                 "half-written",
-                f"the link `{link.id}` connects only one host, `{link.connects[0]}`",
+                f"the link `{link.id}` connects only one {'host' if link.connects else 'device'}, `{ends[0]}`",
                 link.connects_at,
-                help="name the hosts at both of its ends in `connects`",
+                help="name what is at both of its ends in `connects`",
                 element=link.id,
             )
     for chain in architecture.chains.values():

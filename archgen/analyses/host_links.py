@@ -56,7 +56,9 @@ def unlinked_hosts(architecture: Architecture) -> Iterator[Diagnostic]:
     # Each pair in alphabetical order, as in `_list_topics`.
     joined_pairs = {pair for link in architecture.links.values() for pair in combinations(sorted(link.connects), 2)}
     # Which host a link of one end was to join is open: `half-written` reports it.
-    open_hosts = {link.connects[0] for link in architecture.links.values() if len(link.connects) == 1}
+    open_hosts = {
+        link.connects[0] for link in architecture.links.values() if len(link.connects) == 1 and not link.devices
+    }
     for (host, other_host), topics in _list_topics(architecture).items():
         if (host, other_host) not in joined_pairs and open_hosts.isdisjoint((host, other_host)):
             yield Diagnostic(
@@ -71,12 +73,12 @@ def unlinked_hosts(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def _list_topics(architecture: Architecture) -> Mapping[HostPair, list[str]]:
-    """Return the topics, services and actions that nodes on two hosts exchange, by pair of hosts.
+    """Return what nodes on two hosts exchange (topics, services and actions, channels of other media), by pair of hosts.
 
     Topics that all nodes share are left out: nobody writes down who reads them.
     """
     topics_by_pair = defaultdict[HostPair, list[str]](list)
-    for topic in architecture.topics.values():
+    for _, topic in architecture.list_carriers():
         if not topic.shared:
             for pair in _list_host_pairs(architecture, topic):
                 topics_by_pair[pair].append(topic.name)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.port_media import is_physical
 from archgen.timing.chains.whole_bounds import LIMIT_KEYS
 
 if TYPE_CHECKING:
@@ -176,7 +177,7 @@ def _find_idle_inputs(architecture: Architecture, analysis: Analysis) -> Iterato
 
 def _find_idle_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
     for port in architecture.inputs.values():
-        if port.freshness is not None and port.physical:
+        if port.freshness is not None and is_physical(port):
             yield Diagnostic(
                 "idle-timing",
                 f"`freshness` of `{port.id}` has no effect: it is physical, so that nothing is sent there",

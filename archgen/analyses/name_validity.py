@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.port_media import uses_ros
 from archgen.model.ros_distro import is_ros_1
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
     from archgen.model.architecture import Architecture
     from archgen.model.deployment import Container
-    from archgen.model.node import Node
+    from archgen.model.node import Node, PortUse
 
 _FORBIDDEN_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
 _SUBSTITUTION = re.compile(r"\{(?:node|ns|namespace)\}")
@@ -98,13 +99,15 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in architecture.nodes.values():
         if not node.written:
             continue
-        fault = find_node_name_fault(node.name)
+        fault = None if node.is_program else find_node_name_fault(node.name)
         if fault:
             yield _report_invalid_name(node, "a node", node.name, node.name_at, fault)
-        fault = find_name_fault(node.namespace, ros_1=ros_1)
+        fault = None if node.is_program else find_name_fault(node.namespace, ros_1=ros_1)
         if fault and node.namespace:
             yield _report_invalid_name(node, "a namespace", node.namespace, node.at, fault)
         for use in node.uses:
+            if not _is_ros_use(architecture, use):
+                continue
             kind = "a topic" if use.use in {"publishes", "subscribes"} else "a service or action"
             # Only the linker fills in `topic_places`, one span for each topic.
             spans = use.topic_places or (use.at,) * len(use.topics)
@@ -114,6 +117,13 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
                     yield _report_invalid_name(node, kind, topic, span, fault)
     for container in architecture.containers.values():
         yield from _judge_container(container, ros_1=ros_1)
+
+
+def _is_ros_use(architecture: Architecture, use: PortUse) -> bool:
+    """Whether the names of an entry are names of ROS: over other media, any text is a name."""
+    ports = architecture.outputs if use.use in {"publishes", "serves"} else architecture.inputs
+    port = ports.get(use.port or "")
+    return port is None or uses_ros(port)
 
 
 def _judge_container(container: Container, *, ros_1: bool) -> Iterator[Diagnostic]:
@@ -164,7 +174,9 @@ def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
     first_by_name: dict[str, Node | Container] = {}
     # A container without a name is called by whoever starts it.
     named_containers = [each for each in architecture.containers.values() if each.name is not None]
-    nodes: list[Node | Container] = [each for each in architecture.nodes.values() if each.written]
+    nodes: list[Node | Container] = [
+        each for each in architecture.nodes.values() if each.written and not each.is_program
+    ]
     for node in (*nodes, *named_containers):
         earlier_node = first_by_name.setdefault(node.full_name, node)
         if earlier_node is not node:

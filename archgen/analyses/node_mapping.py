@@ -6,6 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.port_media import uses_ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -28,8 +29,8 @@ def nodes_of_components(architecture: Architecture) -> Mapping[str, tuple[Node, 
 def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
     """No node implements a component.
 
-    Why: Nobody has decided yet which ROS node does this work. Pictures show a planned node in its place. A component whose
-    inputs and outputs are all physical needs none.
+    Why: Nobody has decided yet which ROS node does this work. Pictures show a planned node in its place. A component of
+    which no input or output is ROS (all are physical, or have another medium such as `mqtt`) needs none.
 
     Bad:
         groups:
@@ -55,7 +56,7 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     nodes = nodes_of_components(architecture)
     for component in architecture.components.values():
-        if component.id in nodes or component.id in architecture.suspected_ids or _is_purely_physical(component):
+        if component.id in nodes or component.id in architecture.suspected_ids or _is_without_ros(component):
             continue
         yield Diagnostic(
             "unmapped-component",
@@ -137,7 +138,7 @@ def unpublished_output(architecture: Architecture) -> Iterator[Diagnostic]:
     """
     for component, nodes, carried_ports in _find_shared_components(architecture):
         for output in component.outputs.values():
-            if output.physical or output.id in carried_ports:
+            if not uses_ros(output) or output.id in carried_ports:
                 continue
             names = " and ".join(f"`{node.id}`" for node in nodes)
             yield Diagnostic(
@@ -213,14 +214,11 @@ def _find_shared_components(architecture: Architecture) -> Iterator[tuple[Compon
 
 def _receives_messages(architecture: Architecture, entry: Input) -> bool:
     outputs = (architecture.outputs[o] for connection in entry.connections for o in connection.outputs)
-    return not entry.physical and any(not output.physical for output in outputs)
+    return uses_ros(entry) and any(uses_ros(output) for output in outputs)
 
 
-def _is_purely_physical(component: Component) -> bool:
-    ports = [port.physical for port in component.inputs.values()] + [
-        port.physical for port in component.outputs.values()
-    ]
-    return bool(ports) and all(ports)
+def _is_without_ros(component: Component) -> bool:
+    return bool(component.ports) and not any(map(uses_ros, component.ports))
 
 
 RULES = (

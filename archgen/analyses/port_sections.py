@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.model.message_types import flow_of
+from archgen.model.port_media import is_physical
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -66,7 +67,7 @@ def _find_section_fault(
 ) -> tuple[str, str] | None:
     """Return what is wrong with an entry and what to do about it, or None."""
     port = architecture.outputs.get(use.port or "") or architecture.inputs.get(use.port or "")
-    if port and port.physical:
+    if port and is_physical(port):
         return (
             f"is physical and does not stand below `{use.use}`",
             "leave it out: physical ports have neither topic nor message",

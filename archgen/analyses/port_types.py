@@ -6,8 +6,10 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.model.component import Output
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of, full_message_name
+from archgen.model.port_media import MEMORY, is_physical, name_medium, uses_ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -97,10 +99,12 @@ def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An input is said to be physical, but its source sends messages; or a node reads messages that a physical source never sends.
+    """An input has another medium than its source: it is physical and the source sends messages, or one is MQTT and the other CAN.
 
-    Why: What can be touched, seen or heard has no topic. The node would not subscribe to the data that is meant for it, or
-    subscribe to a topic that nobody publishes.
+    Why: What can be touched, seen or heard has no topic: the node would not subscribe to the data that is meant for it, or
+    subscribe to a topic that nobody publishes. Who reads a CAN bus finds nothing of what is sent by MQTT: a component that
+    translates is missing, or one side has the wrong word. An input that says nothing has the medium of its sources. What is in
+    memory is read by the same process alone.
 
     Bad:
         groups:
@@ -126,19 +130,91 @@ def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
           synthesis: {implements: synthesis}
           loudspeaker: {implements: loudspeaker}
     """
-    for connection in architecture.connections:
-        entry = architecture.inputs[connection.input]
-        digital_output = next((o for o in connection.outputs if not architecture.outputs[o].physical), None)
-        if entry.physical and digital_output:
+    readers = [architecture.inputs[connection.input] for connection in architecture.connections]
+    pairs = [*zip(architecture.connections, readers, strict=True), *_list_shell_connections(architecture)]
+    for connection, entry in pairs:
+        if not entry.medium_written:
+            continue
+        wrong_output = next((o for o in connection.outputs if architecture.outputs[o].medium != entry.medium), None)
+        if wrong_output is not None:
+            yield _diagnose_other_medium(connection, entry, architecture.outputs[wrong_output])
+    yield from _find_shell_outputs(architecture)
+    yield from _find_readers_of_physical_outputs(architecture)
+    yield from _find_divided_memory(architecture)
+
+
+def _list_shell_connections(architecture: Architecture) -> Iterator[tuple[Connection, Input]]:
+    """Yield what feeds the inputs of composed components: the connections themselves lead on to what is inside."""
+    for shell in architecture.shells.values():
+        for entry in shell.inputs.values():
+            if entry.id not in architecture.inputs:
+                yield from ((connection, entry) for connection in entry.connections)
+
+
+def _diagnose_other_medium(connection: Connection, entry: Input, output: Output) -> Diagnostic:
+    if is_physical(entry):
+        fault = "sends messages" if uses_ros(output) else f"sends data ({name_medium(output.medium)})"
+        message = f"the input `{entry.name}` of `{entry.component}` is physical, but `{output.id}` {fault}"
+        help_line = "leave `medium: physical` out at the input, or write it at the output too"
+        return _make_mismatch(connection, entry, output, message, "not physical", help_line)
+    sent = "is physical" if is_physical(output) else f"sends over {name_medium(output.medium)}"
+    message = f"the input `{entry.name}` of `{entry.component}` is read over {name_medium(entry.medium)}, but `{output.id}` {sent}"
+    help_line = f"leave `medium` out at the input, which then has that of its source, or write `medium: {entry.medium}` at the output"
+    return _make_mismatch(connection, entry, output, message, "sent here", help_line)
+
+
+def _make_mismatch(  # noqa: PLR0913, PLR0917 - what it says
+    connection: Connection, entry: Input, output: Output, message: str, mark: str, help_line: str
+) -> Diagnostic:
+    place = output.medium_at if output.medium_at != NO_SPAN else output.at
+    return Diagnostic(
+        "medium-mismatch",
+        message,
+        connection.at,
+        labels=(Label(place, mark),),
+        help=help_line,
+        element=entry.component,
+    )
+
+
+def _find_shell_outputs(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Report outputs of composed components whose medium is another than that of what they give on."""
+    for shell in architecture.shells.values():
+        for output in shell.outputs.values():
+            if not output.medium_written:
+                continue
+            given = (architecture.outputs.get(each) for each in architecture.leaf_ports_of("output", output.id))
+            other = next((each for each in given if each and each.medium != output.medium), None)
+            if other is not None and other.medium_written:
+                yield Diagnostic(
+                    "medium-mismatch",
+                    f"`{output.id}` has the medium `{output.medium}`, but gives on `{other.id}`, which has `{other.medium}`",
+                    output.medium_at,
+                    labels=(Label(other.medium_at, "given on"),),
+                    help="write it in one place: what is left out follows",
+                    element=shell.id,
+                )
+
+
+def _find_divided_memory(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Report data that is in memory, and read by a process in which it is not."""
+    processes: dict[str, set[str]] = defaultdict(set)
+    for node in architecture.nodes.values():
+        if node.written:
+            for component in node.implements:
+                processes[component].add(f"container {node.container}" if node.container else node.id)
+    for edge in architecture.edges:
+        output, entry = architecture.outputs[edge.output], architecture.inputs[edge.input]
+        writing, reading = processes.get(output.component), processes.get(entry.component)
+        if output.medium == entry.medium == MEMORY and writing and reading and writing.isdisjoint(reading):
             yield Diagnostic(
                 "medium-mismatch",
-                f"the input `{entry.name}` of `{entry.component}` is physical, but `{digital_output}` sends messages",
-                connection.at,
-                labels=(Label(architecture.outputs[digital_output].at, "not physical"),),
-                help="leave `medium: physical` out at the input, or write it at the output too",
+                f"`{entry.id}` reads `{output.id}` from memory, but runs in another process",
+                edge.at,
+                labels=(Label(output.medium_at if output.medium_at != NO_SPAN else output.at, "in memory"),),
+                help="let one node implement both, put their nodes into one container, or name what the data travels over",
                 element=entry.component,
             )
-    yield from _find_readers_of_physical_outputs(architecture)
 
 
 def _find_readers_of_physical_outputs(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -151,7 +227,7 @@ def _find_readers_of_physical_outputs(architecture: Architecture) -> Iterator[Di
             entry = architecture.inputs.get(use.port or "")
             outputs = outputs_by_input.get(use.port or "", [])
             # A physical input is `wrong-section`'s; one that is also fed from outside may get its messages there.
-            if entry and not entry.physical and not entry.external and outputs and all(o.physical for o in outputs):
+            if entry and not is_physical(entry) and not entry.external and outputs and all(map(is_physical, outputs)):
                 yield Diagnostic(
                     "medium-mismatch",
                     f"`{node.id}` {'subscribes to' if use.use == 'subscribes' else use.use} `{entry.name}`, but `{outputs[0].id}` is physical and sends no messages",

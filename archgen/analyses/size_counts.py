@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from archgen.frozen import dataclass
+from archgen.model.port_media import uses_ros
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -20,7 +21,7 @@ class ArchitectureSize:
     """Counts of elements, and means as exact fractions (0 if there is nothing to divide by).
 
     `connections` are references as written, `edges` the pairs of output and input that they make. A connection is mapped
-    if all outputs that it carries have a message (a planned message counts); physical outputs need none. `nodes` are
+    if all outputs that it carries have a message (a planned message counts); what is no ROS needs none. `nodes` are
     those written in the project, `planned_nodes` those that archgen adds. `messages` are distinct names.
     """
 
@@ -63,6 +64,10 @@ class ArchitectureSize:
     """The steps of all use cases."""
     programs: int = 0
     """Those among the nodes that are no ROS: simulators, registries, brokers."""
+    promises: int = 0
+    """The outputs that promise something."""
+    deprecated: int = 0
+    """The outputs, types and component types that are going away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +130,10 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         component_types=len(arch.component_types),
         made_connections=sum(connection.is_made for connection in arch.connections),
         frames=len(arch.frames),
+        promises=sum(output.promise is not None for output in arch.outputs.values()),
+        deprecated=sum(each.deprecated is not None for each in arch.outputs.values())
+        + sum(each.deprecated is not None for each in arch.types.values())
+        + sum(each.deprecated is not None for each in arch.component_types.values()),
         variants=len(arch.variants),
         steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
         programs=sum("program" in node.kinds for node in arch.nodes.values()),
@@ -134,7 +143,7 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
 def count_mapped_connections(architecture: Architecture) -> int:
     """Count the connections whose outputs all have a message, from their type or from the node that publishes them."""
     named_outputs = {e.port for e in architecture.endpoints if e.message and e.use in {"publishes", "serves"}}
-    named_outputs.update(o.id for o in architecture.outputs.values() if o.physical or architecture.message_of(o))
+    named_outputs.update(o.id for o in architecture.outputs.values() if not uses_ros(o) or architecture.message_of(o))
     return sum(bool(c.outputs) and named_outputs.issuperset(c.outputs) for c in architecture.connections)
 
 

@@ -308,7 +308,7 @@ def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
         is_known = (
             node.status == "planned" or build_command(architecture, node) or (node.start or NO_START).ready.has_sign
         )
-        if "program" in node.kinds and not is_known:
+        if node.is_program and node.written and not is_known:
             yield Diagnostic(
                 "unstarted-program",
                 f"nothing says how the program `{node.id}` is started, nor how one sees that it is up",

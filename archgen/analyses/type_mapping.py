@@ -11,6 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import ConceptualType
+from archgen.model.port_media import uses_ros
 
 
 def _all_ports(architecture: Architecture) -> tuple[Output | Input, ...]:
@@ -22,10 +23,13 @@ def _spans_by_type(architecture: Architecture) -> dict[str, list[Span]]:
     """Return the spans where digital ports name each type, by type name."""
     spans_by_type = dict[str, list[Span]]()
     for port in _all_ports(architecture):
-        if port.type is not None and not port.physical:
+        if port.type is not None and uses_ros(port):
             spans_by_type.setdefault(port.type, []).append(port.type_at if port.type_at != NO_SPAN else port.at)
-    # What a field holds is sent, too.
+    # What a field holds is sent, too; of what travels over ROS nowhere, no message is asked.
+    other_types = {port.type for port in _all_ports(architecture) if not uses_ros(port)}.difference(spans_by_type)
     for type_ in architecture.types.values():
+        if type_.name in other_types:
+            continue
         for _, field in type_.list_fields():
             is_parameter = field.element_type in type_.generic
             if type_.at != NO_SPAN and not is_parameter and field.element_type in architecture.types:
@@ -37,7 +41,8 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
     """No message is named for a conceptual type that carries messages.
 
     Why: outputs and inputs of this type cannot become topics yet: nobody has decided what is sent. A port that is no message
-    at all (a sound, a push, light) says `medium: physical` instead.
+    at all (a sound, a push, light) says `medium: physical` instead; one that does not travel over ROS says what it travels over, as in
+    `medium: mqtt`.
 
     Bad:
 

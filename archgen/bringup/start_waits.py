@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from archgen.bringup.plan_shapes import Wait, WaitReason
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.node import Node
+from archgen.model.port_media import is_physical
 from archgen.model.start_up import NO_START, StartTarget
 
 CONTAINER_PREFIX = "container "
@@ -25,7 +26,7 @@ class StartWaits:
             for component_id in node.implements:
                 self._nodes_of[component_id].append(node.id)
         self._users_of_port: dict[str, dict[str, str]] = defaultdict(dict)
-        for endpoint in architecture.endpoints:
+        for endpoint in architecture.list_endpoints():
             if endpoint.port is not None:
                 self._users_of_port[endpoint.port][endpoint.node] = endpoint.flow
         self.managers = {node.id: self._list_managers(node) for node in architecture.nodes.values()}
@@ -68,7 +69,7 @@ class StartWaits:
     def _list_data_waits(self) -> Iterator[Wait]:
         grouped: dict[tuple[str, str, WaitReason], list[PortEdge]] = defaultdict(list)
         for edge in self._architecture.edges:
-            if self._architecture.outputs[edge.output].physical:
+            if is_physical(self._architecture.outputs[edge.output]):
                 continue
             for awaited, waiting, reason in self._list_edge_waits(edge):
                 grouped[awaited, waiting, reason].append(edge)

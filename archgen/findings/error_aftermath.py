@@ -33,6 +33,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "idle-executor",
         "missing-detail",
         "uncovered-requirement",
+        "unneeded-exception",
         "unmet-ready",
         "unlinked-hosts",
         "unmapped-component",
@@ -77,9 +78,11 @@ _FILE_RULES = frozenset(
         "unchecked-message",
         "unjustified-node",
         "unknown-parameter",
+        "unlisted-medium",
         "unmapped-type",
         "unnamed-source",
         "unpublished-frame",
+        "unused-ros-setting",
         "wrong-section",
     }
 )

@@ -13,6 +13,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
 from archgen.link.promise_reading import read_deprecation, read_promise
 from archgen.model.component import Output
+from archgen.model.port_media import ROS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _PROMISING_KEYS = frozenset({"promise", "version", "deprecated"})
@@ -35,6 +36,8 @@ class ElementOutline:
     """By component id and name, those of composed components included."""
     undeclared_inputs: list[tuple[str, MappingEntry]] = field(default_factory=list)
     """Inputs that `to` at an output names and nobody declares, with their components."""
+    middleware: str = ROS
+    """What digital ports travel over where they do not say."""
     promises_something: bool = False
     """Whether an output has a promise, a version, or is deprecated."""
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -77,7 +80,11 @@ class ElementOutline:
 
 def build_outline(expansion: ExpandedProject) -> ElementOutline:
     """Return the outline of a merged project in which all types are written out, by complete ids."""
-    element_outline = ElementOutline(expansion=None if expansion.is_plain else expansion)
+    project = mapping_values.get_mapping(expansion.root, "project")
+    element_outline = ElementOutline(
+        expansion=None if expansion.is_plain else expansion,
+        middleware=mapping_values.get_medium(project, "middleware") or ROS,
+    )
     members = element_outline.members
     for group_id, entry, body in mapping_values.iterate_elements(expansion.root, "groups"):
         element_outline.groups[group_id] = entry
@@ -140,12 +147,14 @@ def _declare_output(element_outline: ElementOutline, component: str, entry: Mapp
         component=component,
         type=mapping_values.normalise_type_name(type_text) if type_text else None,
         external=mapping_values.get_text(body, "external"),
-        physical=mapping_values.get_text(body, "medium") == "physical",
+        medium=mapping_values.get_medium(body, "medium") or element_outline.middleware,
+        medium_written=mapping_values.get_medium(body, "medium") is not None,
         frame=mapping_values.get_text(body, "frame"),
         description=mapping_values.get_text(body, "description"),
         urls=mapping_values.get_text_mapping(body, "urls"),
         annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
+        medium_at=mapping_values.get_span(body, "medium"),
         type_at=mapping_values.get_span(body, "type"),
         frame_at=mapping_values.get_span(body, "frame"),
         **said,

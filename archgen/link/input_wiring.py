@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -13,9 +13,10 @@ from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import PortEdge
 from archgen.model.component import Connection, Input, Output
-from archgen.model.message_types import ConceptualType, flow_of
+from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import ElementRef
-from archgen.syntax.yaml_tree import MappingEntry, ScalarNode
+from archgen.model.port_media import PHYSICAL, flow_of_port, is_physical
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 _SOURCE_KINDS = ("group", "component", "output")
 MAX_PAIRS = 500_000
@@ -78,7 +79,8 @@ class InputWiring:
             component=component_id,
             connections=connections,
             external=mapping_values.get_text(outside, "external"),
-            physical="physical" in {mapping_values.get_text(each, "medium") for each in (body, outside)},
+            medium=self._find_medium(body, outside, connections),
+            medium_written=any(mapping_values.get_medium(each, "medium") for each in (body, outside)),
             type=mapping_values.normalise_type_name(type_text) if type_text else None,
             optional=mapping_values.get_flag(body, "optional"),
             freshness=sanity_checks.read_positive(
@@ -91,10 +93,24 @@ class InputWiring:
             urls=mapping_values.get_text_mapping(body, "urls"),
             annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
+            medium_at=mapping_values.get_span(body, "medium"),
             type_at=mapping_values.get_span(body, "type"),
             freshness_at=mapping_values.get_span(body, "freshness"),
             frame_at=mapping_values.get_span(body, "frame"),
         )
+
+    def _find_medium(self, body: MappingNode, outside: MappingNode, connections: Iterable[Connection]) -> str:
+        """Return what an input travels over: as written, else the word of all of its sources, else the project's."""
+        written = [mapping_values.get_medium(each, "medium") for each in (body, outside)]
+        if any(written):
+            return PHYSICAL if PHYSICAL in written else next(filter(None, written))
+        words = {self._medium_of_output(output) for connection in connections for output in connection.outputs}
+        # What is heard or seen is turned into data by who reads it: that is said at the input, if it is so.
+        return words.pop() if len(words) == 1 and PHYSICAL not in words else self.outline.middleware
+
+    def _medium_of_output(self, output_id: str) -> str:
+        component_id, _, name = output_id.rpartition(".")
+        return self.outline.outputs[component_id][name].medium
 
     def _connect_sources(self, component_id: str, input_id: str, sources: PortSources) -> Iterator[Connection]:
         """Yield the connections of an input as if everything had been written out: one for each output of a leaf."""
@@ -162,7 +178,6 @@ class InputWiring:
         components = [target.id] if members is None else [f"{target.id}.{name}" for name in members.entries]
         for component in components:
             for output in self.outline.outputs[component].values():
-                output_type = self.types.get(output.type or "")
                 # A component or group as a whole stands for its data: a service is called by name, light is no message.
-                if not output.physical and flow_of(output_type.message if output_type else None) == "topic":
+                if not is_physical(output) and flow_of_port(output, self.types.get(output.type or "")) == "topic":
                     yield output

@@ -16,6 +16,7 @@ from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.message_types import full_message_name
 from archgen.model.path_resolver import title_from_id
+from archgen.model.port_media import normalise_medium
 from archgen.model.quantity import Quantity
 from archgen.schema.short_forms import fold_type_name
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, node_to_data
@@ -52,6 +53,11 @@ def get_text(mapping: MappingNode, key: str) -> str | None:
         return None
     node = entry.value
     return node.text if type(node) is ScalarNode and node.value is not None else None
+
+
+def get_medium(mapping: MappingNode, key: str) -> str | None:
+    """Return the word for what something travels over, as it is compared; None for `digital`, which names nothing."""
+    return normalise_medium(get_text(mapping, key))
 
 
 def get_absolute_name(mapping: MappingNode, key: str) -> str:

@@ -11,12 +11,15 @@ from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import replace
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SourceReferences
-from archgen.model.message_types import ConceptualType, flow_of
+from archgen.model.component import Output
+from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import ElementRef
+from archgen.model.port_media import flow_of_port, is_physical
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 PortKey = tuple[str, str]
@@ -232,6 +235,34 @@ class PortSources:
                     given.update(dict.fromkeys(self._follow_output(f"{shell_id}.{name}"), body))
         return given
 
+    def spread_media(self) -> None:
+        """Give outputs without a medium that of what gives them on, and what gives on without one that of what it gives on."""
+        for name, shell_id, body in self._list_given_outputs():
+            if mapping_values.get_medium(body, "medium"):
+                medium = self.outline.outputs[shell_id][name].medium
+                for leaf in self._find_given(shell_id, name):
+                    if not leaf.medium_written:
+                        self.outline.outputs[leaf.component][leaf.name] = replace(leaf, medium=medium)
+        for name, shell_id, body in self._list_given_outputs():
+            words = {leaf.medium for leaf in self._find_given(shell_id, name)}
+            if mapping_values.get_medium(body, "medium") is None and len(words) == 1:
+                outputs = self.outline.outputs[shell_id]
+                outputs[name] = replace(outputs[name], medium=words.pop())
+        # Which outputs a whole component stands for hangs on their media.
+        self.forget_outputs()
+
+    def _list_given_outputs(self) -> Iterator[tuple[str, str, MappingNode]]:
+        """Yield the outputs of composed components as written: name, component, and what is written."""
+        for shell_id, bodies in self.outline.given_outputs.items():
+            yield from ((name, shell_id, body) for name, body in bodies.items())
+
+    def _find_given(self, shell_id: str, name: str) -> Iterator[Output]:
+        """Yield the outputs of leaves that an output of a composed component gives on."""
+        for leaf_id in self._follow_output(f"{shell_id}.{name}"):
+            component_id, _, leaf_name = leaf_id.rpartition(".")
+            if component_id != shell_id:
+                yield self.outline.outputs[component_id][leaf_name]
+
     def forget_outputs(self) -> None:
         """Forget what was followed: sources were added since."""
         self._outputs_behind.clear()
@@ -240,7 +271,7 @@ class PortSources:
         for component_id in self._list_members(target):
             for output in self.outline.outputs[component_id].values():
                 output_type = self._types.get(self.type_of_output(output.id) or "")
-                if not output.physical and flow_of(output_type.message if output_type else None) == "topic":
+                if not is_physical(output) and flow_of_port(output, output_type) == "topic":
                     yield output.id
 
     def _list_members(self, target: ElementRef) -> list[str]:

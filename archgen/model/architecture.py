@@ -8,6 +8,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
+from archgen.model import port_media
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
@@ -106,17 +107,38 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
+class SourceDemand:
+    """Who may take its inputs only from whom, as two selectors.
+
+    An input that has the property `guarded_by` guards itself, and may take them from anywhere.
+    """
+
+    of: str
+    inputs_from: str
+    guarded_by: str | None = None
+    of_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Policy:
-    """A flow that the project forbids, from what one selector selects to what another selects."""
+    """A flow that the project forbids, from what one selector selects to what another selects; or sources that it asks for.
+
+    `accepted` are the inputs that it lets pass all the same, by complete id, with the reasons.
+    """
 
     id: str
     title: str
-    forbid_from: str
-    forbid_to: str
+    forbid_from: str = ""
+    forbid_to: str = ""
+    require: SourceDemand | None = None
+    accepted: Mapping[str, str] = field(default_factory=dict)
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     to_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    accepted_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each accepted input is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +158,8 @@ class ProjectInfo:
     title: str
     version: str | None = None
     description: str | None = None
+    middleware: str = "ros"
+    """What digital ports travel over where they do not say."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 
@@ -216,6 +240,8 @@ class Architecture:
     review: ReviewSettings = field(default_factory=ReviewSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
+    channels: Mapping[str, Topic] = field(default_factory=dict)
+    """What data travels over that is no ROS, by medium and name (`mqtt fleet/pose`): as topics, with the nodes that use it."""
     interfaces: Interfaces = field(default_factory=Interfaces)
     partial: bool = False
     """Whether a file could not be read at all. Then no rule reports something as unused: that file may use it."""
@@ -229,11 +255,15 @@ class Architecture:
     """The complete ids of the components of which the type is not known: nor is what they would have from it."""
 
     def message_of(self, port: Input | Output) -> str | None:
-        """Return the message that a port's type is mapped to; None if unknown, or if the port is physical."""
-        if port.type is None or port.physical:
+        """Return the message that a port's type is mapped to; None if unknown, or if the port is no ROS."""
+        if port.type is None or not port_media.uses_ros(port):
             return None
         mapped = self.types.get(port.type)
         return mapped.message if mapped else None
+
+    def flow_of(self, port: Input | Output) -> port_media.PortFlow:
+        """Return whether a port's data is sent (`topic`) or called for, over whatever it travels."""
+        return port_media.flow_of_port(port, self.types.get(port.type or ""))
 
     def leaves_of(self, component_id: str) -> tuple[str, ...]:
         """Return the leaves of a composed component, or the component itself, by complete ids."""
@@ -285,6 +315,22 @@ class Architecture:
         """Yield the libraries of the component types that a component is an instance of, or is part of, each once."""
         types = (base for each in (component, *self.list_around(component)) for base in self.list_bases(each.type_name))
         yield from dict.fromkeys(each.library for each in types if each.library is not None)
+
+    def list_carriers(self) -> Iterator[tuple[str, Topic]]:
+        """Yield what nodes exchange data over, by name: topics, services and actions, then channels of other media."""
+        yield from self.topics.items()
+        yield from self.channels.items()
+
+    def find_carrier(self, name: str) -> Topic | None:
+        """Return the topic, service, action or channel of a name."""
+        return self.topics.get(name) or self.channels.get(name)
+
+    def list_endpoints(self) -> Iterator[Endpoint]:
+        """Yield the endpoints of nodes over ROS, then those over other media."""
+        yield from self.endpoints
+        for channel in self.channels.values():
+            yield from channel.writers
+            yield from channel.readers
 
     def list_ports(self) -> Iterator[Input | Output]:
         """Yield all ports: outputs, then inputs."""

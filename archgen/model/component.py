@@ -56,7 +56,8 @@ class Input:
     component: str
     connections: tuple[Connection, ...] = ()
     external: str | None = None
-    physical: bool = False
+    medium: str = "ros"
+    """What it travels over, as `port_media` says: the word written, else that of its sources, else the project's."""
     type: str | None = None
     optional: bool = False
     freshness: Quantity | None = None
@@ -66,10 +67,13 @@ class Input:
     description: str | None = None
     from_written: bool = False
     """Whether `from` is written, resolved or not: no rule reports such an input as unfed."""
+    medium_written: bool = False
+    """Whether somebody says what it travels over; `digital` alone does not."""
     urls: Mapping[str, str] = field(default_factory=dict)
     """Addresses and files of the project by name: what describes its interface."""
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    medium_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     freshness_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)
@@ -84,7 +88,8 @@ class Output:
     component: str
     type: str | None = None
     external: str | None = None
-    physical: bool = False
+    medium: str = "ros"
+    """What it travels over, as `port_media` says: the word written, else the project's."""
     frame: str | None = None
     """The coordinate frame in which its data is given, as written; None: that of its type."""
     promise: Promise | None = None
@@ -94,10 +99,13 @@ class Output:
     description: str | None = None
     is_made: bool = False
     """Whether nobody wrote what this output of a composed component gives on: `autoconnect` joined the two."""
+    medium_written: bool = False
+    """Whether somebody says what it travels over; `digital` alone does not."""
     urls: Mapping[str, str] = field(default_factory=dict)
     """Addresses and files of the project by name: what describes its interface."""
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    medium_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     type_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     frame_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
@@ -176,6 +184,11 @@ class Component:
     def owners(self) -> tuple[str, ...]:
         """The ids of all owners, the main one first; empty if there is none."""
         return (self.owner, *self.co_owners) if self.owner else ()
+
+    @property
+    def ports(self) -> tuple[Input | Output, ...]:
+        """Its inputs, then its outputs."""
+        return (*self.inputs.values(), *self.outputs.values())
 
     @property
     def type_name(self) -> str:

@@ -74,16 +74,22 @@ class Resource:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A network between hosts. `bandwidth` in bit/s; `best` and `worst` are latencies in ns."""
+    """A network or cable between hosts and devices. `bandwidth` in bit/s; `best` and `worst` are latencies in ns."""
 
     id: str
     title: str
     connects: tuple[str, ...] = ()
+    """The hosts, by id."""
     bandwidth: Quantity | None = None
     best: Quantity | None = None
     worst: Quantity | None = None
+    devices: tuple[str, ...] = ()
+    """The components that are devices on it, by complete id."""
+    protocol: str | None = None
+    """What is spoken on it, as a medium's word."""
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    protocol_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     connects_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
-    """The entries of `connects` that name no host."""
+    """The entries of `connects` that name neither a host nor a component."""

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection
-from archgen.model.message_types import flow_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +46,7 @@ def _build_graph(pairs: Iterable[tuple[str, str]]) -> FlowGraph:
 
 
 def _component_flow_pairs(architecture: Architecture) -> Iterator[tuple[str, str]]:
-    both_ways = {o.id for o in architecture.outputs.values() if flow_of(architecture.message_of(o)) != "topic"}
+    both_ways = {o.id for o in architecture.outputs.values() if architecture.flow_of(o) != "topic"}
     for edge in architecture.edges:
         writer = architecture.outputs[edge.output].component
         reader = architecture.inputs[edge.input].component
@@ -75,7 +74,7 @@ def _stub_components(architecture: Architecture, connection: Connection) -> Iter
 
 
 def _node_flow_pairs(architecture: Architecture) -> Iterator[tuple[str, str]]:
-    for topic in architecture.topics.values():
+    for topic in (*architecture.topics.values(), *architecture.channels.values()):
         for reader in topic.readers:
             for writer in topic.writers:
                 # A shared topic such as /tf would connect every node to every other one: there only the outputs count

@@ -46,7 +46,7 @@ class InterfaceEnds:
 def list_interface_ends(architecture: Architecture) -> InterfaceEnds:
     """Return who answers for what in an architecture."""
     endpoints_by_port: dict[tuple[bool, str], list[Endpoint]] = {}
-    for endpoint in architecture.endpoints:
+    for endpoint in architecture.list_endpoints():
         if endpoint.port is not None:
             key = endpoint.use in {"publishes", "serves"}, endpoint.port
             endpoints_by_port.setdefault(key, []).append(endpoint)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Output
-from archgen.model.message_types import flow_of
+from archgen.model.port_media import is_physical
 
 
 def is_offered_by_library(architecture: Architecture, output: Output) -> bool:
@@ -17,7 +17,5 @@ def is_offered_by_library(architecture: Architecture, output: Output) -> bool:
 
 def waits_for_calls(architecture: Architecture, component: Component) -> bool:
     """Whether a component of a library's type has services and actions only, which people and tools may call."""
-    flows = {
-        "physical" if each.physical else flow_of(architecture.message_of(each)) for each in component.outputs.values()
-    }
+    flows = {"physical" if is_physical(each) else architecture.flow_of(each) for each in component.outputs.values()}
     return not component.inputs and flows <= {"service", "action"} and any(architecture.list_libraries_of(component))

@@ -63,7 +63,7 @@ class PortUse:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """A ROS node. `implements` holds complete component ids; `written` is False for planned nodes that archgen adds.
+    """A ROS node, or a program that is none. `implements` holds complete component ids; `written` is False for planned nodes that archgen adds.
 
     `uses` are the entries as written; what the node exposes in the end are the architecture's endpoints.
     """
@@ -127,6 +127,11 @@ class Node:
     """What is odd about its parameter files."""
 
     @property
+    def is_program(self) -> bool:
+        """Whether it is no node of ROS: it has no node name, no parameters and no life cycle there."""
+        return "program" in self.kinds
+
+    @property
     def full_name(self) -> str:
         """The namespace and name as ROS shows them: `/perception/object_recognizer`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
@@ -178,5 +183,7 @@ class Topic:
     readers: tuple[Endpoint, ...]
     """Subscribers, or clients."""
     size: Quantity | None = None
+    medium: str = "ros"
+    """What it travels over; anything but `ros` stands in the architecture's `channels`."""
     shared: bool = False
     """Whether all nodes share it: /tf and the like, and the project's `ros.shared_topics`."""

@@ -14,8 +14,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Input, Output
 from archgen.model.interface_ends import InterfaceEnds, list_interface_ends
-from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, Topic
+from archgen.model.port_media import is_physical
 
 InterfaceFlow = Literal["topic", "service", "action", "physical"]
 PartnerPair = tuple[str, str]
@@ -143,7 +143,7 @@ class _InterfaceFinder:
         return PartnerInterface(
             output.id,
             direction,
-            "physical" if output.physical else flow_of(message),
+            "physical" if is_physical(output) else architecture.flow_of(output),
             output,
             tuple(partner_inputs),
             tuple(architecture.inputs[input_id] for input_id in other_ids),

@@ -10,6 +10,7 @@ from archgen.model.component import Component
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
+from archgen.model.port_media import list_medium_words
 from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_condition
 from archgen.model.requirement_tree import add_below
 
@@ -85,11 +86,7 @@ def _matches_any(pattern: str, texts: Iterable[str | None]) -> bool:
 
 
 def _port_media(component: Component) -> Iterable[str]:
-    physical_flags = (
-        *(i.physical for i in component.inputs.values()),
-        *(o.physical for o in component.outputs.values()),
-    )
-    return ("physical" if is_physical else "digital" for is_physical in physical_flags)
+    return (word for port in component.ports for word in list_medium_words(port))
 
 
 _COMPONENT_KEYS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {

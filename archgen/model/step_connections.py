@@ -10,7 +10,7 @@ from typing import Literal
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
-from archgen.model.message_types import flow_of
+from archgen.model.port_media import is_physical
 from archgen.model.use_case_steps import Step, StepEnd
 
 StepWay = Literal["topic", "service", "action", "physical", "outside"]
@@ -124,7 +124,7 @@ class StepConnections:
 
 
 def _find_way(architecture: Architecture, port: Input | Output) -> StepWay:
-    return "physical" if port.physical else flow_of(architecture.message_of(port))
+    return "physical" if is_physical(port) else architecture.flow_of(port)
 
 
 def _list_outside_ports(architecture: Architecture) -> Mapping[str, list[Input | Output]]:

@@ -10,28 +10,38 @@ from archgen.model.component import Component
 from archgen.model.derived_names import derive_node_ids
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, FlowKind, Node, Topic
+from archgen.model.port_media import nature_of, uses_ros
 from archgen.transform import ros_names
 from archgen.transform.frame_endpoints import derive_frame_endpoints, index_written_frames
+from archgen.transform.inner_memory import mark_inner_memory
+from archgen.transform.media_channels import derive_channels
 from archgen.transform.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.transform.reading_endpoints import derive_reading_endpoints, index_writers
-from archgen.transform.writing_endpoints import derive_writing_endpoints, find_node_parts
+from archgen.transform.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
 
 
 def derive_low_level(architecture: Architecture) -> Architecture:
-    """Add a planned node for each component without any, and the endpoints and topics of all nodes."""
+    """Add a planned node for each component without any, and the endpoints, topics and channels of all nodes."""
+    architecture = mark_inner_memory(architecture)
     nodes = dict(architecture.nodes) | {node.id: node for node in make_planned_nodes(architecture)}
     with_planned = replace(architecture, nodes=nodes)
     shared_topics = ros_names.shared_topic_names(architecture.shared_topics)
-    endpoints = _derive_endpoints(with_planned, shared_topics)
+    node_parts = find_node_parts(with_planned)
+    endpoints = _derive_endpoints(with_planned, node_parts, shared_topics)
     return replace(
-        with_planned, endpoints=endpoints, topics=_gather_topics(endpoints, shared_topics, architecture.types)
+        with_planned,
+        endpoints=endpoints,
+        topics=_gather_topics(endpoints, shared_topics, architecture.types),
+        channels=derive_channels(with_planned, node_parts),
     )
 
 
-def _derive_endpoints(architecture: Architecture, shared_topics: frozenset[str]) -> tuple[Endpoint, ...]:
+def _derive_endpoints(
+    architecture: Architecture, node_parts: Mapping[str, tuple[NodePart, ...]], shared_topics: frozenset[str]
+) -> tuple[Endpoint, ...]:
     """Derive the endpoints of all nodes, in the order of nodes."""
     # All writing endpoints come first: a reader takes its topic's name and message from those that write it.
-    node_parts, shared_keys = find_node_parts(architecture), count_shared_keys(architecture)
+    shared_keys = count_shared_keys(architecture)
     writing = {
         node_id: [
             endpoint
@@ -121,7 +131,14 @@ def _make_planned_node(component: Component, name: str) -> Node:
         owner=component.owner,
         co_owners=component.co_owners,
         name=name,
+        kinds=("node",) if _needs_ros(component) else ("program",),
         status="planned",
         timing={component.id: component.timing} if component.timing else {},
         written=False,
     )
+
+
+def _needs_ros(component: Component) -> bool:
+    """Whether a node of ROS is planned for a component: none of its ports says that it is anything else, or one is ROS."""
+    is_other = any(nature_of(port) == "other" for port in component.ports)
+    return not is_other or any(map(uses_ros, component.ports))

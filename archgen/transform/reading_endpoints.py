@@ -11,6 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Input
 from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, FlowKind, PortUse, UseKind
+from archgen.model.port_media import uses_ros
 from archgen.transform import ros_names
 from archgen.transform.writing_endpoints import DEFAULT_QOS, UNWRITTEN_USE, NodePart, filter_uses, flow_of_use
 
@@ -26,7 +27,7 @@ class WriterIndex:
     by_output: Mapping[str, Sequence[Endpoint]]
     by_name: Mapping[NameAndFlow, Sequence[Endpoint]]
     outputs_by_input: Mapping[str, Sequence[str]]
-    """The ids of the outputs that feed an input, without physical ones, by input id."""
+    """The ids of the outputs that feed an input, without those that are no ROS, by input id."""
 
 
 def index_writers(
@@ -41,7 +42,7 @@ def index_writers(
             by_output[writer.port].append(writer)
     outputs_by_input: dict[str, list[str]] = defaultdict(list)
     for edge in architecture.edges:
-        if not architecture.outputs[edge.output].physical:
+        if uses_ros(architecture.outputs[edge.output]):
             outputs_by_input[edge.input].append(edge.output)
     return WriterIndex(architecture, shared_topics, dict(by_output), dict(by_name), dict(outputs_by_input))
 
@@ -51,7 +52,7 @@ def derive_reading_endpoints(writer_index: WriterIndex, node_part: NodePart) -> 
     for port in node_part.component.inputs.values():
         uses = filter_uses(node_part.uses_by_port.get(port.id, ()), {"subscribes", "calls"})
         # A component's only node reads all of its inputs; several nodes read only what they list.
-        if not port.physical and (uses or node_part.is_only_node):
+        if uses_ros(port) and (uses or node_part.is_only_node):
             yield from _InputReader(writer_index, node_part, port).derive_endpoints(uses)
 
 

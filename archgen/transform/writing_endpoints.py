@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Output
 from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, Qos, UseKind
+from archgen.model.port_media import uses_ros
 from archgen.transform import ros_names
 
 UNWRITTEN_USE = PortUse("publishes", "", None)
@@ -72,7 +73,7 @@ def derive_writing_endpoints(architecture: Architecture, node_part: NodePart) ->
     """Yield what a node writes for a component: one endpoint for each output and each of its names."""
     for output in node_part.component.outputs.values():
         uses = filter_uses(node_part.uses_by_port.get(output.id, ()), {"publishes", "serves"})
-        if output.physical or not (uses or node_part.is_only_node):
+        if not uses_ros(output) or not (uses or node_part.is_only_node):
             continue
         for use in uses or (UNWRITTEN_USE,):
             yield from _endpoints_of_output(architecture, node_part, output, use)

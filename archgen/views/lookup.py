@@ -19,6 +19,7 @@ from archgen.model.component_nesting import (
 from archgen.model.coordinate_frames import Frame
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
+from archgen.model.port_media import ROS
 from archgen.model.source_repository import SourceRepository
 from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
@@ -74,8 +75,8 @@ class Lookup:
     """Which requirements are served, verified and met."""
     outputs_of_type: Mapping[str, tuple[Output, ...]] = field(default_factory=dict)
     """Outputs by the name of their conceptual type."""
-    physical_types: frozenset[str] = frozenset()
-    """Types that only physical ports use: they need no message."""
+    other_types: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Types that travel over ROS nowhere, with the words for what they travel over: they need no message."""
     frames_of: Mapping[str, tuple[Frame, ...]] = field(default_factory=dict)
     """Frames that a component writes, by the component's id."""
     group_hues: Mapping[str, int] = field(default_factory=dict)
@@ -186,7 +187,7 @@ def make_lookup(
             architecture, (*components_for_requirement, *chains_for_requirement), _list_chain_verdicts(timing_lookup)
         ),
         outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
-        physical_types=_find_physical_types(architecture),
+        other_types=_find_other_types(architecture),
         frames_of=_group_values(
             (frame.by, frame)
             for frame in architecture.frames.values()
@@ -224,11 +225,14 @@ def _list_ends(
             yield from ((shell, position) for shell in list_surrounding(architecture, component_id))
 
 
-def _find_physical_types(architecture: Architecture) -> frozenset[str]:
-    """Return the types that no digital port uses."""
+def _find_other_types(architecture: Architecture) -> dict[str, tuple[str, ...]]:
+    """Return the types that no port sends or reads over ROS, each with its media."""
     ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
-    digital = {port.type for port in ports if not port.physical}
-    return frozenset(port.type for port in ports if port.type and port.physical and port.type not in digital)
+    media: dict[str, dict[str, None]] = {}
+    for port in ports:
+        if port.type:
+            media.setdefault(port.type, {})[port.medium] = None
+    return {name: tuple(words) for name, words in media.items() if ROS not in words}
 
 
 def _containing_element(architecture: Architecture, element_id: str) -> str:

@@ -13,6 +13,7 @@ from archgen.model.component import Component, ComponentType, Group, Input, Outp
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
 from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.port_media import ROS, is_physical, word_of_medium
 from archgen.model.requirement import Requirement
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
@@ -34,7 +35,13 @@ def make_record(lookup: Lookup) -> Record:
     return {
         "archgen_resolved": RECORD_VERSION,
         "project": pick_fields(architecture.project, "id", "title", "version", "description")
-        | drop_unknown({"distro": architecture.distro, "parameters": record_values(architecture.ros_parameters)}),
+        | drop_unknown(
+            {
+                "middleware": None if architecture.project.middleware == ROS else architecture.project.middleware,
+                "distro": architecture.distro,
+                "parameters": record_values(architecture.ros_parameters),
+            }
+        ),
         # Groups, components, connections, edges, nodes and topics are cut to the scope; all else is given in full.
         "partners": {
             p.id: pick_fields(p, "title", "description", "contact", "reviewers") | record_annotations(p)
@@ -200,7 +207,11 @@ def _record_frame(frame: Frame) -> dict[str, object]:
 def _record_link(link: Link) -> dict[str, object]:
     bandwidth = {"bandwidth": record_quantity(link.bandwidth, "bit/s")}
     latency = {"best": record_quantity(link.best, "ns"), "worst": record_quantity(link.worst, "ns")}
-    return pick_fields(link, "title", "connects") | drop_unknown({**bandwidth, **latency}) | record_annotations(link)
+    return (
+        pick_fields(link, "title", "connects", "devices", "protocol")
+        | drop_unknown({**bandwidth, **latency})
+        | record_annotations(link)
+    )
 
 
 def _record_chain(chain: Chain) -> dict[str, object]:
@@ -254,7 +265,7 @@ def _record_port(port: Input | Output) -> dict[str, object]:
     return {
         "id": port.id,
         "type": port.type,
-        "medium": "physical" if port.physical else "digital",
+        "medium": word_of_medium(port),
         "external": port.external,
         "frame": port.frame,
         "description": port.description,
@@ -287,7 +298,7 @@ def _record_output(lookup: Lookup, port: Output) -> dict[str, object]:
 def _record_flow(lookup: Lookup, output_id: str) -> dict[str, object]:
     """Return what flows along an edge: type and message of the output, and whether it is physical."""
     port = lookup.architecture.outputs[output_id]
-    return {"type": port.type, "message": lookup.architecture.message_of(port), "physical": port.physical or None}
+    return {"type": port.type, "message": lookup.architecture.message_of(port), "physical": is_physical(port) or None}
 
 
 def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:

@@ -31,9 +31,14 @@ from archgen.model.component import Component, Connection, Group, Input, Output,
 from archgen.model.declared_timing import Timing
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, PortUse, Topic
+from archgen.model.port_media import uses_ros
 from archgen.model.requirement import Requirement
 
 Words = dict[str, str]
+
+
+def _read_medium(options: Words) -> str:
+    return "physical" if "physical" in options else "ros"
 
 
 @dataclass
@@ -77,7 +82,15 @@ class _Sketch:
         self.component(component, at)["outputs_known"] = True
         external = "somebody" if "external" in options else None
         output = Output(
-            words[0], name, component, options.get("type"), external, "physical" in options, at=at, type_at=at
+            words[0],
+            name,
+            component,
+            options.get("type"),
+            external,
+            _read_medium(options),
+            medium_written="physical" in options,
+            at=at,
+            type_at=at,
         )
         self.outputs[words[0]] = output
 
@@ -147,7 +160,7 @@ class _Sketch:
 
     def carries(self, output: Output) -> bool:
         mapped = self.types.get(output.type or "")
-        return not output.physical and flow_of(mapped.message if mapped else None) == "topic"
+        return uses_ros(output) and flow_of(mapped.message if mapped else None) == "topic"
 
     def connection(self, port: str, reference: str, at: Span) -> Connection:
         own = port.rpartition(".")[0]
@@ -166,10 +179,11 @@ class _Sketch:
             component,
             tuple(self.connection(port, reference, at) for reference in references),
             "somebody" if "external" in options else None,
-            "physical" in options,
+            _read_medium(options),
             options.get("type"),
             "optional" in options,
             from_written="from" in options,
+            medium_written="physical" in options,
             at=at,
             type_at=at,
         )

@@ -37,7 +37,15 @@ def mapped(name: str, message: str | None, number: int, **changes: str) -> Conce
 
 
 def output(name: str, type_: str, number: int, *, physical: bool = False) -> Output:
-    return Output(f"g.c.{name}", name, "g.c", type_, physical=physical, at=line(number), type_at=line(number, 9))
+    return Output(
+        f"g.c.{name}",
+        name,
+        "g.c",
+        type_,
+        medium="physical" if physical else "ros",
+        at=line(number),
+        type_at=line(number, 9),
+    )
 
 
 def wanting(name: str, type_: str, number: int) -> Input:

@@ -121,6 +121,7 @@ SCHEMA_ONLY = {
 TABLE_ONLY_FOR_SCHEMA = {
     **dict.fromkeys(("group co_owners", "component co_owners", "node co_owners"), "the rest of the list `owner`"),
     "component mapped": "follows from the nodes",
+    "link devices": "those ends in the key `connects` that are components",
     "project distro": "below `ros`",
     "project shared_topics": "below `ros`",
     "project parameters": "below `ros`",
@@ -156,7 +157,7 @@ MODEL_ONLY = {
     **dict.fromkeys(("node implements_written", "node written"), "only for rules"),
     **dict.fromkeys(("component inputs_known", "component outputs_known"), "in the keys `inputs` and `outputs`"),
     "component requirements_known": "only for rules",
-    **dict.fromkeys(("input physical", "output physical"), "the key `medium`"),
+    **dict.fromkeys(("input medium_written", "output medium_written"), "the key `medium`"),
     "node kinds": "the key `kind`",
     "host core_scheduling": "the keys below `scheduling`",
     "node uses": "the kind `port`",
@@ -180,7 +181,6 @@ TABLE_ONLY_FOR_MODEL = {
     **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "component_type is": "the field `base`",
     "component_type abstract": "the field `is_abstract`",
-    **dict.fromkeys(("input medium", "output medium"), "the field `physical`"),
     "node kind": "the field `kinds`",
     "requirement parent": "the field `parents`",
     "link latency": "the fields `best` and `worst`",
@@ -248,7 +248,7 @@ CARD_ONLY = {
 }
 ROBOT = """\
 archgen: 1
-project: {id: robot, title: Robot, version: "1", description: D}
+project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
 ros: {distro: jazzy, parameters: {use_sim_time: true}}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c", properties: {q: 1}, hints: {x: {a: 1}}}, sssa: S}
 use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}], properties: {q: 1}, hints: {x: {a: 1}}}}
@@ -339,11 +339,11 @@ nodes:
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
 containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
-links: {lan: {title: L, connects: [pc, arm], bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
+links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
 frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1], properties: {q: 1}, hints: {x: {a: 1}}}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}, properties: {q: 1}, hints: {x: {a: 1}}}}
-policies: {p: {title: P, forbid: {from: g, to: g}, properties: {q: 1}, hints: {x: {a: 1}}}}
+policies: {p: {title: P, forbid: {from: g, to: g}, require: {of: b, inputs_from: "g.*", guarded_by: q}, accepted: {b.i: because}, properties: {q: 1}, hints: {x: {a: 1}}}}
 variants:
   in: {title: I}
   sim: {title: S, description: D, of: [in], without: "g.whole", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
@@ -435,7 +435,7 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
     # What else an architecture maps from ids: topics follow from nodes.
     mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
     # Nor are composed components a kind of their own in files; properties and terms are the project's.
-    assert mapped - {"topics", "shells", "shell_ports", "properties", "glossary"} == set(SECTIONS.values())
+    assert mapped - {"topics", "channels", "shells", "shell_ports", "properties", "glossary"} == set(SECTIONS.values())
 
 
 def test_the_exceptions_are_needed() -> None:
@@ -519,6 +519,7 @@ def test_no_key_is_listed_twice() -> None:
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "requirement parent, requirement kind, requirement priority, requirement verified_by, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
+                "link protocol, project middleware, "
                 "output frame, input frame, type frame, component status, component properties.trl, node hints.a.b, host properties.x, "
                 "project properties.trl, output promise.rate, output version, output deprecated.until, type version, "
                 "type deprecated.use, component_type version, component_type deprecated.until"
@@ -533,7 +534,7 @@ def test_no_key_is_listed_twice() -> None:
                 "container host, container threads, link connects, link bandwidth, link latency.worst, chain through, "
                 "chain deadline, component inputs, node threads, node scheduling, node callback_groups.x, node reentrant, "
                 "host scheduling, host scheduling.0, container scheduling, resource host, resource scheduling, "
-                "component timing.uses.gpu, component timing.inputs.x.wcet, component timing.cores, input freshness"
+                "component timing.uses.gpu, component timing.inputs.x.wcet, component timing.cores, input freshness, link devices"
             ),
         ),
     ],

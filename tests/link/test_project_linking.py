@@ -71,12 +71,12 @@ groups:
         outputs: {p: {type: Sound, external: The user hears, medium: physical}, q: "Point   cloud"}
 """)
     p, q, r, s = architecture.inputs.values()
-    assert (p.external, p.physical, p.from_written) == ("A hand", True, False)
+    assert (p.external, p.medium, p.from_written) == ("A hand", "physical", False)
     assert (q.type, q.optional, q.type_at.column) == ("Pose", True, 69)
     assert (r.from_written, s.from_written) == (False, True)
-    assert [(o.id, o.type, o.physical) for o in architecture.outputs.values()] == [
-        ("g.c.p", "Sound", True),
-        ("g.c.q", "Point cloud", False),
+    assert [(o.id, o.type, o.medium) for o in architecture.outputs.values()] == [
+        ("g.c.p", "Sound", "physical"),
+        ("g.c.q", "Point cloud", "ros"),
     ]
 
 

@@ -260,3 +260,21 @@ def test_variants_change_every_section_but_those_that_say_what_the_project_is() 
     assert set(changed) == set(schema["properties"]) - kept
     for name in set(changed) - {"component_types"}:  # where types of libraries are named, too
         assert changed[name] == schema["properties"][name], name
+
+
+@pytest.mark.parametrize(("of", "count"), [("", 150), ("of: [v1, v2, v3, v4], ", 30)])
+def test_a_strangers_thousand_variants_are_not_all_judged(tmp_path: Path, of: str, count: int) -> None:
+    variants = "".join(f"  v{number}: {{{of if number > 4 else ''}without: g.a}}\n" for number in range(1000))
+    robot = "archgen: 1\ngroups: {g: {components: {a: A}}}\nnodes: {a: a}\n"
+    checked = check(tmp_path, variants, robot)
+    assert len(checked.variants) == pytest.approx(count, abs=5)
+    assert [each.message for each in checked.findings if each.rule == "too-large"] == [
+        f"all variants together have more than 150 layers: of 1,000 only the first {len(checked.variants)} are judged"
+    ]
+
+
+def test_a_variant_on_a_thousand_others_is_not_judged(tmp_path: Path) -> None:
+    variants = "".join(f"  v{number}: {{of: [v{number + 1}], without: g.a}}\n" for number in range(3000))
+    checked = check(tmp_path, variants, "archgen: 1\ngroups: {g: {components: {a: A}}}\nnodes: {a: a}\n")
+    assert list(checked.variants) == []
+    assert "too-large" in {each.rule for each in checked.findings}

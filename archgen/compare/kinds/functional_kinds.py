@@ -319,7 +319,7 @@ def _port_parent(port: Input | Output, context: ReadContext) -> tuple[str, str]:
 
 
 _PORT_KEYS = (
-    KeySpec("medium", lambda port, _: "physical" if port.physical else None),
+    KeySpec("medium", lambda port, _: port.medium if port.medium_written else None),
     prose_key("external"),
     DESCRIPTION,
     URLS,

@@ -21,6 +21,7 @@ from archgen.compare.normal_values import freeze_value, normalize_text, unordere
 from archgen.model.architecture import ProjectInfo, UseCase
 from archgen.model.element_annotations import describe_range
 from archgen.model.path_resolver import title_from_id
+from archgen.model.port_media import ROS
 from archgen.model.requirement import Requirement
 from archgen.model.review_settings import ReviewSettings
 from archgen.model.use_case_steps import StepEnd
@@ -97,6 +98,9 @@ PROJECT = KindSpec(
         KeySpec("title", lambda project, context: _read_named("title", context, project.title), Effect.TEXT),
         KeySpec("version", verb="is version"),
         DESCRIPTION,
+        KeySpec(
+            "middleware", lambda project, _: None if project.middleware == ROS else project.middleware, Effect.TIMING
+        ),
         KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
         KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
         KeySpec("parameters.", _read_parameters),

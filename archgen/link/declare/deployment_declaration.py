@@ -7,6 +7,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.deployment import Container, Host, Link, Resource
+from archgen.model.path_resolver import ElementRef
 from archgen.syntax.yaml_tree import MappingNode
 
 
@@ -78,23 +79,51 @@ def declare_resources(root: MappingNode, resolver: ReferenceResolver) -> dict[st
 
 
 def declare_links(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Link]:
-    """Declare the links between hosts."""
+    """Declare the links between hosts and devices."""
     links_by_id: dict[str, Link] = {}
     for name, entry, body in mapping_values.iterate_elements(root, "links"):
         best, worst = sanity_checks.read_latency(
             mapping_values.get_mapping(body, "latency"), name, resolver.diagnostics
         )
-        connects = resolver.resolve_plain_ids(mapping_values.get_scalars(body, "connects"), "host", name)
+        ends = _resolve_ends(body, resolver, name)
         links_by_id[name] = Link(
             id=name,
             title=mapping_values.get_title(body, name),
-            connects=connects,
+            connects=tuple(dict.fromkeys(end.id for _, end in ends if end and end.kind == "host")),
+            devices=tuple(dict.fromkeys(end.id for _, end in ends if end and end.kind == "component")),
+            protocol=mapping_values.get_medium(body, "protocol"),
             bandwidth=sanity_checks.read_positive(body, "bandwidth", "bandwidth", name, resolver.diagnostics),
             best=best,
             worst=worst,
             annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
             connects_at=mapping_values.get_span(body, "connects"),
-            unresolved=tuple(host for host in mapping_values.get_texts(body, "connects") if host not in connects),
+            protocol_at=mapping_values.get_span(body, "protocol"),
+            unresolved=tuple(text for text, end in ends if end is None),
         )
     return links_by_id
+
+
+def _resolve_ends(body: MappingNode, resolver: ReferenceResolver, link_id: str) -> list[tuple[str, ElementRef | None]]:
+    """Return what a link connects, each end as written and what it means: a host by its id wins over a component."""
+    hosts = resolver.plain_spans["host"]
+    ends: list[tuple[str, ElementRef | None]] = []
+    for scalar in mapping_values.get_scalars(body, "connects"):
+        if scalar.text in hosts:
+            ends.append((scalar.text, ElementRef("host", scalar.text)))
+        elif _may_be_device(scalar.text, resolver):
+            ends.append((scalar.text, resolver.resolve_reference(scalar, ("component",), link_id)))
+        else:
+            resolver.resolve_plain_id(scalar, "host", link_id)
+            ends.append((scalar.text, None))
+    return ends
+
+
+def _may_be_device(text: str, resolver: ReferenceResolver) -> bool:
+    """Whether an end of a link that is no host means a component, or a slip of the pen in the name of one."""
+    if "." in text or resolver.names.ids_ending_in("component", text):
+        return True
+    if resolver.guess_name(text, resolver.plain_spans["host"]):
+        return False
+    component_names = {path.rpartition(".")[2] for path in resolver.spans["component"]}
+    return resolver.guess_name(text, component_names) is not None

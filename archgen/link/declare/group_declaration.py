@@ -71,6 +71,7 @@ def declare_groups(
     if outline.expansion:
         sources = PortSources(outline, resolver, types)
         join_ports(outline, sources, resolver)
+        sources.spread_media()
     wiring = InputWiring(outline, resolver, types, sources)
     group_declarer = _GroupDeclarer(
         outline,

@@ -8,8 +8,25 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
+from archgen.link.declare.variant_declaration import declare_variants
 from archgen.model.variant import BASE_NAME, Variant
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+_MAX_STEPS = 150
+"""So many layers all variants may have together: each may cost as much as a project of its own, and a stranger's file may
+have thousands. Fifty variants, each built on two others, have as many."""
+
+
+def list_judged(variants: Mapping[str, Variant]) -> tuple[str, ...]:
+    """Return the variants that are judged: the first ones, up to a limit on what they are built on."""
+    judged: list[str] = []
+    step_count = 0
+    for name in variants:
+        step_count += len(list_steps(variants, [name]))
+        if step_count > _MAX_STEPS:
+            break
+        judged.append(name)
+    return tuple(judged)
 
 
 def list_steps(variants: Mapping[str, Variant], names: Sequence[str]) -> tuple[str, ...]:
@@ -40,16 +57,22 @@ def check_variant_order(root: MappingNode, lost_keys: frozenset[str]) -> Iterato
         name: mapping_values.get_scalars(body, "of")
         for name, _, body in mapping_values.iterate_elements(root, "variants")
     }
+    variants = declare_variants(root)
+    judged = list_judged(variants)
+    if len(judged) < len(variants):
+        name = list(variants)[len(judged)]
+        yield Diagnostic(
+            "too-large",
+            f"all variants together have more than {_MAX_STEPS} layers: of {len(variants):,} only the first {len(judged)} are judged",
+            variants[name].at,
+            help="build fewer variants on one another; values alone may stand in a parameter file",
+            element=name,
+        )
     for name, scalars in references.items():
         for scalar in scalars:
             if scalar.text not in references and scalar.text not in lost_keys:
                 yield _diagnose_unknown(scalar, name, [each for each in references if each != name])
-    reported_names: set[str] = set()
-    for name in references:
-        circle = _find_circle(references, name) if name not in reported_names else []
-        if circle and reported_names.isdisjoint(circle):
-            reported_names.update(circle)
-            yield _diagnose_circle(references, circle)
+    yield from (_diagnose_circle(references, circle) for circle in _find_circles(references))
 
 
 def _diagnose_unknown(scalar: ScalarNode, name: str, known_names: Sequence[str]) -> Diagnostic:
@@ -59,22 +82,27 @@ def _diagnose_unknown(scalar: ScalarNode, name: str, known_names: Sequence[str])
     return Diagnostic("unknown-variant", f"no variant named `{scalar.text}`", scalar.span, help=help_line, element=name)
 
 
-def _find_circle(references: Mapping[str, Sequence[ScalarNode]], name: str) -> list[str]:
-    """Return the way from a variant back to itself through what it is built on, itself first; empty where there is none."""
-    came_from: dict[str, str] = {}
-    pending = [name]
-    while pending:
-        current = pending.pop()
-        for scalar in references[current]:
-            if scalar.text == name:
-                way = [current]
-                while way[-1] != name:
-                    way.append(came_from[way[-1]])
-                return way[::-1]
-            if scalar.text in references and scalar.text not in came_from:
-                came_from[scalar.text] = current
-                pending.append(scalar.text)
-    return []
+def _find_circles(references: Mapping[str, Sequence[ScalarNode]]) -> Iterator[list[str]]:
+    """Yield ways from variants back to themselves through what they are built on; each variant is on one of them at most."""
+    finished: set[str] = set()
+    for first in references:
+        # The way from the first variant to the one that is looked at, each with what it is built on and was not asked.
+        way: dict[str, Iterator[ScalarNode]] = {} if first in finished else {first: iter(references[first])}
+        while way:
+            name = next(reversed(way))
+            base = next((scalar.text for scalar in way[name] if scalar.text in references), None)
+            if base is None:
+                finished.add(name)
+                del way[name]
+            elif base in way:
+                names = list(way)
+                circle = names[names.index(base) :]
+                yield circle
+                finished.update(circle)
+                for each in circle:
+                    del way[each]
+            elif base not in finished:
+                way[base] = iter(references[base])
 
 
 def _diagnose_circle(references: Mapping[str, Sequence[ScalarNode]], circle: list[str]) -> Diagnostic:

@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import ActivityBehaviour, InputTiming, MeasuredTimes, Timing
 from archgen.model.node import Endpoint, Node
+from archgen.model.port_media import is_physical
 from archgen.timing.figures.tick_unit import TickUnit, written_period
 from archgen.timing.system.timing_system import Activity, ResourceUse, StoringCallback
 
@@ -49,7 +50,7 @@ def endpoint_key(endpoint: Endpoint) -> str:
 def endpoints_by_activity(architecture: Architecture, activity_names: ActivityNames) -> dict[str, list[Endpoint]]:
     """Return the endpoints of each activity; those that belong to no port are the first component's."""
     grouped_endpoints: dict[str, list[Endpoint]] = {name: [] for name in activity_names.values()}
-    for endpoint in architecture.endpoints:
+    for endpoint in architecture.list_endpoints():
         grouped_endpoints[activity_of_endpoint(activity_names, endpoint)].append(endpoint)
     return grouped_endpoints
 
@@ -77,7 +78,7 @@ def _outside_inputs(architecture: Architecture) -> Mapping[str, list[str]]:
     """Return the physical and external inputs of each component: nothing arrives there by ROS, but they may trigger."""
     inputs_by_component: dict[str, list[str]] = defaultdict(list)
     for port in architecture.inputs.values():
-        if port.physical or port.external:
+        if is_physical(port) or port.external:
             inputs_by_component[port.component].append(port.id)
     return inputs_by_component
 

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
+from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
@@ -37,10 +38,30 @@ def build_arcs(
         activities_by_id,
         # Cached by pair of hosts: there are far more arcs than pairs.
         cache(_RouteFinder(architecture, tick_unit)),
+        _index_devices(architecture),
         {(edge.output, edge.input): edge.at for edge in architecture.edges},
         message_sizes.make_writer_query(architecture),
     )
-    return tuple(arc for topic in architecture.topics.values() for arc in joiner.join_topic(topic))
+    return tuple(arc for _, topic in architecture.list_carriers() for arc in joiner.join_topic(topic))
+
+
+class _Place(NamedTuple):
+    """Where an activity runs: its host, and the device that it is or is in, with the links on which that is."""
+
+    host: str | None
+    device: str | None = None
+    device_links: tuple[str, ...] = ()
+
+
+def _index_devices(architecture: Architecture) -> Mapping[str, tuple[str, tuple[str, ...]]]:
+    """Return the device that each component is or is in, and the links on which that is."""
+    links_by_device: dict[str, tuple[str, ...]] = {}
+    for link in architecture.links.values():
+        for device in link.devices:
+            links_by_device[device] = (*links_by_device.get(device, ()), link.id)
+    return {
+        leaf: (device, links) for device, links in links_by_device.items() for leaf in architecture.leaves_of(device)
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +71,9 @@ class _ArcJoiner:
     architecture: Architecture
     activity_names: ActivityNames
     activities_by_id: Mapping[str, Activity]
-    find_route: Callable[[str | None, str | None], LinkRoute]
+    find_route: Callable[[_Place, _Place], LinkRoute]
+    devices: Mapping[str, tuple[str, tuple[str, ...]]]
+    """The device that each component is or is in, with its links."""
     spans: Mapping[tuple[str, str], Span]
     size_of: Callable[[Endpoint, message_sizes.MessageRole], int | None]
 
@@ -72,7 +95,7 @@ class _ArcJoiner:
     def _data_arc(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
         """Return the arc from a writer to a reader."""
         source, target = (activity_of_endpoint(self.activity_names, endpoint) for endpoint in (writer, reader))
-        link, best, worst = self.find_route(self.activities_by_id[source].host, self.activities_by_id[target].host)
+        link, best, worst = self.find_route(self._place_of(source), self._place_of(target))
         port = self.architecture.inputs.get(reader.port or "")
         qos = reader.qos
         return Arc(
@@ -93,11 +116,13 @@ class _ArcJoiner:
             queue_at=qos.at,
         )
 
+    def _place_of(self, activity_id: str) -> _Place:
+        activity = self.activities_by_id[activity_id]
+        return _Place(activity.host, *self.devices.get(activity.component or "", ()))
+
     def _request_arc(self, answer_arc: Arc) -> Arc:
         """Return the arc from client to server that belongs to an answer."""
-        link, best, worst = self.find_route(
-            self.activities_by_id[answer_arc.target].host, self.activities_by_id[answer_arc.source].host
-        )
+        link, best, worst = self.find_route(self._place_of(answer_arc.target), self._place_of(answer_arc.source))
         return replace(
             answer_arc,
             source=answer_arc.target,
@@ -124,26 +149,42 @@ class _RouteFinder:
 
     def __init__(self, architecture: Architecture, tick_unit: TickUnit) -> None:
         self._tick_unit = tick_unit
+        self._links = architecture.links
         self._links_of_host: dict[str, dict[str, Link]] = defaultdict(dict)
         for link in architecture.links.values():
             for host in link.connects:
                 self._links_of_host[host][link.id] = link
 
-    def __call__(self, source_host: str | None, target_host: str | None) -> LinkRoute:
-        """Return the link between two hosts and its latency.
+    def __call__(self, source: _Place, target: _Place) -> LinkRoute:
+        """Return the link between two places and its latency.
 
-        Where neither end has a host, both are taken to be on one; where only one has, the latency is unknown.
+        What a device exchanges with a host goes over the link that joins the two. Where neither end has a host, both are
+        taken to be on one; where only one has, the latency is unknown.
         """
-        if source_host == target_host:
-            return _SAME_HOST
-        if source_host is None or target_host is None:
-            return _NO_LINK
-        target_links = self._links_of_host[target_host]
-        common_links = [link for link_id, link in self._links_of_host[source_host].items() if link_id in target_links]
+        common_links = self._find_device_links(source, target)
+        if not common_links:
+            # Of a device without a host nobody knows that it is where another end without one is.
+            if source.host == target.host and (source.host or source.device == target.device):
+                return _SAME_HOST
+            if source.host is None or target.host is None:
+                return _NO_LINK
+            target_links = self._links_of_host[target.host]
+            host_links = self._links_of_host[source.host].items()
+            common_links = [link for link_id, link in host_links if link_id in target_links]
         if not common_links:
             return _NO_LINK
         link = min(common_links, key=_latency_order)
         return link.id, self._tick_unit.quantity_to_ticks(link.best), self._tick_unit.quantity_to_ticks(link.worst)
+
+    def _find_device_links(self, source: _Place, target: _Place) -> list[Link]:
+        """Return the links of a device that the other end is on, as a host or as another device."""
+        if source.device == target.device:
+            return []
+        links = dict.fromkeys((*source.device_links, *target.device_links))
+        return [self._links[link] for link in links if self._is_on(link, source) and self._is_on(link, target)]
+
+    def _is_on(self, link_id: str, place: _Place) -> bool:
+        return link_id in place.device_links or (place.host or "") in self._links[link_id].connects
 
 
 def _latency_order(link: Link) -> tuple[bool, object]:

@@ -120,7 +120,7 @@ def find_topic_sizes(architecture: Architecture) -> dict[str, int | None]:
     """Return the bytes of a sample on each topic: the largest of its writers', None where one is unknown."""
     bytes_of_writer = make_writer_query(architecture)
     topic_sizes: dict[str, int | None] = {}
-    for name, topic in architecture.topics.items():
+    for name, topic in architecture.list_carriers():
         if topic.flow == "topic":
             all_sizes = [bytes_of_writer(writer, "data") for writer in topic.writers]
             known_sizes = [byte_count for byte_count in all_sizes if byte_count is not None]

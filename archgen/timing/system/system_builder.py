@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
+from archgen.model.port_media import is_physical
 from archgen.timing.analysis import Reason
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
@@ -60,14 +61,14 @@ def build_system(architecture: Architecture) -> tuple[TimingSystem, tuple[Reason
         },
         served_outputs=frozenset(
             (activity_of_endpoint(activity_names, endpoint), endpoint_key(endpoint))
-            for endpoint in architecture.endpoints
+            for endpoint in architecture.list_endpoints()
             if endpoint.use == "serves"
         ),
         topic_writers={
             name: tuple(
                 (activity_of_endpoint(activity_names, endpoint), endpoint_key(endpoint)) for endpoint in topic.writers
             )
-            for name, topic in architecture.topics.items()
+            for name, topic in architecture.list_carriers()
             if topic.flow == "topic"
         },
         topic_sizes=message_sizes.find_topic_sizes(architecture),
@@ -103,7 +104,7 @@ def _external_inputs(
         # An input whose `from` names something that does not exist counts as fed from outside: the wrong name is
         # reported elsewhere, and an input that nothing feeds would keep an all-of reader from ever firing.
         external_ports = tuple(
-            p.id for p in ports if p and (p.external or p.physical or (p.from_written and not p.connections))
+            p.id for p in ports if p and (p.external or is_physical(p) or (p.from_written and not p.connections))
         )
         if external_ports:
             yield activity.id, external_ports

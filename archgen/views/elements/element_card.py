@@ -13,6 +13,7 @@ from archgen.model.component import Component, ComponentType, Group, Input, Outp
 from archgen.model.deployment import Container
 from archgen.model.node import Node, Topic
 from archgen.model.parameter import format_parameter
+from archgen.model.port_media import uses_ros, word_of_medium
 from archgen.views import inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_lines
@@ -308,11 +309,11 @@ def _port_card(lookup: Lookup, port: Input | Output) -> ElementCard:
         ("component", port.component),
         ("type", port.type or ("?" if isinstance(port, Output) else "")),
         ("frame", lookup.architecture.frame_of(port) or ""),
-        ("medium", "physical" if port.physical else "digital"),
+        ("medium", word_of_medium(port)),
         ("description", port.description or ""),
     ]
     if isinstance(port, Output):
-        facts.append(("message", lookup.architecture.message_of(port) or ("" if port.physical else "?")))
+        facts.append(("message", lookup.architecture.message_of(port) or ("?" if uses_ros(port) else "")))
         facts += promise_words.list_card_facts(port)
         readers = ("readers", tuple(_list_readers(lookup, port)))
         return ElementCard("output", port.id, port.name, port.at, _known_facts(facts), (readers,))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
+from archgen.model.port_media import label_of_medium
 from archgen.views import inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
@@ -134,7 +135,7 @@ def _reader_owners(lookup: Lookup, port: Output, reader: Input) -> Inlines:
 
 
 def _medium_cell(port: Input | Output) -> Inlines:
-    return inline_text.to_inlines("physical" if port.physical else "digital")
+    return inline_text.to_inlines(label_of_medium(port) or "digital")
 
 
 def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:

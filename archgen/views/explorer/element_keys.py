@@ -14,6 +14,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
+from archgen.model.port_media import list_medium_words
 from archgen.model.property_conditions import find_component_properties, find_node_properties
 from archgen.model.requirement_tree import add_above
 from archgen.views.lookup import Lookup
@@ -34,7 +35,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("tag", tag) for tag in _list_tags(architecture, component)),
                     *(("owner", owner) for owner in component.owners),
                     *(("type", name) for name in types[component.id]),
-                    *(("medium", "physical" if port.physical else "digital") for port in _list_ports(component)),
+                    *(("medium", word) for port in _list_ports(component) for word in list_medium_words(port)),
                     *((("role", component.role),) if component.role else ()),
                     *(("requirement", name) for name in _list_requirements(architecture, component)),
                     *_list_behaviours((component.timing,)),

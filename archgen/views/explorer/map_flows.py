@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
+from archgen.model.port_media import label_of_medium
 from archgen.views.explorer.map_shapes import Row
 from archgen.views.graphs.component_flows import flow_style, list_flows
 from archgen.views.lookup import Lookup
@@ -44,7 +45,7 @@ def make_flow_tables(
 
 
 def _port_row(port: Input | Output, components: Numbers, types: Numbers) -> Row:
-    note = join_words(port.external, "physical" if port.physical else "")
+    note = join_words(port.external, label_of_medium(port))
     return (components[port.component], port.name, types.get(port.type or "", -1), note)
 
 

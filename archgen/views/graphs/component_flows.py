@@ -12,7 +12,7 @@ from typing import Literal
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
-from archgen.model.message_types import flow_of
+from archgen.model.port_media import is_physical
 from archgen.views.graph_shapes import Arrow
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
@@ -77,9 +77,9 @@ def flow_style(architecture: Architecture, output_id: str) -> FlowStyle:
 
 def port_style(architecture: Architecture, port: Input | Output) -> FlowStyle:
     """Return the style of arrow for what a port carries by its own type."""
-    if port.physical:
+    if is_physical(port):
         return "physical"
-    flow = flow_of(architecture.message_of(port))
+    flow = architecture.flow_of(port)
     return "data" if flow == "topic" else flow
 
 

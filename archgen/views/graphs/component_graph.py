@@ -14,6 +14,7 @@ from typing import Literal
 
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component
+from archgen.model.port_media import is_physical
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import flow_style, list_type_names, port_style
@@ -187,7 +188,7 @@ def _draw_external(lookup: Lookup, port: Input | Output, component: Component) -
     box = Box(
         f"external {side} {port.id}",
         port.external or "outside",
-        style="physical" if port.physical else "external",
+        style="physical" if is_physical(port) else "external",
         emphasis="normal",
         side=side,
         tooltip=f"{port.external}\noutside the architecture",

@@ -16,6 +16,7 @@ from archgen.model.deployment import Link
 from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
+from archgen.model.port_media import label_of_medium, name_medium
 from archgen.views import element_references, inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.functional_level import first_sentence
@@ -81,15 +82,14 @@ def _message_cell(lookup: Lookup, connection: Connection) -> Inlines:
     """Return the messages that a connection carries."""
     architecture = lookup.architecture
     outputs = [architecture.outputs[output] for output in connection.outputs]
-    # `physical` is a remark in place of a message, hence neither code nor a link.
-    names = dict.fromkeys("physical" if o.physical else architecture.message_of(o) for o in outputs)
-    return inline_text.join_inlines(
-        _link_message_or_remark(name) if name else inline_text.UNKNOWN_INLINES for name in names
-    )
-
-
-def _link_message_or_remark(name: str) -> Inlines:
-    return (Text(name) if name == "physical" else element_references.message_link(name),)
+    cells: dict[str, Inlines] = {}
+    for output in outputs:
+        name = architecture.message_of(output)
+        # What is no ROS has a remark in place of a message, hence neither code nor a link.
+        remark = label_of_medium(output)
+        link = (element_references.message_link(name),) if name else inline_text.UNKNOWN_INLINES
+        cells[remark or name or ""] = (Text(remark),) if remark else link
+    return inline_text.join_inlines(cells.values())
 
 
 def shown_connections(lookup: Lookup) -> list[Connection]:
@@ -160,8 +160,8 @@ def message_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:
     if conceptual_type.generic:
         return inline_text.to_inlines(Text("none: generic", muted=True))
     return (
-        inline_text.to_inlines(Text("none: physical", muted=True))
-        if conceptual_type.name in lookup.physical_types
+        inline_text.to_inlines(Text(f"none: {', '.join(map(name_medium, other_media))}", muted=True))
+        if (other_media := lookup.other_types.get(conceptual_type.name))
         else inline_text.UNKNOWN_INLINES
     )
 

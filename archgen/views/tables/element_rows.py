@@ -8,6 +8,7 @@ from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Connection
 from archgen.model.counted_outputs import find_counted_output
 from archgen.model.parameter_values import find_effective_parameters
+from archgen.model.port_media import uses_ros
 from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
@@ -126,7 +127,7 @@ def _connection_rows(lookup: Lookup) -> Iterator[TextRow]:
         outputs = [architecture.outputs[output] for output in c.outputs]
         types = ", ".join(dict.fromkeys(output.type or "?" for output in outputs))
         messages = ", ".join(
-            dict.fromkeys("physical" if o.physical else architecture.message_of(o) or "?" for o in outputs)
+            dict.fromkeys(o.medium if not uses_ros(o) else architecture.message_of(o) or "?" for o in outputs)
         )
         reader = ", ".join(architecture.components[architecture.inputs[c.input].component].owners)
         writers = ", ".join(

@@ -191,7 +191,7 @@ def test_services_and_actions_run_from_client_to_server(kind: str) -> None:
 
 
 def test_partners_outside_are_dashed() -> None:
-    port = Input("g.a.voice", "voice", "g.a", external="The user speaks", physical=True, type="Speech")
+    port = Input("g.a.voice", "voice", "g.a", external="The user speaks", medium="physical", type="Speech")
     architecture = make("g: a", "")
     changed = replace(architecture.components["g.a"], inputs={"voice": port})
     graph = draw_component(view(replace(architecture, components={"g.a": changed})), "g.a")
