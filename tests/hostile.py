@@ -146,7 +146,7 @@ def project(text: str) -> dict[str, Any]:
                 },
             }
         },
-        "properties": {"declared": {}, "chosen": {"of": ["component"], "choices": [text]}},
+        "properties": {"declared": {"type": "string"}, "chosen": {"of": ["component"], "choices": [text]}},
         "glossary": {kind[:90].strip(): text, "functionality": text},
     }
     _fill(data["project"], "project", text)

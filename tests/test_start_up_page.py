@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
+from archgen.analyses import RULES
 from archgen.bringup.start_plan import make_start_plan
 from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import check_project
@@ -25,5 +27,11 @@ def test_nothing_is_wrong_with_the_example(tmp_path: Path) -> None:
 
 
 def test_every_key_and_every_rule_of_the_page_is_one() -> None:
-    for rule in re.findall(r"\(rules/([\w-]+)\.md\)", PAGE):
-        assert (ROOT / "docs" / "rules" / f"{rule}.md").is_file(), rule
+    schema = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))["$defs"]
+    keys = [key for row in re.findall(r"^\| (`.*?) \|", PAGE, re.MULTILINE) for key in re.findall(r"`(\w+)`", row)]
+    assert set(keys) == set(schema["start"]["properties"])
+    signs = PAGE.partition("All that `ready` holds must be true: ")[2].partition("\n\n")[0]
+    assert {key for key in schema["start_ready"]["properties"] if f"`{key}`" not in signs} == set()
+    rules = re.findall(r"\(rules/([\w-]+)\.md\)", PAGE)
+    assert set(rules) == {rule.name for rule in RULES if rule.name in rules}
+    assert len(rules) == 8

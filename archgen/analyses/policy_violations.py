@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.model.selector_evaluation import SelectorEvaluator
@@ -10,8 +10,8 @@ from archgen.model.selector_evaluation import SelectorEvaluator
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from archgen.model.architecture import Architecture, Policy
-    from archgen.model.component import Connection
+    from archgen.model.architecture import Architecture, Policy, SourceDemand
+    from archgen.model.component import Connection, Input, Output
 
 
 def find_forbidden_flows(
@@ -78,8 +78,11 @@ def forbidden_flow(architecture: Architecture) -> Iterator[Diagnostic]:
         # A selector with an error selects nothing, and `wrong-selector` reports it.
         senders, _ = evaluator.evaluate(policy.forbid_from) if policy.forbid_from else (None, ())
         receivers, _ = evaluator.evaluate(policy.forbid_to) if policy.forbid_to else (None, ())
+        accepted_inputs = _list_accepted_inputs(architecture, policy)
         if senders and receivers:
             for connection, outputs in find_forbidden_flows(architecture, senders.components, receivers.components):
+                if connection.input in accepted_inputs:
+                    continue
                 yield _report_forbidden_flow(architecture, policy, connection, outputs)
 
 
@@ -98,4 +101,169 @@ def _report_forbidden_flow(
     )
 
 
-RULES = ((forbidden_flow, Severity.ERROR),)
+def refused_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An element takes data from where a policy does not let it take any, and does not guard itself.
+
+    Why: What a robot does safely is as safe as what it listens to. A policy with `require` says it once: inputs of what `of` selects
+    come from what `inputs_from` selects. An input guards itself if it has the property that `guarded_by` names, such as a range
+    check or a watchdog. What comes from outside of the system is not judged. A service or action carries data both ways.
+
+    Bad:
+        properties: {sil: {title: Safety integrity level, of: [component], type: integer, range: [0, 4]}}
+        groups:
+          driving:
+            components:
+              planner: {functionality: Plans the way., properties: {sil: 0}, outputs: {command: geometry_msgs/msg/Twist}}
+              base: {functionality: Turns the wheels., properties: {sil: 2}, inputs: {command: planner.command}}
+        nodes:
+          planner: {implements: planner}
+          base: {implements: base}
+        policies:
+          safe_inputs:
+            title: What is safe listens to what is safe
+            require: {of: "property:sil>=2", inputs_from: "property:sil>=2", guarded_by: guard}
+
+    Good:
+        properties: {sil: {title: Safety integrity level, of: [component], type: integer, range: [0, 4]}}
+        groups:
+          driving:
+            components:
+              planner: {functionality: Plans the way., properties: {sil: 0}, outputs: {command: geometry_msgs/msg/Twist}}
+              base:
+                functionality: Turns the wheels.
+                properties: {sil: 2}
+                inputs: {command: {from: planner.command, properties: {guard: never faster than 0.3 m/s near people}}}
+        nodes:
+          planner: {implements: planner}
+          base: {implements: base}
+        policies:
+          safe_inputs:
+            title: What is safe listens to what is safe
+            require: {of: "property:sil>=2", inputs_from: "property:sil>=2", guarded_by: guard}
+    """
+    evaluator = SelectorEvaluator(architecture)
+    for policy in architecture.policies.values():
+        if policy.require is None:
+            continue
+        judged, judged_problems = evaluator.evaluate(policy.require.of)
+        allowed, problems = evaluator.evaluate(policy.require.inputs_from)
+        # A selector with an error selects nothing, and `wrong-selector` reports it.
+        if any(problem.severity == "error" for problem in (*judged_problems, *problems)):
+            continue
+        accepted_inputs = _list_accepted_inputs(architecture, policy)
+        for refused in _find_refused_sources(architecture, policy.require, judged.components, allowed.components):
+            if refused.connection.input not in accepted_inputs:
+                yield _report_refused_source(policy, policy.require, refused)
+
+
+class _RefusedSource(NamedTuple):
+    """An end of a connection that takes data, the port that it sends it from, and the connection."""
+
+    taker: str
+    source: str
+    connection: Connection
+
+
+def _find_refused_sources(
+    architecture: Architecture, demand: SourceDemand, judged: Collection[str], allowed: Collection[str]
+) -> Iterator[_RefusedSource]:
+    both_ways = {o.id for o in architecture.outputs.values() if architecture.flow_of(o) != "topic"}
+    for connection in architecture.connections:
+        input_ = architecture.inputs[connection.input]
+        for output_id in connection.outputs:
+            output = architecture.outputs[output_id]
+            if output.component == input_.component:
+                continue
+            if input_.component in judged and output.component not in allowed and not _is_guarded(input_, demand):
+                yield _RefusedSource(input_.id, output_id, connection)
+            is_asked = output_id in both_ways and output.component in judged
+            if is_asked and input_.component not in allowed and not _is_guarded(output, demand):
+                yield _RefusedSource(output_id, input_.id, connection)
+
+
+def _is_guarded(port: Input | Output, demand: SourceDemand) -> bool:
+    return demand.guarded_by is not None and port.annotations.properties.get(demand.guarded_by, "false") != "false"
+
+
+def _list_accepted_inputs(architecture: Architecture, policy: Policy) -> frozenset[str]:
+    """Return the inputs of leaves that a policy lets pass: also those behind a port of a composed component."""
+    return frozenset(leaf for port in policy.accepted for leaf in architecture.leaf_ports_of("input", port))
+
+
+def _report_refused_source(policy: Policy, demand: SourceDemand, refused: _RefusedSource) -> Diagnostic:
+    guard = f", or say how it guards itself: `properties: {{{demand.guarded_by}: ...}}`" if demand.guarded_by else ""
+    return Diagnostic(
+        "refused-source",
+        f"`{refused.taker}` takes data from `{refused.source}`, which the policy `{policy.id}` does not allow: {policy.title}",
+        refused.connection.at,
+        labels=(Label(policy.at, "the policy"),),
+        help=f"take it from what `{' '.join(demand.inputs_from.split())}` selects{guard}",
+        element=refused.taker.rpartition(".")[0],
+    )
+
+
+def unneeded_exception(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A policy accepts an input that it does not object to.
+
+    Why: The exception was needed once. It would hide the next connection that the policy is there for.
+
+    Bad:
+        groups:
+          reasoning:
+            components:
+              reasoner: {outputs: {command: geometry_msgs/msg/Twist}}
+          driving:
+            components:
+              base: {role: sink, inputs: {command: reasoner.command}}
+        nodes:
+          reasoner: {implements: reasoner}
+          base: {implements: base}
+        policies:
+          no_loop: {forbid: {from: driving, to: reasoning}, accepted: {base.command: it is slow}}
+
+    Good:
+        groups:
+          reasoning:
+            components:
+              reasoner: {outputs: {command: geometry_msgs/msg/Twist}}
+          driving:
+            components:
+              base: {role: sink, inputs: {command: reasoner.command}}
+        nodes:
+          reasoner: {implements: reasoner}
+          base: {implements: base}
+        policies:
+          no_loop: {forbid: {from: driving, to: reasoning}}
+    """
+    policies = [policy for policy in architecture.policies.values() if policy.accepted]
+    evaluator = SelectorEvaluator(architecture)
+    for policy in policies:
+        objected_inputs = set(_list_objected_inputs(architecture, policy, evaluator))
+        for port, place in policy.accepted_places.items():
+            if objected_inputs.isdisjoint(architecture.leaf_ports_of("input", port)):
+                yield Diagnostic(
+                    "unneeded-exception",
+                    f"the policy `{policy.id}` does not object to `{port}`",
+                    place,
+                    help="take it out of `accepted`",
+                    element=policy.id,
+                )
+
+
+def _list_objected_inputs(architecture: Architecture, policy: Policy, evaluator: SelectorEvaluator) -> Iterator[str]:
+    """Yield the inputs of the connections that a policy does not allow, accepted ones included."""
+    if policy.forbid_from and policy.forbid_to:
+        senders, receivers = (evaluator.evaluate(text)[0] for text in (policy.forbid_from, policy.forbid_to))
+        flows = find_forbidden_flows(architecture, senders.components, receivers.components)
+        yield from (connection.input for connection, _ in flows)
+    if demand := policy.require:
+        judged, allowed = (evaluator.evaluate(text)[0] for text in (demand.of, demand.inputs_from))
+        refused_sources = _find_refused_sources(architecture, demand, judged.components, allowed.components)
+        yield from (refused.connection.input for refused in refused_sources)
+
+
+RULES = (
+    (forbidden_flow, Severity.ERROR),
+    (refused_source, Severity.ERROR),
+    (unneeded_exception, Severity.NOTE),
+)

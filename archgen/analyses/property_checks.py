@@ -8,7 +8,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements
-from archgen.model.element_annotations import find_property_fault
+from archgen.model.element_annotations import find_property_fault, shorten_value
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,7 +73,7 @@ def _judge_property(
     if fault:
         yield Diagnostic(
             "wrong-property",
-            f"{_phrase_element(each)} cannot have `{name}: {text}`: {fault}",
+            f"{_phrase_element(each)} cannot have `{name}: {shorten_value(text)}`: {fault}",
             place,
             labels=(Label(declared.at, "declared here"),),
             element=each.owner_id,

@@ -30,7 +30,13 @@ def list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelect
         if view.show:
             yield WrittenSelector(f"the view `{view.id}`", view.id, view.show, view.show_at)
     for policy in architecture.policies.values():
-        for text, span in ((policy.forbid_from, policy.from_at), (policy.forbid_to, policy.to_at)):
+        selectors = [(policy.forbid_from, policy.from_at), (policy.forbid_to, policy.to_at)]
+        if policy.require:
+            selectors += [
+                (policy.require.of, policy.require.of_at),
+                (policy.require.inputs_from, policy.require.from_at),
+            ]
+        for text, span in selectors:
             if text:
                 yield WrittenSelector(f"the policy `{policy.id}`", policy.id, text, span)
 

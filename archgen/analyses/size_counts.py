@@ -64,6 +64,10 @@ class ArchitectureSize:
     """The steps of all use cases."""
     programs: int = 0
     """Those among the nodes that are no ROS: simulators, registries, brokers."""
+    promises: int = 0
+    """The outputs that promise something."""
+    deprecated: int = 0
+    """The outputs, types and component types that are going away."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +130,10 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         component_types=len(arch.component_types),
         made_connections=sum(connection.is_made for connection in arch.connections),
         frames=len(arch.frames),
+        promises=sum(output.promise is not None for output in arch.outputs.values()),
+        deprecated=sum(each.deprecated is not None for each in arch.outputs.values())
+        + sum(each.deprecated is not None for each in arch.types.values())
+        + sum(each.deprecated is not None for each in arch.component_types.values()),
         variants=len(arch.variants),
         steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
         programs=sum("program" in node.kinds for node in arch.nodes.values()),

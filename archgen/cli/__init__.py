@@ -27,6 +27,7 @@ VERBS = {
     "simulate": "Simulate the timing: what was seen beside the bounds.",
     "explain": "Explain a rule: why it is there, a bad and a good example.",
     "init": "Start a project, or take one over from a spreadsheet.",
+    "import": "Take requirements over from ReqIF: of Doors, Polarion and their like.",
     "schema": "Write the JSON Schema with which editors offer the project's own names.",
     "new": "Add a group, a component or a node.",
     "review": "Make all that the review of a change needs, in one folder.",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import command_support, shared_options
+from archgen.cli import command_support, measured_recordings, shared_options
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -50,6 +50,14 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx")
     metavar="YYYY-MM-DD",
     help="The date of issue.  [default: the day of git's last commit of the project, none if files differ from it]",
 )
+@click.option(
+    "--measured",
+    "recordings",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Show what was measured beside what is promised: figures, a trace, a bag or log as for `archgen timing --measured`.",
+)
 @shared_options.revision_option
 @shared_options.keep_going_option
 def command(  # noqa: PLR0913 - one for each option
@@ -61,6 +69,7 @@ def command(  # noqa: PLR0913 - one for each option
     since: str | None,
     signed: str | None,
     issue_date: str | None,
+    recordings: tuple[Path, ...],
     revision: str | None,
     keep_going: bool,
 ) -> None:
@@ -83,6 +92,7 @@ def command(  # noqa: PLR0913 - one for each option
     earlier_version = _read_earlier(since, "--since", checked_project, project) if since else None
     if signed:
         earlier_version = _read_earlier(signed, "--signed", checked_project, project)
+    observations = measured_recordings.read_observations(checked_project, recordings) if recordings else ()
     try:
         agreement = agreement_documents.make_project_agreement(
             checked_project,
@@ -91,6 +101,7 @@ def command(  # noqa: PLR0913 - one for each option
             revision,
             issue_date=issue_date,
             signed_version=earlier_version if signed else None,
+            observations=observations,
         )
     except agreement_documents.PartnersError as error:
         raise click.UsageError(make_visible(str(error))) from None

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from archgen.importers.recordings.recording_import import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
-    from archgen.timing.chains.measured_comparison import MeasuredComparison
+    from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
 
 DEFAULT_SLICE = "measured.yaml"
 
@@ -64,6 +64,27 @@ def answer_recordings(
         _write_slice(checked_project, measured_slice, slice_path, as_json=as_json)
     if has_errors:
         raise click.exceptions.Exit(1)
+
+
+def read_observations(checked_project: CheckedProject, paths: Sequence[Path]) -> tuple[Observation, ...]:
+    """Return what recordings say; what is wrong with them is printed. Ends with status 1 where something cannot be used."""
+    from archgen.importers.recordings.recorded_names import RecordedNames
+    from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.timing.chains.measured_comparison import compare_measured
+    from archgen.timing.run_analysis import analyse_architecture
+
+    analysis = analyse_architecture(checked_project.architecture)
+    chains = bound_all_chains(analysis, checked_project.architecture)
+    recordings = _read_recordings(paths, RecordedNames(checked_project.architecture, analysis.system, chains))
+    for file, text in recordings.texts:
+        checked_project.sources.add_text(file, text)
+    _, unknown = compare_measured(analysis, recordings.observations, chains)
+    problems = _settle_problems((*recordings.diagnostics, *unknown))
+    if problems:
+        command_support.print_findings(problems, checked_project, sys.stderr)
+    if command_support.exit_status(problems):
+        raise click.exceptions.Exit(1)
+    return recordings.observations
 
 
 def _read_recordings(paths: Sequence[Path], names: RecordedNames) -> ReadRecordings:

@@ -109,7 +109,7 @@ trust_option = click.option(
 
 def _list_backend_ids(makes: str) -> list[str]:
     """Return the text backends that make this: those that ship, and those of the project around the current folder."""
-    from archgen.emit.backend_manifests import find_backends
+    from archgen.emit.backend_manifests import CALLED_EMITTERS, find_backends
     from archgen.project.project_search import ProjectNotFoundError, find_project
 
     try:
@@ -117,7 +117,7 @@ def _list_backend_ids(makes: str) -> list[str]:
     except ProjectNotFoundError:
         root = Path.cwd()
     backends, _ = find_backends(root)
-    return [name for name, backend in backends.items() if backend.emitter == "text" and backend.makes == makes]
+    return [name for name, backend in backends.items() if backend.emitter in CALLED_EMITTERS and backend.makes == makes]
 
 
 def complete_documents(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 @click.command("start")
 @shared_options.project_argument
+@shared_options.variant_option
 @click.option("--host", metavar="ID", help="Only the steps on this host, with what they wait for elsewhere.")
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def command(project: Path | None, host: str | None, form: str) -> None:

@@ -32,10 +32,19 @@ def _title_note(element: ComparedElement) -> str:
     return f" ({shorten_text(title.text)})" if isinstance(title, ElementTitle) and not title.generated else ""
 
 
+def _describe_policy(element: ComparedElement) -> Iterator[str]:
+    """Yield what a policy forbids, and what it asks for."""
+    values = {key: f"`{shorten_text(str(value))}`" for key, value in element.values.items() if value is not None}
+    if "forbid.from" in values:
+        yield f"nothing may lead from {values['forbid.from']} to {values['forbid.to']}"
+    if "require.of" in values:
+        yield f"{values['require.of']} may take inputs from {values['require.inputs_from']} only"
+
+
 def _describe_new_element(element: ComparedElement) -> str:
     """Describe what matters most of a new element, such as a node's place or the way of a chain."""
     if element.kind == "policy":
-        return f"; nothing may lead from `{shorten_text(str(element.values['forbid.from']))}` to `{shorten_text(str(element.values['forbid.to']))}`"
+        return "".join(f"; {clause}" for clause in _describe_policy(element))
     if element.kind == "partner":
         return f"; what it agrees on stands in `{agreement_file(element.own_id)}`"
     clauses = [

@@ -11,6 +11,7 @@ from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.compare.kinds.promise_keys import NO_DAY
 from archgen.compare.text_differences import cut_text, describe_text_difference
 from archgen.diagnostics.common_wording import join_words
+from archgen.model.start_up import DEFAULT_PHASE, PHASES
 
 _MAX_LENGTH = 80
 _NAMED_SECTIONS = {
@@ -28,6 +29,7 @@ _NAMED_SECTIONS = {
     "properties": "property",
     "hints": "hint",
     "glossary": "term",
+    "accepted": "accepted input",
 }
 """What sentences call the keys of a section, by the section."""
 _PARTS_OF: Mapping[str, frozenset[str]] = {
@@ -75,7 +77,17 @@ def describe_key_change(change: Change) -> str:
     if isinstance(before, list) or isinstance(after, list):
         fields_phrase = _fields_phrase(before, after) if (change.element_kind, key) == ("message", "fields") else ""
         return subject + (fields_phrase or _list_phrase(noun, spec.list_verbs, before, after))
-    return f"{subject}: {_value_phrase(noun, before, after)}"
+    return f"{subject}: {_value_phrase(noun, before, after)}{_order_phrase(key, before, after)}"
+
+
+def _order_phrase(key: str, before: object, after: object) -> str:
+    """Return whether another phase of a start-up comes earlier or later; empty for any other key."""
+    if key not in {"start.phase", "node.start.phase"}:
+        return ""
+    places = [PHASES.index(phase) if phase in PHASES else PHASES.index(DEFAULT_PHASE) for phase in (before, after)]
+    if places[0] == places[1]:
+        return ", as before"
+    return ", so earlier than before" if places[1] < places[0] else ", so later than before"
 
 
 def name_key(kind: str, key: str) -> str:

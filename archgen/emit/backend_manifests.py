@@ -58,6 +58,10 @@ class Backend:
     """Whether the project brings it, rather than archgen."""
 
 
+CALLED_EMITTERS = frozenset({"text", "reqif"})
+"""The emitters of backends that a verb makes by their names; the others are outputs of archgen itself."""
+
+
 def read_shipped_backend(name: str) -> Backend:
     """Read a backend that ships with archgen, by the name of its folder."""
     return _read_manifest(resources.resource_path("backends", name), f"backends/{name}")
@@ -170,6 +174,8 @@ def _check_escapes(escapes: Mapping[str, Mapping[str, str]], root: ManifestNode,
 def _check_single_file(backend: Backend, root: ManifestNode) -> None:
     """Refuse a backend that makes a file, but writes none or several."""
     place = find_span(root, ["makes"], backend.name)
+    if backend.emitter == "reqif":
+        return
     if backend.emitter != "text":
         refuse_manifest(backend.name, "`makes: file` is for the emitter `text`", span=place)
     if len(backend.files) != 1 or backend.files[0].for_each:

@@ -33,6 +33,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "idle-executor",
         "missing-detail",
         "uncovered-requirement",
+        "unneeded-exception",
         "unmet-ready",
         "unlinked-hosts",
         "unmapped-component",

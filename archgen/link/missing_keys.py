@@ -17,7 +17,6 @@ _KeyPath = tuple[str, ...]
 # key may be missing, because another file may write it.
 _NEEDED_KEYS: dict[_KeyPath, tuple[_KeyPath, ...]] = {
     ("views",): (("show",),),
-    ("policies",): (("forbid", "from"), ("forbid", "to")),
     ("review", "accepted"): (("reason",),),
 }
 
@@ -37,7 +36,25 @@ def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
                     yield Diagnostic(
                         "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
                     )
+    yield from _find_open_policies(root)
     yield from _find_open_steps(root)
+
+
+def _find_open_policies(root: MappingNode) -> Iterator[Diagnostic]:
+    """Report the policies that say neither what they forbid nor what they require, or only half of it."""
+    policies = _node_at(root, ("policies",))
+    for entry in policies if isinstance(policies, MappingNode) else ():
+        requires = _has_path(entry.value, ("require",))
+        parts = [("require", ("of", "inputs_from"))] if requires else []
+        if not requires or _has_path(entry.value, ("forbid",)):
+            parts.append(("forbid", ("from", "to")))
+        for part, keys in parts:
+            for key in keys:
+                if not _has_path(entry.value, (part, key)):
+                    message = f"`{entry.key}` lacks `{part}.{key}`"
+                    yield Diagnostic(
+                        "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[part], element=entry.key
+                    )
 
 
 def _find_open_steps(root: MappingNode) -> Iterator[Diagnostic]:
@@ -55,7 +72,9 @@ def _find_open_steps(root: MappingNode) -> Iterator[Diagnostic]:
 
 _MISSING_KEY_HELP = {
     "views": 'say what the view shows: `show: "tag:safety"`',
-    "policies": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
+    "require": "say who may take its inputs only from whom: "
+    '`require: {of: "property:sil>=2", inputs_from: "property:sil>=2"}`',
+    "forbid": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
     "accepted": "say why the change is right: `camera.image: {key: type, reason: the tracker moved to depth images}`",
 }
 

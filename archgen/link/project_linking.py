@@ -6,7 +6,7 @@ from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare import deployment_declaration, property_declaration, section_declaration
+from archgen.link.declare import deployment_declaration, policy_declaration, property_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.frame_declaration import declare_frames
@@ -74,6 +74,7 @@ def link_project(  # noqa: PLR0913 - all by name
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
     frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
     component_types = declare_component_types(expansion, resolver)
+    policies = policy_declaration.declare_policies(root, resolver)
     properties = property_declaration.declare_properties(root, diagnostics)
     glossary = property_declaration.declare_glossary(root, diagnostics)
     suspected_ids = resolver.finish_resolving()
@@ -106,7 +107,7 @@ def link_project(  # noqa: PLR0913 - all by name
         frames=frames,
         chains=chains,
         views=section_declaration.declare_views(root),
-        policies=section_declaration.declare_policies(root),
+        policies=policies,
         variants=declare_variants(root),
         properties=properties,
         glossary=glossary,

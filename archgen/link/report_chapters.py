@@ -26,7 +26,7 @@ MISSING_CHAPTER = Rule(
     """\
 The report asks for a chapter that is neither one that archgen writes nor a file of the project.
 
-Why: The document would lack what its readers were promised. archgen writes the chapters overview, groups, deployment,
+Why: The document would lack what its readers were promised. archgen writes the chapters overview, groups, variants, deployment,
 timing, chains, views, types, connections, requirements, open_points and statistics; every other entry of `report.chapters` is the
 path of a CommonMark file inside the project's folder.
 

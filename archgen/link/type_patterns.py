@@ -15,10 +15,9 @@ from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import build_outline
 from archgen.link.project_linking import link_project
 from archgen.model.architecture import Architecture
-from archgen.model.type_patterns import TypePatterns
+from archgen.model.type_patterns import PATTERN_GROUP, TypePatterns
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
-_GROUP = "component types"
 """The group of the patterns; ids of groups have no blanks."""
 _OUTER_SECTIONS = ("component_types", "libraries", "types", "ros", "project")
 """What a type may refer to. Nodes, chains and the like are about instances."""
@@ -49,7 +48,7 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
 def _write_patterns(outer_entries: Mapping[str, MappingEntry], type_bodies: Mapping[str, MappingNode]) -> MappingNode:
     """Return a project of one group, which has a component for each type."""
     components = {name: MappingEntry(name, body.span, body) for name, body in type_bodies.items()}
-    groups = _nest_mapping(_nest_mapping(MappingNode(components, NO_SPAN), "components"), _GROUP)
+    groups = _nest_mapping(_nest_mapping(MappingNode(components, NO_SPAN), "components"), PATTERN_GROUP)
     return MappingNode({**outer_entries, **_nest_mapping(groups, "groups").entries}, NO_SPAN)
 
 
@@ -70,4 +69,4 @@ def _link_expansion(expansion: ExpandedProject, architecture: Architecture) -> A
 
 
 def _drop_group(component_id: str) -> str:
-    return component_id.removeprefix(f"{_GROUP}.")
+    return component_id.removeprefix(f"{PATTERN_GROUP}.")

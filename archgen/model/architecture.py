@@ -107,17 +107,38 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
+class SourceDemand:
+    """Who may take its inputs only from whom, as two selectors.
+
+    An input that has the property `guarded_by` guards itself, and may take them from anywhere.
+    """
+
+    of: str
+    inputs_from: str
+    guarded_by: str | None = None
+    of_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Policy:
-    """A flow that the project forbids, from what one selector selects to what another selects."""
+    """A flow that the project forbids, from what one selector selects to what another selects; or sources that it asks for.
+
+    `accepted` are the inputs that it lets pass all the same, by complete id, with the reasons.
+    """
 
     id: str
     title: str
-    forbid_from: str
-    forbid_to: str
+    forbid_from: str = ""
+    forbid_to: str = ""
+    require: SourceDemand | None = None
+    accepted: Mapping[str, str] = field(default_factory=dict)
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     from_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     to_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    accepted_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each accepted input is written."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,9 @@ from archgen.frozen import dataclass
 PropertyType = Literal["boolean", "integer", "float", "string", "date"]
 MAX_DIGITS = 15
 """The most digits of a number that is compared as one, so that a browser comes to the same; what is longer is text."""
+_MAX_CHOICES = 8
+_MAX_LETTERS = 60
+"""Letters of a value that a finding quotes."""
 _FIGURE = re.compile(r"([+-]?([0-9]+)(?:\.([0-9]+))?)(?:\s*([^\s\d+.-]\S{0,30}))?")
 _DATE = re.compile(r"[0-9]{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|[12][0-9]|3[01])")
 
@@ -90,16 +93,25 @@ def compare_values(text: str, other_text: str) -> int | None:
 def find_property_fault(declared: PropertyDeclaration, text: str) -> str | None:
     """Return what is wrong with a value of a declared property, as the end of a sentence; None if nothing is."""
     if declared.choices:
-        return (
-            None if text in declared.choices else f"it is one of {', '.join(f'`{each}`' for each in declared.choices)}"
-        )
+        return None if text in declared.choices else f"it is {_name_choices(declared.choices)}"
     if declared.type == "boolean":
         return None if text in {"true", "false"} else "it is `true` or `false`"
     if declared.type == "date":
         return None if is_date(text) else "it is a day such as `2027-03-01`"
-    if declared.type in {"integer", "float"} or declared.unit or declared.range:
-        return _find_number_fault(declared, text)
-    return None
+    is_text = declared.type == "string" or not (declared.type or declared.unit or declared.range)
+    return None if is_text else _find_number_fault(declared, text)
+
+
+def _name_choices(choices: tuple[str, ...]) -> str:
+    quoted = [f"`{shorten_value(each)}`" for each in choices[:_MAX_CHOICES]]
+    return f"one of {', '.join(quoted)}{', ...' if len(choices) > _MAX_CHOICES else ''}"
+
+
+def shorten_value(text: str) -> str:
+    """Return a value as a finding quotes it: on one line, not too long, and without backticks."""
+    # A backtick inside would end the code span that the message puts the text into.
+    line = " ".join(text.replace("`", "'").split())
+    return line if len(line) <= _MAX_LETTERS else f"{line[: _MAX_LETTERS - 1]}…"
 
 
 def _find_number_fault(declared: PropertyDeclaration, text: str) -> str | None:

@@ -40,19 +40,22 @@ def is_id(text: str) -> bool:
     return len(text) <= MAX_ID_LENGTH and text not in RESERVED_IDS and _ID_PATTERN.match(text) is not None
 
 
+def spell_in_ascii(name: str) -> str:
+    """Return a name in ASCII: `Höhe` as `Hoehe`; letters of other alphabets are dropped."""
+    # macOS writes an umlaut as a letter and a mark: composed first, both spellings make one id.
+    composed_name = unicodedata.normalize("NFC", name)
+    # In a word of capitals both letters are: `AeOe` would be two words.
+    composed_name = _CAPITAL_UMLAUT.sub(lambda match: _UMLAUT_SPELLINGS[match[0]].upper(), composed_name)
+    return unicodedata.normalize("NFKD", composed_name.translate(_SPELLING_TABLE)).encode("ascii", "ignore").decode()
+
+
 def make_id(name: str, prefix: str) -> str:
     """Make an id from a name: `Object Recognition (3D)` is `object_recognition_3d`, `Höhe` is `hoehe`.
 
     `prefix` is put in front of names that begin with a digit or are reserved words. A name without any Latin letter or
     digit becomes the prefix and a digest of the name, so that the same name always makes the same id.
     """
-    # macOS writes an umlaut as a letter and a mark: composed first, both spellings make one id.
-    composed_name = unicodedata.normalize("NFC", name)
-    # In a word of capitals both letters are: `AeOe` would be two words.
-    composed_name = _CAPITAL_UMLAUT.sub(lambda match: _UMLAUT_SPELLINGS[match[0]].upper(), composed_name)
-    ascii_name = (
-        unicodedata.normalize("NFKD", composed_name.translate(_SPELLING_TABLE)).encode("ascii", "ignore").decode()
-    )
+    ascii_name = spell_in_ascii(name)
     words = re.findall(r"[a-z0-9]+", _CAMEL_CASE_HUMP.sub(" ", ascii_name).lower())
     # Cutting may leave an underscore at the end, which no id may have.
     element_id = "_".join(words)[:MAX_ID_LENGTH].strip("_")

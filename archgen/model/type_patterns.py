@@ -9,6 +9,9 @@ from archgen.frozen import dataclass
 from archgen.model.component import Component
 from archgen.model.node import Node
 
+PATTERN_GROUP = "component types"
+"""The group of patterns: a name that no group of a project can have."""
+
 
 @dataclass(frozen=True, slots=True)
 class TypePatterns:

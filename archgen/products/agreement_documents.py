@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -19,6 +19,7 @@ from archgen.products.compared_versions import ProjectVersion
 from archgen.products.output_options import OutputOptions
 from archgen.products.picture_drawing import draw_or_warn
 from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, UnknownBudgetError, share_chain_budget
 from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
@@ -56,11 +57,12 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
     *,
     issue_date: str | None = None,
     signed_version: ProjectVersion | None = None,
+    observations: Sequence[Observation] = (),
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     Changes since `earlier_version` are marked; `printed_revision` and `issue_date` are printed instead of git's last commit
-    and its day. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
+    and its day. `observations` stand beside what is promised. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
     PartnersError where there can be no agreement.
     """
     _check_partners(checked_project, first, second)
@@ -98,6 +100,7 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
             *([] if is_readable or not signed_tags else [_unreadable_notice(signed_tags[0].name)]),
         ),
         find_budget=_make_budget_finder(lookup),
+        observations=observations,
     )
     # Without interfaces there may still be removed ones to agree on.
     if not partner_agreement.interface_count and not (

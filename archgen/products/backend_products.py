@@ -8,13 +8,14 @@ from typing import Literal
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit import file_tree
-from archgen.emit.backend_manifests import Backend
+from archgen.emit.backend_manifests import CALLED_EMITTERS, Backend
 from archgen.pipeline import CheckedProject
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.products.product_table import PRODUCTS
 from archgen.products.trusted_backends import TrustedRevision, refuse_untrusted
 from archgen.views import resolved_record
 from archgen.views.graph_shapes import Graph
+from archgen.views.requirement_exchange import make_requirement_exchange
 from archgen.views.tables import statistics_tables
 
 BackendTarget = Literal["documents", "workspace", "file"]
@@ -64,10 +65,10 @@ def _refuse_unusable(
     usable_names = list(other_outputs) + [
         backend_id
         for backend_id, backend in backends_by_name.items()
-        if backend.emitter == "text" and backend.makes == makes
+        if backend.emitter in CALLED_EMITTERS and backend.makes == makes
     ]
     backend = backends_by_name.get(name)
-    if backend is None or backend.emitter != "text":
+    if backend is None or backend.emitter not in CALLED_EMITTERS:
         msg = f"there is no {'output' if other_outputs else 'text backend'} `{name}`"
         listed_names = f"there are {', '.join(usable_names)}" if usable_names else _describe_none(makes)
         raise file_tree.OutputError(msg, did_you_mean(name, usable_names) or listed_names)
@@ -98,6 +99,10 @@ def make_backend_product(backend: Backend) -> Product:
 
 def render_single_file(inputs: ProductInputs, backend: Backend) -> bytes:
     """Return the file of a backend that makes a single one. Raise OutputError where its template fails."""
+    if backend.emitter == "reqif":
+        from archgen.emit.reqif import render_reqif
+
+        return render_reqif(make_requirement_exchange(inputs.timed_lookup))
     (content,) = _render_backend(inputs, backend).files.values()
     return content
 

@@ -16,11 +16,13 @@ from archgen.products.project_views import ProjectViews
 from archgen.views import drawing_set
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Graph, GraphKind
+from archgen.views.lookup import Lookup, add_timing
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition, RosPlace
 from archgen.views.report.printed_report import make_printed_report, walk_sections
 from archgen.views.report.report_drawings import make_report_drawings
 from archgen.views.shapes import Figure, Outline, Page
+from archgen.views.timing.timing_lookup import complete_with_chains
 
 
 # Without slots: `cached_property` stores its values in the object's dictionary.
@@ -50,6 +52,13 @@ class ProductInputs:
     def views(self) -> ProjectViews:
         """The look-ups and drawings."""
         return project_views.make_views(self.checked_project, self.options, undrawn_kinds=self.undrawn_kinds)
+
+    @cached_property
+    def timed_lookup(self) -> Lookup:
+        """The look-ups with the timing analysis, without drawings."""
+        analysis, architecture = self.checked_project.analysis, self.checked_project.architecture
+        lookup = project_views.make_scoped_lookup(self.checked_project, self.options)
+        return add_timing(lookup, complete_with_chains(analysis, architecture))
 
     @cached_property
     def site_drawings(self) -> Mapping[str, Drawing]:

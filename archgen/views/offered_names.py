@@ -80,6 +80,7 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
         ),
         "sources": _add_short_forms((*outputs, *components, *groups)),
         "implemented": _add_short_forms((*components, *composed)),
+        "startable": _add_short_forms((*nodes, *components, *composed)),
         "step_ends": (
             *_list_actors(architecture),
             *_add_short_forms((*components, *composed)),

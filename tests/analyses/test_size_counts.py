@@ -150,3 +150,14 @@ def test_frames_are_counted_and_told_where_there_are_any() -> None:
     )
     assert ("frames", "Coordinate frames", "2") in format_figures(measure_size(framed))
     assert "frames" not in {key for key, _, _ in format_figures(measure_size(plain))}
+
+
+def test_promises_and_what_is_going_away_are_counted_where_there_are_any() -> None:
+    said = _architecture(
+        "groups: {g: {components: {a: {outputs: {o: {promise: {rate: 1 Hz}}, p: {deprecated: {}}}}}}}\n"
+        "types: {T: {message: std_msgs/msg/Bool, deprecated: {}}}\ncomponent_types: {m: {deprecated: {}}}\n"
+    )
+    figures = {key: count for key, _, count in format_figures(measure_size(said))}
+    assert (figures["promises"], figures["deprecated"]) == ("1", "3")
+    plain = _architecture("groups: {g: {components: {a: {outputs: {o: T}}}}}\n")
+    assert figures.keys() - {key for key, _, _ in format_figures(measure_size(plain))} >= {"promises", "deprecated"}

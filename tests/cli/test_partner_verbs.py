@@ -279,3 +279,23 @@ def test_a_signed_state_with_errors_cannot_be_judged(run: Run, tmp_path: Path) -
     assert " (more.yaml:1: " in ran.err
     ran = run("interfaces", root, "--between", "certh", "sssa", "--signed", "signed", "--since", "signed")
     assert (ran.status, "give one of them" in ran.err) == (2, True)
+
+
+def test_what_was_measured_stands_beside_what_is_promised(run: Run, duo: Path, tmp_path: Path) -> None:
+    ran = run("interfaces", duo, "--between", "north", "south")
+    topic = re.search(r"\*\*Topic:\*\* `([^`]+)`", ran.out)
+    assert topic
+    (tmp_path / "seen.yaml").write_text(f"measured: {{{topic[1]}: {{rate: 7.5 Hz}}}}\n", encoding="utf-8")
+    ran = run("interfaces", duo, "--between", "north", "south", "--measured", tmp_path / "seen.yaml")
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.count("Expected, not promised | Measured |") == 1
+    assert "| 7.5 Hz" in ran.out
+
+
+def test_measured_figures_of_what_nobody_knows_are_refused(run: Run, duo: Path, tmp_path: Path) -> None:
+    (tmp_path / "seen.yaml").write_text("measured: {nope: {rate: 7.5 Hz}}\n", encoding="utf-8")
+    ran = run("interfaces", duo, "--between", "north", "south", "--measured", tmp_path / "seen.yaml")
+    assert (ran.status, ran.out) == (1, "")
+    assert "no node, activity or topic is called `nope`" in ran.err
+    ran = run("interfaces", duo, "--between", "north", "south", "--measured", tmp_path / "none.yaml")
+    assert (ran.status, ran.out) == (2, "")

@@ -141,3 +141,10 @@ def test_contradictions_are_told_and_end_with_1(tmp_path: Path) -> None:
     ]
     assert "run: 'a b' '$(x)' '␛[31m'" in text
     assert "nothing says how it is started" in text
+
+
+def test_the_plan_of_a_variant() -> None:
+    status, text = run(EXAMPLE, "--variant", "hardware")
+    assert status == 0
+    assert "   2  stage, program on robot_pc\n      run: robot-base --port 6665\n" in text
+    assert run(EXAMPLE, "--variant", "hardwear")[0] == WRONG_USAGE

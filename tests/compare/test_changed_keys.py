@@ -54,6 +54,7 @@ project: {id: robot, title: Robot}
         ('show: "g.a+"', "show: g", "view v", "show", "g.a+", "g", "view `v`: selector `g.a+` → `g`"),
         ('show: "g.a+"', 'show: "g.a+", depth: 2', "view v", "depth", None, 2, "view `v`: depth set to 2"),
         ("from: g.a", "from: g.b", "policy p", "forbid.from", "g.a", "g.b", "policy `p`: forbidden source `g.a` → `g.b`"),
+        ('from: g.a, to: "role:sink"}', 'from: g.a, to: "role:sink"}, accepted: {b.x: why}', "policy p", "accepted.g.b.x", None, "why", "policy `p`: accepted input `g.b.x` set to `why`"),
         ("accuracy: 90 %", "accuracy: 80 %", "component g.b", "performance.speed.accuracy", "90 %", "80 %", "`g.b`: performance speed accuracy `90 %` → `80 %`"),
         ("without: ", "of: [low], without: ", "variant sim", "of", None, ["low"], "variant `sim` is now built on `low`"),
         ("tag:t g.a", "tag:u", "variant sim", "without", "tag:t g.a", "tag:u", "variant `sim` now is without `tag:u` instead of `tag:t g.a`"),
@@ -233,7 +234,9 @@ nodes:
 @pytest.mark.parametrize(
     "case",
     [
-        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "phase of its start `core` → `network`"),
+        ("phase: core", "phase: network", "na", "start.phase", "core", "network", "start phase `core` → `network`, so earlier than before"),
+        ("phase: core, ", "", "na", "start.phase", "core", None, "start phase no longer given (it was `core`), so later than before"),
+        ("user: robot", "user: robot, phase: components", "nb", "start.phase", None, "components", "start phase set to `components`, as before"),
         ("after: na", "after: [na, m]", "nb", "start.after", ["na"], ["m", "na"], " now starts after `m`"),
         ("topic: up", "topic: /up", "na", "start.ready.topic", None, None, None),
         ("topic: up", "topic: ~/up", "na", "start.ready.topic", "/up", "/na/up", "topic that shows it is up `/up` → `/na/up`"),
@@ -256,3 +259,30 @@ def test_keys_of_the_start_up(compared: Compared, case: tuple[str, str, str, str
     assert (change.before, change.after) == (before, after)
     if text is not None:
         assert change.text == (f"node `{element}`{text}" if text.startswith(" ") else f"node `{element}`: {text}")
+
+
+TREE = """\
+use_cases: {UC-1: Walks}
+requirements:
+  R-1: {title: Safe, priority: must, verified_by: [UC-1, a.py]}
+  R-2: Quiet
+  R-3: {title: Slow, parent: R-1, kind: safety, rationale: Because, source: D1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("parent: R-1", "parent: R-2", "requirement `R-3`: parent `R-1` → `R-2`"),
+        ("parent: R-1", "parent: [R-2, R-1]", "requirement `R-3` is now part of `R-2`"),
+        ("must", "should", "requirement `R-1`: priority `must` → `should`"),
+        (", kind: safety", "", "requirement `R-3`: kind no longer given (it was `safety`)"),
+        ("Because", "Since", "requirement `R-3`: rationale `Because` → `Since`"),
+        ("[UC-1, a.py]", "UC-1", "requirement `R-1` is no longer verified by `a.py`"),
+        ("[UC-1, a.py]", "[a.py, UC-1]", None),
+    ],
+)
+def test_keys_of_requirements(compared: Compared, old: str, new: str, text: str | None) -> None:
+    assert old in TREE
+    changes = compared(TREE, TREE.replace(old, new, 1)).changes
+    assert [change.text for change in changes] == ([text] if text else [])

@@ -221,3 +221,24 @@ groups:
     assert [text for text in list_texts(compared(before, after.replace("10 Hz", "5 Hz"))) if "rate" in text] == [
         "component type `sieve`: rate `10 Hz` → `5 Hz`; in its instance `g.f`"
     ]
+
+
+TYPED_START = """\
+component_types:
+  station: {title: S, node: {command: [serve, x], start: {phase: core, ready: {port: 81}}}}
+  line: {title: L, components: {first: {title: F}, second: {title: S, node: {start: {after: first}}}, third: {title: T}}}
+groups: {g: {components: {a: {is: station}, b: {is: station, node: {start: {ready: {port: 82}}}}, c: {is: line}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("phase: core", "phase: network", "component type `station`: start phase of the node `core` → `network`, so earlier than before; in 2 instances: `g.a` and `g.b`"),
+        ("[serve, x]", "[serve]", "component type `station`: command of the node `serve x` → `serve`; in 2 instances: `g.a` and `g.b`"),
+        ("port: 81", "port: 80", "component type `station`: port that shows it is up of the node 81 → 80; in its instance `g.a`"),
+        ("after: first", "after: third", "node `second`: start after `g.c.first` → `g.c.third`"),
+    ],
+)  # fmt: skip
+def test_the_start_up_of_a_type_is_told_once(compared: Compared, old: str, new: str, line: str) -> None:
+    assert list_texts(compared(TYPED_START, TYPED_START.replace(old, new, 1))) == [line]

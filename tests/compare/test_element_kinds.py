@@ -343,7 +343,7 @@ links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit
 frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1], properties: {q: 1}, hints: {x: {a: 1}}}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}, properties: {q: 1}, hints: {x: {a: 1}}}}
-policies: {p: {title: P, forbid: {from: g, to: g}, properties: {q: 1}, hints: {x: {a: 1}}}}
+policies: {p: {title: P, forbid: {from: g, to: g}, require: {of: b, inputs_from: "g.*", guarded_by: q}, accepted: {b.i: because}, properties: {q: 1}, hints: {x: {a: 1}}}}
 variants:
   in: {title: I}
   sim: {title: S, description: D, of: [in], without: "g.whole", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}

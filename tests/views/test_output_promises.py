@@ -6,6 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.partner_interfaces import find_interfaces_between
+from archgen.model.quantity import parse_quantity
+from archgen.timing.chains.measured_comparison import Observation
 from archgen.views.agreement import make_agreement
 from archgen.views.agreement.output_promises import list_counted_ports
 from archgen.views.lookup import Lookup
@@ -65,6 +69,11 @@ def test_readers_of_different_ports_see_different_figures(tmp_path: Path) -> Non
     _, rows = _section(tmp_path, "Head · Lens · heads")
     assert rows["Rate"][0].split("\n") == ["at least 20 Hz for plan.heads", "at least 5 Hz for reach.slow"]
     assert rows["Unit"][0] == "cm for plan.heads, reach.slow"
+    outline = make_agreement(view(checked(tmp_path, ROBOT)), "a", "b").outline
+    table = next(block for block in section(outline, "At a glance").blocks if isinstance(block, Table))
+    assert "at least 20 Hz for plan.heads, at least 5 Hz for reach.slow\npromised" in [
+        text(row[3]) for row in table.rows
+    ]
 
 
 def _lookup(folder: Path, source: str) -> Lookup:
@@ -94,7 +103,37 @@ def test_a_signed_promise_that_is_weakened_is_told(tmp_path: Path, old: str, new
 
 def test_nothing_is_counted_on_where_a_topic_has_no_output(tmp_path: Path) -> None:
     lookup = _lookup(tmp_path, ROBOT.replace("rows: {from: eye.rows, freshness: 100 ms}, ", ""))
-    from archgen.model.partner_interfaces import find_interfaces_between
-
     counted = [list_counted_ports(lookup, each) for each in find_interfaces_between(lookup.architecture, "a", "b")]
     assert [[port.port.id for port in ports] for ports in counted] == [["sense.head.kept", "sense.head.slow"]]
+
+
+def _observation(name: str, **figures: str) -> Observation:
+    dimensions = {"rate": "frequency"}
+    quantities = {key: parse_quantity(value, dimensions.get(key, "duration")) for key, value in figures.items()}
+    return Observation(name, {key: value for key, value in quantities.items() if value}, NO_SPAN)
+
+
+@pytest.mark.parametrize(
+    ("observation", "measured"),
+    [
+        (
+            _observation("/sense/eye/rows", rate="4.9 Hz", max_period="120 ms", delay="2 ms"),
+            {
+                "Rate": ("4.9 Hz, worse than promised", True),
+                "Largest gap": ("120 ms", False),
+                "Greatest age": ("2 ms on arrival", False),
+            },
+        ),
+        (_observation("eye", period="50 ms"), {"Rate": ("20 Hz", False)}),
+        (_observation("lens", rate="1 Hz"), {}),
+    ],
+)
+def test_what_was_measured_stands_beside_it_and_is_marked_where_it_is_worse(
+    tmp_path: Path, observation: Observation, measured: dict[str, tuple[str, bool]]
+) -> None:
+    outline = make_agreement(view(checked(tmp_path, ROBOT)), "a", "b", observations=[observation]).outline
+    blocks = section(outline, "Eye · rows").blocks
+    table = next(block for block in blocks if isinstance(block, Table) and block.columns[0].title == "Term")
+    assert [column.title for column in table.columns][3:] == (["Measured"] if measured else [])
+    cells = {text(row[0]): row[3] for row in table.rows if len(row) > 3 and row[3]}
+    assert {name: (text(cell), cell[0].status == "missed") for name, cell in cells.items()} == measured

@@ -13,6 +13,7 @@ from archgen.views.elements.element_card import make_card
 from archgen.views.elements.port_tables import make_input_blocks, make_output_blocks
 from archgen.views.elements.promise_words import describe_promise
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.pages.context_pages import make_context_pages, make_topic_pages
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Block, Facts, Table
 from archgen.views.tables.architecture_tables import make_type_table
@@ -100,3 +101,17 @@ def test_cards_lists_and_the_search(lookup: Lookup) -> None:
 
 def test_nothing_is_described_where_nothing_is_promised() -> None:
     assert describe_promise(None) == ""
+
+
+def test_pages_of_topics_and_types_say_it(tmp_path: Path) -> None:
+    (tmp_path / "robot.yaml").write_text(f"{ROBOT}nodes: {{a: a}}\n", encoding="utf-8")
+    checked = check_project(tmp_path / "robot.yaml")
+    lookup = make_lookup(checked.architecture, checked.findings)
+    pages = {page.section.anchor: page for page in (*make_topic_pages(lookup), *make_context_pages(lookup, tuple))}
+    topic, kind = (
+        {name: text(value) for name, value in next(b for b in pages[name].section.blocks if isinstance(b, Facts)).rows}
+        for name in ("topic:/g/a/rows", "type:T")
+    )
+    assert topic["Promised"].startswith("10 Hz, gaps up to 150 ms")
+    assert (topic["Version"], topic["Deprecated"]) == ("2", "deprecated until 2999-06-01: use new")
+    assert kind["Deprecated"] == "deprecated: use U"

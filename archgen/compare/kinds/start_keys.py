@@ -8,10 +8,11 @@ from archgen.compare.kinds.kind_spec import Effect, KeySpec, ReadContext
 from archgen.compare.normal_values import unordered_values
 from archgen.model.node import Node
 from archgen.model.start_up import SIGN_KEYS, StartTarget
+from archgen.model.type_patterns import PATTERN_GROUP
 from archgen.transform import ros_names
 
 START_KEYS = (
-    KeySpec("phase", effect=Effect.SYSTEM, noun="phase of its start"),
+    KeySpec("phase", effect=Effect.SYSTEM, noun="start phase"),
     KeySpec("after", effect=Effect.SYSTEM, list_verbs=("now starts after", "no longer waits for")),
     *(KeySpec(f"ready.{key}", effect=Effect.SYSTEM, noun=f"{key} that shows it is up") for key in SIGN_KEYS[:-1]),
     KeySpec("ready.wait", effect=Effect.SYSTEM, noun="pause after its start"),
@@ -52,4 +53,6 @@ def read_start(node: Node, context: ReadContext) -> Mapping[str, object]:
 
 
 def _common_ids(targets: Iterable[StartTarget], context: ReadContext) -> tuple[str, ...]:
-    return tuple(context.matched_ids.common_id(target.kind, target.id) for target in targets)
+    # What a component type names inside of itself is another component in each instance: it is told there.
+    own_targets = (target for target in targets if not target.id.startswith(f"{PATTERN_GROUP}."))
+    return tuple(context.matched_ids.common_id(target.kind, target.id) for target in own_targets)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from operator import attrgetter
 from typing import Any
 
 from archgen.compare.element_likeness import word_set
@@ -22,7 +23,7 @@ from archgen.compare.kinds.shared_keys import (
 )
 from archgen.compare.kinds.variant_kind import VARIANT
 from archgen.compare.normal_values import parameter_leaves
-from archgen.model.architecture import Chain
+from archgen.model.architecture import Chain, Policy
 from archgen.model.deployment import Container, Host, Resource
 
 _HOST_OF = KeySpec(
@@ -192,9 +193,21 @@ CHAIN = KindSpec(
 )
 
 
-def _read_selector(read_text: Callable[[Any], str]) -> Callable[[Any, ReadContext], str]:
-    """Return a reader of a selector, with the ids of the second version."""
-    return lambda element, context: context.matched_ids.rename_in_text(" ".join(read_text(element).split()))
+def _read_selector(read_text: Callable[[Any], str]) -> Callable[[Any, ReadContext], str | None]:
+    """Return a reader of a selector, with the ids of the second version; None where none is written."""
+    return lambda element, context: context.matched_ids.rename_in_text(" ".join(read_text(element).split())) or None
+
+
+def _read_demand(policy: Policy, context: ReadContext) -> Mapping[str, object]:
+    demand = policy.require
+    if demand is None:
+        return {}
+    selectors = {key: _read_selector(attrgetter(key))(demand, context) for key in ("of", "inputs_from")}
+    return {**selectors, "guarded_by": demand.guarded_by}
+
+
+def _read_accepted(policy: Policy, context: ReadContext) -> Mapping[str, object]:
+    return {str(context.common_id("input", name)): reason for name, reason in policy.accepted.items()}
 
 
 POLICY = KindSpec(
@@ -204,13 +217,21 @@ POLICY = KindSpec(
         TITLE,
         KeySpec("forbid.from", _read_selector(lambda policy: policy.forbid_from), noun="forbidden source"),
         KeySpec("forbid.to", _read_selector(lambda policy: policy.forbid_to), noun="forbidden target"),
+        KeySpec("require.", _read_demand),
+        KeySpec("accepted.", _read_accepted),
         *ANNOTATIONS,
     ),
     Effect.SYSTEM,
     lambda version: version.architecture.policies,
     (
         *NAME_FEATURES,
-        FeatureSpec("forbids", 5, lambda _, policy: mark_values(f"{policy.forbid_from} > {policy.forbid_to}")),
+        FeatureSpec(
+            "forbids",
+            5,
+            lambda _, policy: mark_values(
+                f"{policy.forbid_from} > {policy.forbid_to}", policy.require and str(policy.require)
+            ),
+        ),
     ),
 )
 VIEW = KindSpec(

@@ -21,6 +21,7 @@ from archgen.emit.docx.table_pieces import MAX_COLUMNS, write_chapter_table
 from archgen.emit.docx.text_pieces import Heading, ParagraphContent, write_heading, write_list_item, write_text
 from archgen.emit.docx.text_runs import LINE_BREAK, join_text
 from archgen.emit.docx.word_xml import format_run
+from archgen.emit.term_mentions import begin_text
 from archgen.views.shapes import Markdown
 
 _LIST_STEP = 360
@@ -72,7 +73,9 @@ def write_chapter(
     """Write a chapter. `anchor` and `level` are those of its section; headings in it get their own below it."""
     root = SyntaxTreeNode(_PARSER.parse(shape.text))
     section = ChapterSection(level, shape.shift, appendix)
-    yield from _write_blocks(writer, root, BlockContext(ChapterSource(shape.folder, anchor), section))
+    yield from _write_blocks(
+        writer, root, BlockContext(ChapterSource(shape.folder, anchor, begin_text(writer.anchors)), section)
+    )
 
 
 def _write_blocks(writer: DocxWriter, parent: SyntaxTreeNode, context: BlockContext) -> Iterator[FlowPiece]:
@@ -101,7 +104,7 @@ def _write_block(writer: DocxWriter, node: SyntaxTreeNode, context: BlockContext
 
 def _write_heading(writer: DocxWriter, node: SyntaxTreeNode, context: BlockContext) -> FlowPiece:
     """Write a heading. No level is left out: below a section of level 1 the first one has level 2, whatever it asks for."""
-    title = join_text(read_inlines(node, context.source))
+    title = join_text(read_inlines(node, replace(context.source, terms=None)))
     section = context.section
     desired = max(1, int(node.tag[1:]) + section.shift)
     while section.open_headings and section.open_headings[-1][0] >= desired:

@@ -13,6 +13,7 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.figures import PictureRun, read_chapter_picture
 from archgen.emit.docx.text_pieces import ParagraphContent
 from archgen.emit.docx.text_runs import format_runs, join_text
+from archgen.emit.term_mentions import MentionFinder
 from archgen.views.shapes import Inlines, Text
 
 
@@ -22,6 +23,8 @@ class ChapterSource:
 
     folder: str
     anchor: str
+    terms: MentionFinder | None = None
+    """Finds the terms of the glossary, where there are some."""
 
     def resolve_picture(self, node: SyntaxTreeNode) -> str:
         """Return the path of a picture in the project, or its address."""
@@ -63,7 +66,9 @@ def _walk_span(
     writer: DocxWriter | None, node: SyntaxTreeNode, source: ChapterSource, surroundings: Text
 ) -> Iterator[Text | PictureRun]:
     """Yield the words and pictures below a node; `surroundings` is how the words around it are set. Without a writer none is shown."""
-    if node.type in {"text", "code_inline", "html_inline"}:
+    if node.type == "text" and source.terms and not (surroundings.ref or surroundings.url):
+        yield from _split_mentions(replace(surroundings, text=node.content), source.terms)
+    elif node.type in {"text", "code_inline", "html_inline"}:
         yield replace(surroundings, text=node.content, code=surroundings.code or node.type == "code_inline")
     elif node.type in {"softbreak", "hardbreak"}:
         yield replace(surroundings, text=" ") if node.type == "softbreak" else Text("", line_break=True)
@@ -79,6 +84,18 @@ def _walk_span(
             inner = source.link_text(inner, str(node.attrs.get("href", "")))
         for child in node.children:
             yield from _walk_span(writer, child, source, inner)
+
+
+def _split_mentions(text: Text, finder: MentionFinder) -> Iterator[Text]:
+    """Yield the parts of a text: what first mentions a term leads to the glossary."""
+    position = 0
+    for mention in finder.find_mentions(text.text):
+        if mention.start > position:
+            yield replace(text, text=text.text[position : mention.start])
+        yield replace(text, text=text.text[mention.start : mention.end], ref=mention.anchor)
+        position = mention.end
+    if position < len(text.text) or not position:
+        yield replace(text, text=text.text[position:])
 
 
 def _read_picture(writer: DocxWriter, node: SyntaxTreeNode, source: ChapterSource) -> Text | PictureRun:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from archgen.emit.safe_names import make_safe_path
 from archgen.emit.site.html_text import escape_html, web_address
 from archgen.emit.site.page_links import CurrentPage
+from archgen.emit.term_mentions import MentionFinder, begin_text
 from archgen.views.shapes import Markdown
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ class ChapterWriter:
         _nest_headings(tokens, level)
         for token in tokens:
             self._resolve_targets(token.children or (), block.folder, current_page)
+        if finder := begin_text(current_page.links.terms):
+            _link_terms(tokens, finder, current_page)
         return str(parser.renderer.render(tokens, parser.options, {}))
 
     def _resolve_targets(self, tokens: Sequence[Token], folder: str, current_page: CurrentPage) -> None:
@@ -85,6 +89,31 @@ class ChapterWriter:
             name, number = f"{stem}-{number}{ending}", number + 1
         self.files[name] = data
         return name
+
+
+def _link_terms(tokens: Sequence[Token], finder: MentionFinder, current_page: CurrentPage) -> None:
+    """Lead from the first mention of each term to the glossary; headings, links and code stay as they are."""
+    for before, token in pairwise(tokens):
+        if token.type == "inline" and token.children and before.type != "heading_open":
+            token.children = list(_split_mentions(token.children, finder, current_page))
+
+
+def _split_mentions(tokens: Sequence[Token], finder: MentionFinder, current_page: CurrentPage) -> Iterator[Token]:
+    link_depth = 0
+    for token in tokens:
+        link_depth += token.nesting if token.type in {"link_open", "link_close"} else 0
+        if token.type != "text" or link_depth:
+            yield token
+            continue
+        position = 0
+        for mention in finder.find_mentions(token.content):
+            address = current_page.href(mention.anchor) or ""
+            yield token.copy(content=token.content[position : mention.start])
+            yield token.copy(type="link_open", tag="a", nesting=1, content="", meta={"address": address})
+            yield token.copy(content=token.content[mention.start : mention.end])
+            yield token.copy(type="link_close", tag="a", nesting=-1, content="", meta={"address": address})
+            position = mention.end
+        yield token.copy(content=token.content[position:])
 
 
 def _project_path(folder: str, path: str) -> str | None:

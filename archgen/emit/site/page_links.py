@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
+from archgen.emit.term_mentions import TERM_ANCHOR
 from archgen.views.shapes import Block, Figure, Page, Section, Table
 
 RESERVED_IDS = ("content", "navigation", "waterfall-hatch")
@@ -25,6 +26,8 @@ class SiteLinks:
     places: Mapping[str, str]
     ids: Mapping[str, Mapping[str, str]]
     files: Mapping[str, str]
+    terms: tuple[str, ...] = ()
+    """The anchors of the glossary's terms."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +66,8 @@ def collect_links(pages: Iterable[Page]) -> SiteLinks:
         ids[path] = own_ids = _assign_ids(page)
         for anchor, name in own_ids.items():
             places.setdefault(anchor, f"{path}#{name}")
-    return SiteLinks(pages_by_anchor, places, ids, files)
+    terms = tuple(anchor for anchor in places if anchor.startswith(TERM_ANCHOR))
+    return SiteLinks(pages_by_anchor, places, ids, files, terms)
 
 
 def renew_ids(links: SiteLinks, path: str, page: Page) -> SiteLinks:

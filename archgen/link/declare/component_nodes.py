@@ -11,7 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.link import mapping_values
 from archgen.link.declare.group_declaration import DeclaredGroups
 from archgen.link.declare.handed_parameters import HandedParameters
-from archgen.link.declare.start_declaration import inherit_start, resolve_start
+from archgen.link.declare.start_declaration import diagnose_idle_start, inherit_start, resolve_start
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.derived_names import derive_node_ids
@@ -148,6 +148,8 @@ class ComponentNodes:
             if shell_id not in implemented and mapping_values.get_flag(self._own_node(shell_id), "whole"):
                 wholes.append(shell_id)
                 implemented.update(self._list_below(shell_id))
+            elif shell_id not in implemented:
+                self._diagnostics += diagnose_idle_start(self._own_node(shell_id), shell_id)
         single_ids = [
             each for each in self._outline.components if each not in implemented and self._find_body(each).entries
         ]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import Chain, Partner, Policy, ProjectInfo, View, Waypoint
+from archgen.model.architecture import Chain, Partner, ProjectInfo, View, Waypoint
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import ROS
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
@@ -155,22 +155,3 @@ def _read_policy(review: MappingNode) -> BreakPolicy | None:
     severities = {category: mapping_values.get_text(categories, category) for category in BREAK_CATEGORIES}
     written = {category: Severity(severity) for category, severity in severities.items() if severity is not None}
     return BreakPolicy(**written) if written else None
-
-
-def declare_policies(root: MappingNode) -> dict[str, Policy]:
-    """Declare the policies, except one without `forbid.from` or `forbid.to`, which merging has reported."""
-    policies_by_id: dict[str, Policy] = {}
-    for name, entry, body in mapping_values.iterate_elements(root, "policies"):
-        forbid = mapping_values.get_mapping(body, "forbid")
-        if forbid.get("from") is not None and forbid.get("to") is not None:
-            policies_by_id[name] = Policy(
-                id=name,
-                title=mapping_values.get_title(body, name),
-                forbid_from=mapping_values.get_text(forbid, "from") or "",
-                forbid_to=mapping_values.get_text(forbid, "to") or "",
-                annotations=mapping_values.get_annotations(body),
-                at=entry.key_span,
-                from_at=mapping_values.get_span(forbid, "from"),
-                to_at=mapping_values.get_span(forbid, "to"),
-            )
-    return policies_by_id

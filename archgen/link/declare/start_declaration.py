@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, get_args
 
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import mapping_values, sanity_checks
 from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
@@ -117,6 +118,20 @@ def _complete_targets(
         target = _resolve_target(scalar, resolver, component_id, component_id)
         if target:
             yield ScalarNode(target.id, target.id, scalar.span)
+
+
+def diagnose_idle_start(node_body: MappingNode, component_id: str) -> Iterator[Diagnostic]:
+    """Yield what a composed component says that is no process of its own: of each node inside it cannot be meant."""
+    start = node_body.get("start")
+    for entry in start if isinstance(start, MappingNode) else ():
+        if entry.key in _NOT_INHERITED:
+            yield Diagnostic(
+                "idle-start",
+                f"`{entry.key}` of `{component_id}` has no effect: it is no process of its own",
+                entry.key_span,
+                help="write it at a component inside, or `whole: true` where all of it runs as one node",
+                element=component_id,
+            )
 
 
 def inherit_start(entry: MappingEntry) -> MappingEntry | None:

@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
+from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.agreement_picture import draw_agreement
 from archgen.views.agreement.budget_section import BudgetFinder, find_crossing_budgets
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
+from archgen.views.agreement.measured_rows import add_measured
 from archgen.views.agreement.plain_terms import list_plain_terms
 from archgen.views.agreement.signature_record import SignatureRecord, SignedTag
 from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord, compare_revisions
@@ -46,11 +48,13 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     signed_revision: tuple[str, Lookup] | None = None,
     notices: Sequence[Paragraph] = (),
     find_budget: BudgetFinder | None = None,
+    observations: Sequence[Observation] = (),
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     `earlier_revision`, with which it is compared, and `signed_revision`, whose versions of interfaces it tells, are the
-    names of revisions with their look-ups. `find_budget` is asked for each chain between the two.
+    names of revisions with their look-ups. `find_budget` is asked for each chain between the two. `observations` are
+    shown beside what is promised.
     """
     # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
     records = _record_interfaces(lookup, (first, second), MatchedIds())
@@ -64,6 +68,8 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
             else _compare_with(signed_revision, lookup, (first, second), records)
         )
         signatures = replace(signatures, revision=signed_revision[0], versions=signed_changes.earlier_versions)
+    if observations:
+        records = tuple(_add_measured(lookup, record, observations) for record in records)
     graph = draw_agreement(
         lookup, f"interfaces/{first}-{second}", (first, second), [record.terms.interface for record in records]
     )
@@ -82,6 +88,13 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
         signatures,
     )
     return PartnerAgreement(outline_agreement(content), graph, len(records), changes)
+
+
+def _add_measured(lookup: Lookup, record: InterfaceRecord, observations: Sequence[Observation]) -> InterfaceRecord:
+    """Return an interface with what was measured of it, which binds nobody and is compared with nothing."""
+    names, terms = activity_builder.name_activities(lookup.architecture), record.terms
+    rows = add_measured(lookup, names, terms.interface, terms.promise_rows, observations)
+    return replace(record, terms=replace(terms, promise_rows=rows))
 
 
 def _compare_with(

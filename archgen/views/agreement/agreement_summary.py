@@ -8,7 +8,7 @@ from archgen.model.partner_interfaces import PartnerInterface
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
-from archgen.views.agreement.promise_rows import SOURCE_PHRASE
+from archgen.views.agreement.promise_rows import join_figures
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
@@ -61,7 +61,7 @@ def _rate_runs(interface_terms: InterfaceTerms) -> Inlines:
     for row in interface_terms.promise_rows:
         if row.name.startswith(("Rate", "Answers within")) and (row.promised or row.expected):
             words = "answered within " if row.name.startswith("Answers") else ""
-            figure = (row.promised or row.expected)[0].text.partition(SOURCE_PHRASE)[0].removesuffix(", computed")
+            figure = join_figures(row.promised or row.expected)
             return inline_text.join_lines(
                 [
                     inline_text.to_inlines(f"{words}{figure}"),

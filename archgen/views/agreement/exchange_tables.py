@@ -9,7 +9,7 @@ from archgen.views import inline_text
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
 from archgen.views.agreement.open_points import describe_open_term
 from archgen.views.agreement.partner_exchanges import PartnerExchange
-from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow
+from archgen.views.agreement.promise_rows import PromiseRow, join_figures
 from archgen.views.element_references import message_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
@@ -71,7 +71,7 @@ def _shorten(runs: Inlines) -> Inlines:
     """Return a figure alone, without what it follows from and the gap behind it: these stand on the interface's page."""
     if not runs:
         return ()
-    figure = runs[0].text.partition(SOURCE_PHRASE)[0].partition(" · ")[0].removesuffix(", computed")
+    figure = join_figures(runs).partition(" · ")[0]
     return (Text(figure.replace("at most ", "<= ").replace("at least ", ">= "), sort_number=runs[0].sort_number),)
 
 

@@ -23,7 +23,7 @@ _UNLIMITED = 10**30
 
 @dataclass(frozen=True, slots=True)
 class PromiseRow:
-    """A term with what is promised and what is expected of it, each empty where there is nothing.
+    """A term with what is promised, expected and was measured of it, each empty where there is nothing.
 
     `promise_identity` is the same for whatever promises the same, in other units or words; left out, it is the text.
     """
@@ -33,6 +33,7 @@ class PromiseRow:
     expected: Inlines = ()
     strength: PromiseStrength = field(default_factory=dict)
     promise_identity: str = ""
+    measured: Inlines = ()
 
 
 def promise_limit(name: str, limit: Quantity, aspect: str, words: str = "{}") -> PromiseRow:
@@ -45,6 +46,12 @@ def promise_limit(name: str, limit: Quantity, aspect: str, words: str = "{}") ->
 def is_weaker(old_strength: PromiseStrength, new_strength: PromiseStrength) -> bool:
     """Whether something that was promised is not, or not as much, any more."""
     return any(aspect not in new_strength or new_strength[aspect] < figure for aspect, figure in old_strength.items())
+
+
+def join_figures(runs: Inlines) -> str:
+    """Return the figures alone, without what each follows from; readers of different ports may see several."""
+    lines = (run.text for index, run in enumerate(runs) if run.line_break or not index)
+    return ", ".join(line.partition(SOURCE_PHRASE)[0].removesuffix(", computed") for line in lines)
 
 
 def measure_qos(qos: Qos) -> PromiseStrength:
@@ -66,9 +73,13 @@ def identify_qos(qos: Qos) -> str:
 
 
 def write_promise_table(anchor: str, caption: str, giver_title: str, rows: tuple[PromiseRow, ...]) -> Table:
-    """Write what is promised beside what is expected; where there is neither, the table says so."""
-    columns = (Column("Term", 0.8), Column(f"Promised by {giver_title}", 1.3), Column("Expected, not promised", 1.7))
-    cells = tuple(
+    """Write what is promised beside what is expected and was measured; where there is nothing, the table says so."""
+    columns: tuple[Column, ...] = (
+        Column("Term", 0.8),
+        Column(f"Promised by {giver_title}", 1.3),
+        Column("Expected, not promised", 1.7),
+    )
+    cells: tuple[tuple[Inlines, ...], ...] = tuple(
         (
             inline_text.to_inlines(row.name),
             row.promised or inline_text.to_inlines(Text("nothing", muted=True)),
@@ -76,4 +87,7 @@ def write_promise_table(anchor: str, caption: str, giver_title: str, rows: tuple
         )
         for row in rows
     )
+    if any(row.measured for row in rows):
+        columns = (*columns, Column("Measured", 0.8))
+        cells = tuple((*cell, row.measured) for cell, row in zip(cells, rows, strict=True))
     return Table(anchor, caption, columns, cells, numbered=False)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType, Connection, Output
 from archgen.model.counted_outputs import find_counted_output, find_replacement
 from archgen.model.message_types import ConceptualType
+from archgen.model.node import Topic
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -89,6 +90,23 @@ def write_deprecation(
             is_near = output.component == holder.component
             link = (Text(output.name, code=True),) if is_near else inline_text.port_link(architecture, output)
     return inline_text.to_inlines(f"deprecated {until}: use ".replace(" :", ":"), *link)
+
+
+def list_topic_facts(architecture: Architecture, topic: Topic) -> Iterator[tuple[str, Inlines]]:
+    """Yield what the outputs on a topic promise, their versions, and until when they may be used; nothing for none."""
+    outputs = [
+        output
+        for name in dict.fromkeys(endpoint.port for endpoint in topic.writers if endpoint.port)
+        if (output := architecture.outputs.get(name)) is not None
+    ]
+    described: tuple[tuple[str, Callable[[Output], Inlines]], ...] = (
+        ("Promised", lambda each: inline_text.to_inlines(describe_promise(each.promise)) if each.promise else ()),
+        ("Version", lambda each: inline_text.to_inlines(each.version) if each.version else ()),
+        ("Deprecated", lambda each: write_deprecation(architecture, "output", each)),
+    )
+    for name, describe in described:
+        lines = [line for output in outputs if (line := describe(output))]
+        yield name, inline_text.join_lines(dict.fromkeys(lines))
 
 
 def _find_output(architecture: Architecture, output_id: str) -> Output | None:

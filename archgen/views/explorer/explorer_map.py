@@ -259,7 +259,8 @@ class _MapMaker:
         served_ids = {use.text for shell in self.shells for use in shell.requirements if use.is_id}
         for requirement in self.lookup.architecture.requirements.values():
             servers = self.lookup.components_for_requirement.get(requirement.id, ())
-            numbers = tuple(self.component_numbers[c.id] for c in servers if c.id in self.component_numbers)
+            leaves = (each for each in servers if each.id not in self.lookup.architecture.shells)
+            numbers = tuple(self.component_numbers[each.id] for each in leaves if each.id in self.component_numbers)
             if numbers or requirement.id in served_ids:
                 yield (f"requirement:{requirement.id}", requirement.id, requirement.title, numbers)
 

@@ -14,6 +14,7 @@ from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
 from archgen.views.elements.annotation_facts import list_annotation_facts
+from archgen.views.elements.promise_words import list_topic_facts, write_deprecation
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
     Block,
@@ -100,6 +101,7 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
         ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in topic.types)),
         ("Size", inline_text.to_inlines(size) if (size := lookup.format_size(topic)) else ()),
         *element_timing.make_traffic_facts(lookup, topic.name),
+        *list_topic_facts(lookup.architecture, topic),
     ]
     blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
     writer, reader = ("Server", "Client") if topic.flow != "topic" else ("Publisher", "Subscriber")
@@ -192,6 +194,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
     facts = [
         ("Message", architecture_tables.message_cell(lookup, conceptual_type)),
         ("Size", _size_cell(lookup, conceptual_type)),
+        ("Deprecated", write_deprecation(lookup.architecture, "type", conceptual_type)),
         ("Remarks", inline_text.to_inlines(architecture_tables.describe_mapping(conceptual_type))),
         *list_annotation_facts(lookup, conceptual_type),
     ]

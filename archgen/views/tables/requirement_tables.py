@@ -20,7 +20,7 @@ def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requi
     selected = {requirement.id: requirement for requirement in selected_requirements}
     rows = tuple(_make_row(lookup, selected[row.id], row) for row in _order_rows(lookup, selected))
     columns = (
-        Column("Id", 0.9 if any(each.parents for each in selected.values()) else 0.5),
+        Column("Id", 0.5),
         Column("Requirement", 1.8),
         Column("Use cases", 1.0),
         Column("Served by", 1.8),
@@ -46,14 +46,13 @@ def _order_rows(lookup: Lookup, selected: Collection[str]) -> Iterator[TreeRow]:
 
 def _make_row(lookup: Lookup, requirement: Requirement, row: TreeRow) -> tuple[Inlines, ...]:
     link = Text(requirement.id, ref=f"requirement:{requirement.id}")
-    id_cell = (*_indent(row.depth), link)
     if row.is_repeated:
         note = inline_text.to_inlines(requirement.title, Text(" (also above)", muted=True))
-        return (id_cell, note, (), (), (), ())
+        return ((link,), (*_indent(row.depth), *note), (), (), (), ())
     shows_state = bool(lookup.requirement_trace.parts) or lookup.requirement_trace.is_verification_told
     return (
-        id_cell,
-        _title_cell(requirement),
+        (link,),
+        (*_indent(row.depth), *_title_cell(requirement, row.depth)),
         inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
         _server_cell(lookup, requirement),
         _verifier_cell(lookup, requirement),
@@ -69,10 +68,11 @@ def _indent(depth: int) -> Inlines:
     return (Text(f"{_INDENT * min(depth, _MAX_INDENT)}{depth_words}", muted=True),)
 
 
-def _title_cell(requirement: Requirement) -> Inlines:
-    """Return the title, and below it kind and priority."""
+def _title_cell(requirement: Requirement, depth: int) -> Inlines:
+    """Return the title, and below it kind and priority, indented as the title is."""
     words = " · ".join(word for word in (requirement.kind, requirement.priority) if word)
-    return (Text(requirement.title), *((Text(words, muted=True, line_break=True),) if words else ()))
+    indent = _INDENT * min(depth, _MAX_INDENT)
+    return (Text(requirement.title), *((Text(f"{indent}{words}", muted=True, line_break=True),) if words else ()))
 
 
 def _server_cell(lookup: Lookup, requirement: Requirement) -> Inlines:

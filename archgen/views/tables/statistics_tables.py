@@ -46,10 +46,22 @@ _FIGURE_LABELS = {
     "variants": "Variants",
     "steps": "Steps of use cases",
     "programs": "Programs that are no ROS",
+    "promises": "Outputs with promises",
+    "deprecated": "Deprecated outputs and types",
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
 _RARE_FIGURES = frozenset(
-    {"composed", "component_types", "made_connections", "frames", "variants", "steps", "programs"}
+    {
+        "composed",
+        "component_types",
+        "made_connections",
+        "frames",
+        "variants",
+        "steps",
+        "programs",
+        "promises",
+        "deprecated",
+    }
 )
 """Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""
 PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")

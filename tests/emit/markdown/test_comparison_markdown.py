@@ -117,15 +117,13 @@ def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
 
 ```mermaid
 flowchart LR
-  subgraph g0["Sensing"]
-    n0("Camera"):::neighbour
+  n2("Camera<br>Sensing"):::neighbour
+  subgraph g0["Display"]
+    n0[["#126; Finder"]]:::changed
+    n1("Screen"):::neighbour
   end
-  subgraph g1["Display"]
-    n1[["#126; Finder"]]:::changed
-    n2("Screen"):::neighbour
-  end
+  n2 --> n0
   n0 --> n1
-  n1 --> n2
   classDef changed stroke:#b7791f,stroke-width:2px
   classDef neighbour stroke:#8a8a8a,stroke-width:1px
 ```

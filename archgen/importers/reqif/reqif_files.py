@@ -1,0 +1,74 @@
+"""Open ReqIF files: a single one, or those of a zip file (.reqifz), within limits."""
+
+from __future__ import annotations
+
+import lzma
+import struct
+import zipfile
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+from archgen.diagnostics.source_span import Span
+from archgen.importers.reqif.reqif_document import ReqifDocument
+from archgen.importers.reqif.reqif_parsing import ReqifError, parse_reqif
+
+MAX_BYTES = 500_000_000
+"""So much is read of one file, or of all in a zip file together."""
+_CHUNK = 1 << 18
+_DAMAGE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    lzma.LZMAError,
+    RuntimeError,
+    EOFError,
+    ValueError,
+    struct.error,
+    NotImplementedError,
+)
+
+
+def read_reqif_file(path: Path) -> ReqifDocument:
+    """Read a .reqif or .reqifz file. Raise ReqifError for what is none, and OSError."""
+    document = ReqifDocument()
+    with path.open("rb") as stream:
+        is_zip = stream.read(4) == b"PK\x03\x04"
+        stream.seek(0)
+        if is_zip:
+            _read_archive(path.name, stream, document)
+        else:
+            parse_reqif(path.name, _Limit(path.name).read_chunks(stream), document)
+    return document
+
+
+def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None:
+    """Read each .reqif of a zip file; nothing of it is written to the disk."""
+    limit = _Limit(name)
+    try:
+        with zipfile.ZipFile(stream) as archive:
+            members = [each for each in archive.infolist() if each.filename.lower().endswith(".reqif")]
+            if not members:
+                words = "there is no .reqif file in it"
+                raise ReqifError(words, Span.of_file(name), "export it again as ReqIF")
+            for member in members:
+                with archive.open(member) as part:
+                    parse_reqif(f"{name} [{member.filename}]", limit.read_chunks(part), document)
+    except _DAMAGE as error:
+        words = f"the zip file is damaged ({error})"
+        raise ReqifError(words, Span.of_file(name), "export it again") from None
+
+
+class _Limit:
+    """Counts what is read: what a zip file says of its sizes may be a lie."""
+
+    def __init__(self, name: str) -> None:
+        self._name, self._bytes_left = name, MAX_BYTES
+
+    def read_chunks(self, stream: IO[bytes]) -> Iterator[bytes]:
+        while chunk := stream.read(_CHUNK):
+            self._bytes_left -= len(chunk)
+            if self._bytes_left < 0:
+                words = f"it is larger than {MAX_BYTES // 1_000_000} MB"
+                raise ReqifError(words, Span.of_file(self._name), "export the specifications one by one")
+            yield chunk

@@ -1,0 +1,142 @@
+"""`archgen import` and `archgen export reqif`: there and back, updates, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen.pipeline import check_project
+from tests.cli.conftest import Run
+from tests.running import ROOT
+
+DOORS = ROOT / "tests" / "importers" / "reqif" / "doors.reqif"
+PROJECT = """\
+archgen: 1
+project: {id: robot, title: "Robot <1> & \\"2\\""}
+use_cases: {UC-1: Walks}
+chains: {see: {through: [a, b], deadline: 1 s, requirements: [R-1.1]}}
+groups: {g: {components: {a: {requirements: [R-1.2], outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {o: a.o}}}}}
+"""
+REQUIREMENTS = """\
+requirements:
+  R-1: {title: "Safe & <sound> \\"quoted\\"", kind: safety, priority: must, source: "D3, 4", tags: [x, y]}
+  R-1.2:
+    title: Slow
+    parent: [R-2, R-1]
+    description: "One  two\\n\\n    code\\n- item\\n\\n\\n\\n\\u00a0end &amp; <b>"
+    rationale: "*Because*"
+    verified_by: [UC-1, "By hand, twice", see]
+  R-2: {title: Quiet, use_cases: [UC-1]}
+  R-1.1: {title: Stops, parent: R-1, verified_by: see}
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    (folder / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
+    return folder
+
+
+def export(run: Run, project: Path) -> bytes:
+    target = project.parent / "out.reqif"
+    assert run("export", "reqif", "-C", str(project), "-o", str(target)).status == 0
+    return target.read_bytes()
+
+
+def test_what_is_exported_comes_back_as_it_was(run: Run, project: Path) -> None:
+    (project / "requirements.yaml").write_text(REQUIREMENTS, encoding="utf-8")
+    before, first = check_project(project).architecture.requirements, export(run, project)
+    (project / "requirements.yaml").unlink()
+    (project.parent / "archgen.yaml").unlink(missing_ok=True)
+    text = PROJECT.replace(", requirements: [R-1.1]", "").replace("requirements: [R-1.2], ", "")
+    (project / "archgen.yaml").write_text(text, encoding="utf-8")
+    done = run("import", str(project.parent / "out.reqif"), "-C", str(project))
+    assert (done.status, done.err) == (0, "")
+    assert done.out.splitlines()[:2] == [
+        "out.reqif: 7 objects: 7 taken",
+        "requirements.yaml: 4 new, 0 changed, 0 as before",
+    ]
+    (project / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
+    after = check_project(project).architecture.requirements
+    assert list(after) == list(before)
+    assert {k: v for k, v in after.items() if k != "R-1.2"} == {k: v for k, v in before.items() if k != "R-1.2"}
+    assert after["R-1.2"].description == "One  two\n\n    code\n- item\n\n end &amp; <b>"
+    assert after["R-1.2"].verified_by == before["R-1.2"].verified_by
+    assert export(run, project) == first
+
+
+def test_an_update_keeps_what_the_file_does_not_say(run: Run, project: Path) -> None:
+    slice_file = project / "requirements.yaml"
+    slice_file.write_text(
+        "# ours\nrequirements:\n  R-2: {title: Old, verified_by: by hand, source: 1.10}\n"
+        "  # a comment\n  R-0: Only here\n",
+        encoding="utf-8",
+    )
+    done = run("import", str(DOORS), "-C", str(project))
+    lines = done.out.splitlines()
+    start = lines.index("requirements.yaml: 2 new, 1 changed, 0 as before")
+    assert lines[start + 1 : start + 3] == [
+        "  no longer in the file, kept: R-0",
+        "  comments not kept: 1 lines; those at the beginning stay",
+    ]
+    requirement = check_project(project).architecture.requirements["R-2"]
+    assert (requirement.title, requirement.priority) == ("The robot stops in time.", "Must_have")
+    assert [each.text for each in requirement.verified_by] == ["by hand"]
+    assert slice_file.read_text(encoding="utf-8").startswith("# ours\n")
+    again = run("import", str(DOORS), "-C", str(project)).out
+    assert "requirements.yaml: 0 new, 0 changed, 3 as before" in again
+
+
+def test_what_another_file_says_stays_there(run: Run, project: Path) -> None:
+    (project / "more.yaml").write_text("requirements: {R-2: {title: Ours, description: More}}\n", encoding="utf-8")
+    done = run("import", str(DOORS), "-C", str(project))
+    assert "  said otherwise in another file, kept: title of R-2" in done.out.splitlines()
+    requirement = check_project(project).architecture.requirements["R-2"]
+    assert (requirement.title, requirement.description, requirement.priority) == ("Ours", "More", "Must_have")
+
+
+def test_a_dry_run_and_errors_write_nothing(run: Run, project: Path, tmp_path: Path) -> None:
+    assert run("import", str(DOORS), "-C", str(project), "--dry-run").status == 0
+    bad = tmp_path / "bad.reqif"
+    bad.write_text("<html/>", encoding="utf-8")
+    done = run("import", str(bad), "-C", str(project))
+    assert (done.status, done.out) == (1, "")
+    assert done.err.startswith("error: bad.reqif:1:1: its outermost element is `html`, not `REQ-IF`")
+    bad.write_text("<REQ-IF/>", encoding="utf-8")
+    done = run("import", str(bad), "-C", str(project))
+    assert (done.status, "no requirement" in done.err) == (1, True)
+    (project / "mixed.yaml").write_text("hosts: {pc: }\n", encoding="utf-8")
+    done = run("import", str(DOORS), "-C", str(project), "--into", str(project / "mixed.yaml"))
+    assert (done.status, "`hosts` stands in this file" in done.err) == (1, True)
+    done = run("import", str(DOORS), "-C", str(project), "--into", str(tmp_path / "out.yaml"))
+    assert (done.status, "does not lie in the project's folder" in done.err) == (2, True)
+    done = run("import", str(DOORS), "-C", str(project / "archgen.yaml"), "--into", str(tmp_path / "out.yaml"))
+    assert done.status != 0
+    assert sorted(path.name for path in project.iterdir()) == ["archgen.yaml", "mixed.yaml"]
+
+
+def test_a_slice_that_the_project_does_not_read_is_told(run: Run, project: Path) -> None:
+    (project / "archgen.yaml").write_text(PROJECT + 'sources: ["groups/*.yaml"]\n', encoding="utf-8")
+    text = (project / "archgen.yaml").read_text(encoding="utf-8")
+    text = text.replace(", requirements: [R-1.1]", "").replace("requirements: [R-1.2], ", "")
+    (project / "archgen.yaml").write_text(text, encoding="utf-8")
+    done = run("import", str(DOORS), "-C", str(project))
+    assert (done.status, "add `requirements.yaml` to `sources`" in done.err) == (0, True)
+
+
+def test_circles_of_the_other_tool_are_refused(run: Run, project: Path, tmp_path: Path) -> None:
+    text = DOORS.read_text(encoding="utf-8")
+    circle = text.replace(
+        "<rq:SPEC-RELATIONS>",
+        "<rq:SPEC-RELATIONS><rq:SPEC-RELATION><rq:TYPE><rq:SPEC-RELATION-TYPE-REF>r-refines</rq:SPEC-RELATION-TYPE-REF></rq:TYPE>"
+        "<rq:SOURCE><rq:SPEC-OBJECT-REF>_2</rq:SPEC-OBJECT-REF></rq:SOURCE>"
+        "<rq:TARGET><rq:SPEC-OBJECT-REF>_4</rq:SPEC-OBJECT-REF></rq:TARGET></rq:SPEC-RELATION>",
+    )
+    (tmp_path / "circle.reqif").write_text(circle, encoding="utf-8")
+    done = run("import", str(tmp_path / "circle.reqif"), "-C", str(project))
+    assert done.status == 1
+    assert "circular-requirement" in done.err
+    assert not (project / "requirements.yaml").exists()
