@@ -15,7 +15,7 @@ from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Input, Output
 from archgen.model.interface_ends import InterfaceEnds, list_interface_ends
 from archgen.model.node import Endpoint, Topic
-from archgen.model.port_media import is_physical
+from archgen.model.port_media import is_physical, label_of_medium, nature_of
 
 InterfaceFlow = Literal["topic", "service", "action", "physical"]
 PartnerPair = tuple[str, str]
@@ -40,6 +40,12 @@ class PartnerInterface:
     taker_endpoints: tuple[Endpoint, ...] = ()
     type: str | None = None
     message: str | None = None
+
+    @property
+    def medium(self) -> str:
+        """Return how what it travels over is called, if that is data but no ROS; else nothing."""
+        ports = (*((self.output,) if self.output else ()), *self.inputs)
+        return next((label_of_medium(port) for port in ports if nature_of(port) == "other"), "")
 
     @property
     def anchor(self) -> str:

@@ -102,6 +102,8 @@ class Arrow:
     """Whether a change of what runs along it breaks another partner."""
     is_made: bool = False
     """Whether nobody wrote it: `autoconnect` joined its ends."""
+    medium: str = ""
+    """How what it travels over is called, if that is data but no ROS."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@
 | internal | dotted |
 | made by autoconnect | dotted, with the head of what runs along it |
 | link | thick, without head |
+| no ROS | a square behind the head |
 
 Where two versions are drawn: what is added is thick, what is removed dashed, what changed a double line, what breaks
 another partner heavy and red.
@@ -48,7 +49,7 @@ def style_arrow(arrow: Arrow, resolve_link: LinkResolver, *, merged: bool = Fals
         "color": f'"{colour}"',
         "arrowsize": "0.6",
         "penwidth": pen_width(arrow.count) if merged else "0.8",
-        **_form_attributes(arrow, colour),
+        **_add_square(arrow, _form_attributes(arrow, colour)),
         **({"style": '"dotted"', "penwidth": "1.2"} if arrow.is_made else {}),
         **_tooltip_attributes(arrow, resolve_link),
     }
@@ -91,6 +92,14 @@ def _form_attributes(arrow: Arrow, colour: str) -> DotAttributes:
     if arrow.style == "link":
         return {"arrowhead": '"none"', "penwidth": "2"}
     return {"arrowhead": '"onormal"'} if arrow.optional else {}
+
+
+def _add_square(arrow: Arrow, attributes: DotAttributes) -> DotAttributes:
+    """Return attributes with the sign of what is data but no ROS behind the head."""
+    if not arrow.medium:
+        return attributes
+    head = attributes.get("arrowhead", '"normal"').strip('"')
+    return {**attributes, "arrowhead": f'"{head}obox"'}
 
 
 def _tooltip_attributes(arrow: Arrow, resolve_link: LinkResolver) -> DotAttributes:

@@ -64,6 +64,7 @@ _ARROW_SAMPLES: dict[str, tuple[Arrow, str]] = {
     "optional": (Arrow("", "", "", optional=True), "optional input"),
     "made": (Arrow("", "", "", is_made=True), "joined by autoconnect"),
     "physical": (Arrow("", "", "", style="physical"), "physical"),
+    "medium": (Arrow("", "", "", medium="MQTT"), "no ROS, but what stands in brackets"),
     "service": (Arrow("", "", "", style="service"), "service, from client to server"),
     "action": (Arrow("", "", "", style="action"), "action, from client to server"),
     "internal": (Arrow("", "", "", style="internal"), "inside one component"),
@@ -152,7 +153,7 @@ def _arrow_sample(key: str, arrow: Arrow) -> Scene:
         "tooltip": '" "',
         "edgetooltip": '" "',
     }
-    head_length = 12.0 if arrow.style == "action" else 0.0 if arrow.style == "link" else 6.0
+    head_length = 12.0 if arrow.style == "action" or arrow.medium else 0.0 if arrow.style == "link" else 6.0
     third = (width - head_length) / 3
     # The line must end where the arrow head begins: Graphviz draws heads at the `e,` point, beyond the curve.
     middle = f"0,0 {third:.2f},0 {2 * third:.2f},0 {3 * third:.2f},0"

@@ -90,6 +90,8 @@ def _carrier_cell(terms: InterfaceTerms) -> Inlines:
     interface = terms.interface
     if interface.flow == "physical":
         return inline_text.to_inlines(Text("physical", muted=True))
+    if interface.medium:
+        return inline_text.to_inlines(interface.medium)
     lines = [(message_link(interface.message),)] if interface.message else [inline_text.UNKNOWN_INLINES]
     lines += [(inline_text.topic_link(name),) for name in interface.topic_names]
     return inline_text.join_lines(lines)

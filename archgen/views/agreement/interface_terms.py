@@ -144,6 +144,11 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interfa
     flow_name = _FLOW_NAMES[interface.flow]
     if interface.flow == "physical":
         yield "Kind", inline_text.to_inlines("physical: neither message nor topic")
+    elif interface.medium:
+        yield "Kind", inline_text.to_inlines(f"{interface.medium}: no ROS")
+        names = [endpoint.name.partition(" ")[2] for endpoint in interface.giver_endpoints if endpoint.name_written]
+        if names:
+            yield "Name", inline_text.join_lines((Text(name, code=True),) for name in dict.fromkeys(names))
     else:
         yield (
             flow_name,
@@ -157,7 +162,7 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interfa
         yield "Meaning", inline_text.to_inlines(interface.output.description)
     if interface.output and (frame_name := lookup.architecture.frame_of(interface.output)):
         yield "Frame", inline_text.to_inlines(Text(frame_name, code=True))
-    if interface.flow != "physical":
+    if interface.flow != "physical" and not interface.medium:
         yield "Message", _message_runs(lookup, interface)
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)
     if other_components:
@@ -180,7 +185,7 @@ def _list_promises(
 ) -> Iterator[PromiseRow]:
     timing_rows = interface_timing.promise_timing(lookup, activity_names, interface)
     yield from output_promises.add_promises(lookup, activity_names, interface, ports, timing_rows)
-    if interface.flow == "topic" and not is_ros_1(lookup.architecture.distro):
+    if interface.flow == "topic" and not interface.medium and not is_ros_1(lookup.architecture.distro):
         yield _promise_qos(interface.giver_endpoints)
 
 
@@ -267,7 +272,7 @@ def _end_rows(  # noqa: PLR0913 - the columns of a row
     rows: dict[tuple[str, str, str], None] = {}
     for endpoint in (endpoint for endpoint in endpoints if architecture.nodes[endpoint.node].written):
         # A dict as an ordered set: several endpoints of a node with one QoS are one row.
-        has_qos = endpoint.flow == "topic" and with_qos
+        has_qos = endpoint.flow == "topic" and with_qos and endpoint.name.startswith("/")
         qos_texts = (describe_qos(endpoint), identify_qos(endpoint.qos)) if has_qos else ("", "")
         rows[endpoint.node, *qos_texts] = None
     for node, qos, qos_identity in rows:

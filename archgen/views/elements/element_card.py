@@ -419,6 +419,8 @@ def _generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
             "threads",
             "scheduling",
             "connects",
+            "devices",
+            "protocol",
             "bandwidth",
             "frame",
             "parent",

@@ -12,7 +12,7 @@ from typing import Literal
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
-from archgen.model.port_media import is_physical
+from archgen.model.port_media import is_physical, label_of_medium, nature_of
 from archgen.views.graph_shapes import Arrow
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
@@ -29,6 +29,8 @@ class ComponentFlow:
     types: tuple[str, ...]
     optional: bool
     sentence: str
+    medium: str = ""
+    """How what it travels over is called, if that is data but no ROS."""
 
     @property
     def label(self) -> str:
@@ -67,7 +69,18 @@ def _flows_of_connection(architecture: Architecture, connection: Connection) -> 
             f"{architecture.components[producer].title} · {names}"
             f"{' (' + ', '.join(types) + ')' if types else ''}"
             f" → {architecture.components[port.component].title} · {port.name}",
+            name_media((port, *producer_outputs)),
         )
+
+
+def name_media(ports: Iterable[Input | Output]) -> str:
+    """Return how what ports travel over is called, as far as that is data but no ROS."""
+    return ", ".join(dict.fromkeys(label_of_medium(port) for port in ports if nature_of(port) == "other"))
+
+
+def add_medium(label: str, medium: str) -> str:
+    """Return the label beside an arrow with the medium on a line of its own."""
+    return "\n".join(filter(None, (label, f"({medium})" if medium else "")))
 
 
 def flow_style(architecture: Architecture, output_id: str) -> FlowStyle:
@@ -91,23 +104,25 @@ def merge_flows(
     by_style: bool = True,
 ) -> tuple[Arrow, ...]:
     """Merge flows with the same ends (and of the same style, if asked) into one arrow each."""
-    bundles: dict[tuple[str, str, FlowStyle], list[ComponentFlow]] = {}
+    bundles: dict[tuple[str, str, FlowStyle, str], list[ComponentFlow]] = {}
     for flow in flows:
         tail, head = find_ends(flow)
-        bundles.setdefault((tail, head, flow.style if by_style else "data"), []).append(flow)
+        form: tuple[FlowStyle, str] = (flow.style, flow.medium) if by_style else ("data", "")
+        bundles.setdefault((tail, head, *form), []).append(flow)
     return tuple(
         Arrow(
-            f"{tail}>{head}" + (f":{style}" if style != "data" else ""),
+            f"{tail}>{head}" + (f":{style}" if style != "data" else "") + (f":{medium}" if medium else ""),
             tail,
             head,
-            label=_bundle_label(bundle) if labels else "",
+            label=add_medium(_bundle_label(bundle), medium) if labels else "",
             style=style,
             count=len(bundle),
             optional=by_style and all(flow.optional for flow in bundle),
             flows=tuple(flow.sentence for flow in bundle),
             is_made=all(flow.is_made for flow in bundle),
+            medium=medium,
         )
-        for (tail, head, style), bundle in bundles.items()
+        for (tail, head, style, medium), bundle in bundles.items()
     )
 
 

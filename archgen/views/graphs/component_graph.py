@@ -17,7 +17,7 @@ from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import flow_style, list_type_names, port_style
+from archgen.views.graphs.component_flows import add_medium, flow_style, list_type_names, name_media, port_style
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun, format_short_timing
 from archgen.views.lookup import Lookup
@@ -117,6 +117,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
     outputs = [architecture.outputs[each] for each in connection.outputs]
     types = list(dict.fromkeys(output.type for output in outputs if output.type))
     style = flow_style(architecture, outputs[0].id) if outputs else "data"
+    medium = name_media((port, *outputs))
     side = _port_side(lookup, port)
     if connection.kind == "group":
         group_box = element_boxes.group_box(lookup, connection.target)
@@ -133,7 +134,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
         f"{connection.target}>{port.id}",
         box.id,
         component.id,
-        label,
+        add_medium(label, medium),
         head_port=f"in {port.name}",
         style=style,
         optional=port.optional,
@@ -142,6 +143,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
         ),
         ref=f"type:{types[0]}" if len(types) == 1 else None,
         is_made=connection.is_made,
+        medium=medium,
     )
     return box, _point_to_server(arrow)
 
@@ -149,7 +151,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
 def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbour]:
     for output in component.outputs.values():
         style = flow_style(lookup.architecture, output.id)
-        label = output.type or ""
+        label = add_medium(output.type or "", name_media((output,)))
         if output.external is not None:
             yield _draw_external(lookup, output, component)
             label = ""
@@ -168,6 +170,7 @@ def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbo
                 flows=(f"{output.name} → {reader.title} · {connection.input.rsplit('.', 1)[1]}",),
                 ref=f"type:{output.type}" if output.type else None,
                 is_made=connection.is_made,
+                medium=name_media((output,)),
             )
             # The type is written beside the first arrow only; the next ones out of the same output have no label.
             yield box, _point_to_server(arrow)

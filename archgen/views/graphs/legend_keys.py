@@ -13,7 +13,7 @@ _BOX_KEY_OF_FLOW = {"service": "service-box", "action": "action-box"}
 _STATUS_KEYS = ("planned", "adapted")
 # The first six of the literals are the steps of the scale; `event` and the others have no period.
 _PERIOD_SCALE = get_args(PeriodStep)[:6]
-_ARROW_KEYS = ("optional", "made", "physical", "service", "action", "internal", "link")
+_ARROW_KEYS = ("optional", "made", "physical", "medium", "service", "action", "internal", "link")
 
 
 def add_legend_keys(graph: Graph, *extra: str) -> Graph:
@@ -64,4 +64,9 @@ def _box_kinds(box: Box) -> set[str]:
 
 
 def _arrow_kinds(arrow: Arrow) -> set[str]:
-    return {str(arrow.style)} | ({"optional"} if arrow.optional else set()) | ({"made"} if arrow.is_made else set())
+    return (
+        {str(arrow.style)}
+        | ({"optional"} if arrow.optional else set())
+        | ({"made"} if arrow.is_made else set())
+        | ({"medium"} if arrow.medium else set())
+    )

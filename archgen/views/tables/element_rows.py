@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from archgen.model.annotated_elements import Annotated
-from archgen.model.component import Connection
+from archgen.model.component import Connection, Input, Output
 from archgen.model.counted_outputs import find_counted_output
 from archgen.model.parameter_values import find_effective_parameters
-from archgen.model.port_media import uses_ros
+from archgen.model.port_media import nature_of, uses_ros, word_of_medium
 from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
@@ -45,11 +45,24 @@ def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list
     if kind == "connections":
         connections = architecture_tables.shown_connections(lookup)
         yield "through", [connection.shell_port or "" for connection in connections]
+        yield "medium", list(_describe_media(lookup, connections))
         words = [_describe_words(lookup, connection) for connection in connections]
         yield from (
             (name, [each[index] for each in words]) for index, name in enumerate(("promise", "version", "deprecated"))
         )
         yield "made_by", ["autoconnect" if connection.is_made else "" for connection in connections]
+
+
+def _describe_media(lookup: Lookup, connections: Iterable[Connection]) -> Iterator[str]:
+    """Yield what each connection travels over; nothing in a project of ROS and of what is physical alone."""
+    outputs = lookup.architecture.outputs
+    has_others = any(nature_of(port) == "other" for port in lookup.architecture.list_ports())
+    for connection in connections:
+        ends: list[Input | Output] = [lookup.architecture.inputs[connection.input]]
+        ends += (outputs[each] for each in connection.outputs)
+        others = dict.fromkeys(port.medium for port in ends if nature_of(port) == "other")
+        words = others or dict.fromkeys(word_of_medium(outputs[each]) for each in connection.outputs)
+        yield ", ".join(words) if has_others else ""
 
 
 def _describe_words(lookup: Lookup, connection: Connection) -> tuple[str, str, str]:
