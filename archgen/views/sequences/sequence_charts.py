@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
 from archgen.model.architecture import UseCase
+from archgen.model.port_media import is_physical
 from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.views.inline_text import count_noun
@@ -152,7 +153,7 @@ def _choose_style(lookup: Lookup, connected: ConnectedStep) -> MessageStyle:
     if connected.way == "outside":
         port_id = connected.connections[0].output or connected.connections[0].input or ""
         port = lookup.architecture.outputs.get(port_id) or lookup.architecture.inputs.get(port_id)
-        return "physical" if port is not None and port.physical else "data"
+        return "physical" if port is not None and is_physical(port) else "data"
     return connected.way if connected.way in {"service", "action", "physical"} else "data"
 
 
