@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 _BLOCKS = frozenset({"p", "div", "h1", "h2", "h3", "h4", "h5", "h6", "table", "blockquote", "pre", "dl", "dt", "dd"})
 _MARKS = {"b": "**", "strong": "**", "i": "*", "em": "*", "code": "`", "tt": "`"}
+_UNSHOWN = frozenset({"script", "style"})
+"""What they hold is no text: nobody reads it in the other tool either."""
 _BLANKS = re.compile(r"[ \t\r\n]+")
 _EMPTY_LINES = re.compile(r"\n(?:[ \t]*\n)+")
 NO_BREAK_SPACE = "\u00a0"
@@ -20,10 +22,13 @@ class XhtmlText:
         self._parts: list[str] = []
         self._lists: list[int | None] = []
         """The lists around: the number of the last item, None where they have none."""
+        self._unshown_depth = 0
 
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
         """Take the beginning of an element."""
-        if name in _BLOCKS:
+        if name in _UNSHOWN:
+            self._unshown_depth += 1
+        elif name in _BLOCKS:
             self._parts.append("\n\n")
         elif name == "br":
             self._parts.append("\n")
@@ -42,7 +47,9 @@ class XhtmlText:
 
     def end(self, name: str) -> None:
         """Take the end of an element."""
-        if name in _BLOCKS:
+        if name in _UNSHOWN:
+            self._unshown_depth -= 1
+        elif name in _BLOCKS:
             self._parts.append("\n\n")
         elif name in _MARKS:
             self._parts.append(_MARKS[name])
@@ -54,7 +61,8 @@ class XhtmlText:
 
     def add(self, text: str) -> None:
         """Take a piece of text."""
-        self._parts.append(_fold_blanks(text))
+        if not self._unshown_depth:
+            self._parts.append(_fold_blanks(text))
 
     def _start_item(self) -> None:
         number = self._lists[-1] if self._lists else None

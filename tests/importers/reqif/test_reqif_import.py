@@ -167,6 +167,17 @@ def test_lists_tables_and_breaks_become_text() -> None:
     assert text.finish() == "1. one\n  - inner line\n2. two\n\na | b\n*end*"
 
 
+@pytest.mark.parametrize("name", ["script", "style"])
+def test_what_is_never_shown_is_no_text(name: str) -> None:
+    text = XhtmlText()
+    text.add("It stops")
+    text.start(name, {})
+    text.add("alert(1)")
+    text.end(name)
+    text.add(" in time.")
+    assert text.finish() == "It stops in time."
+
+
 def write_large(path: Path, size: int) -> int:
     text = DOORS.read_text(encoding="utf-8")
     start, end = (
