@@ -68,7 +68,10 @@ def _condense_facts(node: Node, component: Component, rows: Sequence[FactRow]) -
     values = dict(rows)
     kind = values.get("Kind, status", ())
     name = inline_text.to_inlines(
-        Text(node.id, code=True, strong=True), ", ROS name ", *values["ROS name"], ", ", *kind
+        Text(node.id, code=True, strong=True),
+        *((", ROS name ", *values["ROS name"]) if "ROS name" in values else ()),
+        ", ",
+        *kind,
     )
     others = [item for item in node.implements if item != component.id]
     if others:
