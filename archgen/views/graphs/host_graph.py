@@ -132,7 +132,12 @@ def _linked_hosts(lookup: Lookup, link: Link) -> list[str]:
 
 def _link_label(link: Link) -> str:
     times = [quantity.text for quantity in (link.best, link.worst) if quantity]
-    rows = [link.title, name_medium(link.protocol or ""), link.bandwidth.text if link.bandwidth else "", " to ".join(dict.fromkeys(times))]
+    rows = [
+        link.title,
+        name_medium(link.protocol or ""),
+        link.bandwidth.text if link.bandwidth else "",
+        " to ".join(dict.fromkeys(times)),
+    ]
     return "\n".join(word for word in rows if word)
 
 
