@@ -56,7 +56,7 @@ from archgen.project.commit_days import find_commit_day
 from archgen.project.variant_settings import adopt_settings, changes_settings
 from archgen.syntax import interface_definitions as interface_files
 from archgen.syntax import project_files
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, list_spans
 from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -277,6 +277,7 @@ def judge_project(
     joined_findings = variant_findings.join_findings(
         {name: each.findings for name, each in judged_projects.items()},
         {name: each.waiting_rules for name, each in judged_projects.items()},
+        frozenset(list_spans(merged_project.table.entries["variants"].value)),
     )
     return replace(
         checked_project,

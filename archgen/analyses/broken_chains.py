@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
 
     from archgen.model.architecture import Architecture, Chain, Waypoint
+    from archgen.model.component import Input
 
 
 def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -51,7 +52,7 @@ def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
     # The graph of components, not of nodes: a chain can be judged before anything is mapped to nodes.
     successors = flow_graph.build_component_graph(architecture).successors
     readers = _readers_by_output(architecture)
-    open_components = {i.component for i in architecture.inputs.values() if i.from_written and not i.connections}
+    open_components = _list_open_components(architecture)
     for chain in architecture.chains.values():
         if _runs_backwards(architecture, chain, successors):
             yield _diagnose_backward_chain(chain)
@@ -106,6 +107,31 @@ def _diagnose_backward_chain(chain: Chain) -> Diagnostic:
         help=f"a chain begins where the data come from: `[{right_order}]`",
         element=chain.id,
     )
+
+
+def _list_open_components(architecture: Architecture) -> set[str]:
+    """Return the ids of the components with an input of which the `from` could not be resolved.
+
+    What reads an input of the composed component around it (`self.x`) is as open as that one: where that is fed by
+    nothing or by the outside, nothing is missing.
+    """
+    givers = defaultdict[str, list[str]](list)
+    for shell_port, readers in architecture.shell_ports.items():
+        kind, _, shell_input = shell_port.partition(" ")
+        if kind == "input":
+            for reader in readers:
+                givers[reader].append(shell_input)
+
+    def is_open(port: Input) -> bool:
+        if not port.from_written or port.connections:
+            return False
+        outer_ports = []
+        for giver in givers[port.id]:
+            shell_id, _, name = giver.rpartition(".")
+            outer_ports.append(architecture.shells[shell_id].inputs[name])
+        return not outer_ports or any(is_open(each) for each in outer_ports)
+
+    return {port.component for port in architecture.inputs.values() if is_open(port)}
 
 
 def _readers_by_output(architecture: Architecture) -> Mapping[str, set[str]]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.model.variant import BASE_NAME
 
 UNUSED_RULES = frozenset(
@@ -44,15 +45,21 @@ MISSING_RULES = frozenset(
     }
 )
 """Rules that report what is not written: what every variant writes is not missing in the project itself."""
+_ABSENCE_RULES = frozenset({"unknown-reference", "unknown-requirement"})
+"""Rules about names that nothing has: what the project itself has, a variant has taken away."""
+_ABSENCE_HELP = "it is not there in this variant: drop what names it, or write in `changes` what is there instead"
 
 
 def join_findings(
-    findings_by_variant: Mapping[str, Sequence[Diagnostic]], waiting_rules: Mapping[str, frozenset[str]]
+    findings_by_variant: Mapping[str, Sequence[Diagnostic]],
+    waiting_rules: Mapping[str, frozenset[str]],
+    variant_places: Collection[Span],
 ) -> tuple[Diagnostic, ...]:
     """Return the findings of a project and its variants, by name, each once and with the variants in which it holds.
 
-    A rule that waits in a variant says nothing of it: what it finds in the project itself counts as found there. What is missing in the project itself and given by every variant is not missing; what one of them needs is not
-    unused.
+    A rule that waits in a variant says nothing of it: what it finds in the project itself counts as found there. What
+    is missing in the project itself and given by every variant is not missing; what one of them needs is not unused.
+    `variant_places` are those of all names and values that the variants write.
     """
     names = tuple(findings_by_variant)
     holding: dict[Diagnostic, list[str]] = {}
@@ -64,13 +71,16 @@ def join_findings(
     for finding, holders in holding.items():
         if holders[0] == BASE_NAME:
             holders += [name for name in names if finding.rule in waiting_rules[name] and name not in holders]
+            holders.sort(key=names.index)
     joined: dict[Diagnostic, Diagnostic] = {}
     for findings in findings_by_variant.values():
         for finding in findings:
             identity = replace(finding, labels=(), help=None)
             if identity not in joined and not _is_explained(finding, holding[identity], names):
                 holders = holding[identity]
-                joined[identity] = finding if len(holders) == len(names) else _name_variants(finding, holders)
+                joined[identity] = (
+                    finding if len(holders) == len(names) else _name_variants(finding, holders, variant_places)
+                )
     return tuple(sorted(joined.values(), key=lambda each: each.sort_key))
 
 
@@ -83,12 +93,13 @@ def _is_explained(finding: Diagnostic, holders: Sequence[str], names: Sequence[s
     return finding.rule in MISSING_RULES and BASE_NAME in names and list(holders) == [BASE_NAME]
 
 
-def _name_variants(finding: Diagnostic, holders: Sequence[str]) -> Diagnostic:
+def _name_variants(finding: Diagnostic, holders: Sequence[str], variant_places: Collection[Span]) -> Diagnostic:
     """Return a finding with the variants in which it holds; one that does not hold in the project itself says it."""
     quoted_names = [f"`{name}`" for name in holders if name != BASE_NAME]
     message, help_line = finding.message, finding.help
-    if finding.rule == "unknown-reference" and BASE_NAME not in holders and help_line is None:
-        help_line = "it is not there in this variant: drop what names it, or write in `changes` what is there instead"
+    if finding.rule in _ABSENCE_RULES and BASE_NAME not in holders:
+        # What the project itself writes is right there: no slip, and nothing that is still to be declared.
+        help_line = help_line if help_line and finding.span in variant_places else _ABSENCE_HELP
     if BASE_NAME not in holders:
         # In the message, by which findings are told apart: a baseline knows one of a variant as such.
         plural = "s" if len(quoted_names) > 1 else ""

@@ -64,6 +64,9 @@ MEDIUM_NAMES: Mapping[str, str] = {
 }
 """The words that archgen knows, as they are written in running text. Any other word is accepted, too."""
 
+_STORES: Mapping[str, str] = {MEMORY: "in memory", "file": "in a file", "database": "in a database"}
+"""Where data lies that is put somewhere instead of being sent over something."""
+
 
 def nature_of(port: Input | Output) -> PortNature:
     """Return what a port is."""
@@ -106,6 +109,15 @@ def name_medium(word: str) -> str:
 def label_of_medium(port: Input | Output) -> str:
     """Return what pictures and tables add to a port: how its medium is called, nothing where it is ROS."""
     return "" if port.medium == ROS else name_medium(port.medium)
+
+
+def describe_carried(port: Input | Output) -> str:
+    """Return in words what passes a port: a message of ROS, a physical quantity, or data and the way it takes."""
+    if port.medium == ROS:
+        return "a message"
+    if port.medium == PHYSICAL:
+        return "a physical quantity"
+    return f"data {_STORES.get(port.medium) or f'over {name_medium(port.medium)}'}"
 
 
 def flow_of_port(port: Input | Output, carried_type: ConceptualType | None) -> PortFlow:

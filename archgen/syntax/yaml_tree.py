@@ -84,6 +84,19 @@ class YamlDocument:
     ignores: tuple[IgnoreComment, ...] = ()
 
 
+def list_spans(node: YamlNode) -> Iterator[Span]:
+    """Yield the spans of all keys and scalars in a tree."""
+    if isinstance(node, MappingNode):
+        for entry in node:
+            yield entry.key_span
+            yield from list_spans(entry.value)
+    elif isinstance(node, SequenceNode):
+        for item in node.items:
+            yield from list_spans(item)
+    else:
+        yield node.span
+
+
 def node_to_data(node: YamlNode) -> object:
     """Turn a tree into dicts, lists and plain values as the core schema reads them."""
     if isinstance(node, MappingNode):

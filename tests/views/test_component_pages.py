@@ -15,6 +15,7 @@ from archgen.views.lookup import make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.single_page import make_page
 from archgen.views.pages.site_pages import make_pages
+from archgen.views.report.ros_blocks import make_ros_blocks
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Facts, Inlines, Page, Table
 from archgen.views.timing.timing_lookup import bound_chains
@@ -269,3 +270,17 @@ def test_the_page_of_a_container_says_its_program(tmp_path: Path) -> None:
     facts = dict(make_card(make_lookup(architecture), "container", "own").facts)
     assert (facts["ROS name"], facts["parameters"]) == ("/s/own", "{a: {b: 1}, c: true}")
     assert "ROS name" not in dict(make_card(make_lookup(architecture), "container", "plain").facts)
+
+
+def test_a_program_has_no_ros_name(tmp_path: Path) -> None:
+    text = (
+        "groups: {g: {components: {a: {outputs: {x: X}}, b: {outputs: {y: Y}}}}}\n"
+        "nodes: {stage: {implements: a, kind: program, command: [stage]}, n: {implements: b}}\n"
+    )
+    lookup = make_lookup(read_project(tmp_path, text))
+    cards = {name: dict(make_card(lookup, "node", name).facts) for name in ("stage", "n")}
+    assert cards["n"]["ROS name"] == "/n"
+    assert "ROS name" not in cards["stage"]
+    components = lookup.architecture.components
+    on_paper = {name: str(make_ros_blocks(lookup, components[name])) for name in ("g.a", "g.b")}
+    assert ("ROS name" in on_paper["g.a"], "ROS name" in on_paper["g.b"]) == (False, True)

@@ -12,6 +12,7 @@ from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interface
+from archgen.model.port_media import describe_carried
 from archgen.model.ros_distro import is_ros_1
 
 _INNER_TYPE_KEYS = ("request", "response", "feedback")
@@ -33,13 +34,24 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
         indices, change = _type_change(
             context, output, (old_type, new_element.values.get("type")), (messages_before, messages_after)
         )
-        if new_element.values.get("medium") and not old_element.values.get("medium"):
-            indices = context.change_indices("output", output, "medium")
-            change = "a physical quantity instead of a message"
+        if (medium_change := _medium_change(context, output))[0]:
+            indices, change = medium_change
         if change:
             reason_text = f"gives {change} as {tick_name(context.old_id('output', output))}; {{}} it"
             readers_by_partner = context.foreign_readers(output, readers)
             yield from context.shared_losses(indices, readers_by_partner, reason_text, "reads", "wire")
+
+
+def _medium_change(context: ChangeContext, output_id: str) -> tuple[list[int], str]:
+    """Return the indices of changes that put an output onto another medium, and what it gives now; ([], "") if none did."""
+    old_port, new_port = (
+        context.before.outputs.get(context.old_id("output", output_id)),
+        context.after.outputs.get(output_id),
+    )
+    if old_port is None or new_port is None or old_port.medium == new_port.medium:
+        return [], ""
+    indices = context.change_indices("output", output_id, "medium")
+    return indices, f"{describe_carried(new_port)} instead of {describe_carried(old_port)}"
 
 
 def _type_change(

@@ -10,16 +10,16 @@ from archgen.link import mapping_values
 from archgen.link.slice_merging import declares_itself
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
-_DECLARING_KEYS: Mapping[str, frozenset[str]] = {
-    "nodes": frozenset({"implements", "internal", "kind", "command"}),
-    "links": frozenset({"connects"}),
-    "chains": frozenset({"through"}),
-    "containers": frozenset({"host"}),
-    "resources": frozenset({"host"}),
-    "views": frozenset({"show"}),
-    "policies": frozenset({"forbid", "require"}),
+_DECLARING_KEYS: Mapping[str, tuple[str, ...]] = {
+    "nodes": ("implements", "command", "kind", "internal"),
+    "links": ("connects",),
+    "chains": ("through",),
+    "containers": ("host",),
+    "resources": ("host",),
+    "views": ("show",),
+    "policies": ("forbid", "require"),
 }
-"""By section, the keys of which a new element has one. Elements of other sections may be new with any key."""
+"""By section, the keys of which a new element has one, the most usual first. Elements of other sections may be new with any key."""
 _INSTANCE_KEYS = frozenset({"is", "same_as"})
 
 
@@ -50,9 +50,10 @@ class ChangeTargets:
     def _is_sound(self, section: str, known: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)
         is_new = entry.key not in known.entries and entry.key not in self._lost_keys
-        if is_new and _DECLARING_KEYS[section].isdisjoint(body.entries):
-            needed = " or ".join(f"`{key}`" for key in sorted(_DECLARING_KEYS[section])[-2:])
-            self._report(entry, section.removesuffix("s"), entry.key, list(known.entries), f"a new one has {needed}")
+        if is_new and body.entries.keys().isdisjoint(_DECLARING_KEYS[section]):
+            needed = " or ".join(f"`{key}`" for key in _DECLARING_KEYS[section][:2])
+            kind = "policy" if section == "policies" else section.removesuffix("s")
+            self._report(entry, kind, entry.key, list(known.entries), f"a new one has {needed}")
             return False
         return True
 

@@ -332,7 +332,7 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
     facts = [
         ("implements", ", ".join(node.implements)),
         ("owner", ", ".join(node.owners) or "?"),
-        ("ROS name", node.full_name),
+        ("ROS name", "" if node.is_program else node.full_name),
         ("kind", ", ".join(node.kinds)),
         ("status", node.status or "?"),
         ("package", node.package or "?"),

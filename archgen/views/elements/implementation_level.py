@@ -66,7 +66,7 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
                 (inline_text.component_link(architecture.components[c]),) for c in node.implements
             ),
         ),
-        ("ROS name", inline_text.to_inlines(Text(node.full_name, code=True))),
+        ("ROS name", () if node.is_program else inline_text.to_inlines(Text(node.full_name, code=True))),
         ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
         ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
         ("Command", inline_text.to_inlines(Text(shlex.join(node.command), code=True)) if node.command else ()),

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from archgen.model.component_nesting import find_component
 from archgen.model.deployment import Host, Link
 from archgen.model.node import Node
+from archgen.model.port_media import name_medium
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun, format_short_timing
 from archgen.views.lookup import Lookup
+
+_MAX_DEVICES = 4
+"""How many devices a link's box names; more are counted, and the tooltip has them all."""
 
 _MAX_ROWS = 36
 """How many rows a card has; of more the rest is counted, and the tooltip has them all."""
@@ -29,7 +34,7 @@ def draw_hosts(lookup: Lookup) -> Graph:
         (
             *(_host_card(lookup, host, at) for at, host in enumerate(architecture.hosts.values())),
             *_draw_homeless(lookup),
-            *(_link_hub(link) for link in links if len(_linked_hosts(lookup, link)) > 2),  # noqa: PLR2004
+            *(_link_hub(lookup, link) for link in links if _has_hub(lookup, link)),
         ),
         arrows,
         direction=architecture.layout.direction,
@@ -127,21 +132,41 @@ def _linked_hosts(lookup: Lookup, link: Link) -> list[str]:
 
 def _link_label(link: Link) -> str:
     times = [quantity.text for quantity in (link.best, link.worst) if quantity]
-    rows = [link.title, link.bandwidth.text if link.bandwidth else "", " to ".join(dict.fromkeys(times))]
+    rows = [
+        link.title,
+        name_medium(link.protocol or ""),
+        link.bandwidth.text if link.bandwidth else "",
+        " to ".join(dict.fromkeys(times)),
+    ]
     return "\n".join(word for word in rows if word)
 
 
-def _link_hub(link: Link) -> Box:
+def _has_hub(lookup: Lookup, link: Link) -> bool:
+    """Whether a link has a box of its own: one that joins more than two hosts, or a host with devices."""
+    hosts = _linked_hosts(lookup, link)
+    return len(hosts) > 2 or bool(hosts and link.devices)  # noqa: PLR2004
+
+
+def _link_hub(lookup: Lookup, link: Link) -> Box:
     title, *lines = _link_label(link).split("\n")
-    return Box(f"link {link.id}", title, tuple(lines), style="link", ref=f"link:{link.id}", tooltip=_link_label(link))
+    devices = [find_component(lookup.architecture, device).title for device in link.devices]
+    shown = devices if len(devices) <= _MAX_DEVICES else [count_noun(len(devices), "device")]
+    return Box(
+        f"link {link.id}",
+        title,
+        (*lines, *shown),
+        style="link",
+        ref=f"link:{link.id}",
+        tooltip="\n".join([_link_label(link), *devices]),
+    )
 
 
 def _draw_link(lookup: Lookup, link: Link) -> Iterator[Arrow]:
-    """Yield the arrows of a link: a line between two hosts, or a line from its own box to each of more."""
+    """Yield the arrows of a link: a line between two hosts, or a line from its own box to each."""
     host_ids = _linked_hosts(lookup, link)
-    if len(host_ids) == 2:  # noqa: PLR2004
-        tail, head = (f"host {each}" for each in host_ids)
-        yield Arrow(f"link {link.id}", tail, head, _link_label(link), style="link", ref=f"link:{link.id}")
-    elif len(host_ids) > 2:  # noqa: PLR2004
+    if _has_hub(lookup, link):
         for end in host_ids:
             yield Arrow(f"link {link.id} {end}", f"link {link.id}", f"host {end}", style="link", ref=f"link:{link.id}")
+    elif len(host_ids) == 2:  # noqa: PLR2004
+        tail, head = (f"host {each}" for each in host_ids)
+        yield Arrow(f"link {link.id}", tail, head, _link_label(link), style="link", ref=f"link:{link.id}")

@@ -67,9 +67,8 @@ def _condense_facts(node: Node, component: Component, rows: Sequence[FactRow]) -
     """Yield the facts of a node: what it is in one row, where it runs with its package in a second, times in a third."""
     values = dict(rows)
     kind = values.get("Kind, status", ())
-    name = inline_text.to_inlines(
-        Text(node.id, code=True, strong=True), ", ROS name ", *values["ROS name"], ", ", *kind
-    )
+    ros_name = (Text(", ROS name "), *values["ROS name"]) if "ROS name" in values else ()
+    name = inline_text.to_inlines(Text(node.id, code=True, strong=True), *ros_name, ", ", *kind)
     others = [item for item in node.implements if item != component.id]
     if others:
         name = (*name, Text("; implements "), *values["Implements"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import Interface
+from archgen.model.port_media import name_medium
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.elements.promise_words import list_text_remarks
@@ -66,7 +67,11 @@ def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         line = join_words("resource", f"of {resource.host}" if resource.host else None)
         yield SearchEntry("resource", resource.title, line, (f"host:{resource.host}",), (resource.id,))
     for link in architecture.links.values():
-        line = join_words("link", ", ".join(link.connects))
+        line = join_words(
+            "link",
+            name_medium(link.protocol) if link.protocol else None,
+            ", ".join((*link.connects, *link.devices)),
+        )
         yield SearchEntry("link", link.title, line, (f"link:{link.id}", "page:hosts"), (link.id,))
 
 

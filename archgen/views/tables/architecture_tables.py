@@ -265,21 +265,39 @@ def make_host_table(lookup: Lookup) -> Table | None:
 
 
 def make_link_table(lookup: Lookup) -> Table | None:
-    """List the links between hosts."""
+    """List the links between hosts and devices; with what is spoken on them, where one says it."""
     architecture = lookup.architecture
+    with_protocol = any(link.protocol for link in architecture.links.values())
+    with_devices = any(link.devices for link in architecture.links.values())
     rows = tuple(
         (
             inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}")),
-            inline_text.join_inlines(inline_text.host_link(architecture, host) for host in link.connects),
+            inline_text.join_inlines(
+                (
+                    *(inline_text.host_link(architecture, host) for host in link.connects),
+                    *(_device_link(lookup, device) for device in link.devices),
+                )
+            ),
+            *((inline_text.to_inlines(name_medium(link.protocol or "")),) if with_protocol else ()),
             inline_text.quantity_to_inlines(link.bandwidth),
             _latency_cell(link),
         )
         for link in lookup.architecture.links.values()
     )
-    columns = (Column("Link"), Column("Connects", 1.5), Column("Bandwidth"), Column("Latency"))
+    protocol_columns = (Column("Protocol"),) if with_protocol else ()
+    columns = (Column("Link"), Column("Connects", 1.5), *protocol_columns, Column("Bandwidth"), Column("Latency"))
     # Links have no page or section of their own: references to one lead to its row.
     anchors = tuple(f"link:{name}" for name in lookup.architecture.links)
-    return Table("table:links", "Links between hosts", columns, rows, row_anchors=anchors) if rows else None
+    caption = "Links between hosts and devices" if with_devices else "Links between hosts"
+    return Table("table:links", caption, columns, rows, row_anchors=anchors) if rows else None
+
+
+def _device_link(lookup: Lookup, component_id: str) -> Inlines:
+    """Return the title of a component that is a device on a link, linked where it is shown."""
+    component = find_component(lookup.architecture, component_id)
+    if not lookup.scope.shows_component(component_id):
+        return inline_text.to_inlines(component.title)
+    return (inline_text.component_link(component),)
 
 
 def _latency_cell(link: Link) -> Inlines:

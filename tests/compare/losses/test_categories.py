@@ -284,6 +284,27 @@ def test_without_nodes_the_name_says_what_is_on_the_same_wire(compared: Compared
     ]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (None, "mqtt", "data over MQTT instead of a message"),
+        ("mqtt", "rest", "data over REST instead of data over MQTT"),
+        ("mqtt", None, "a message instead of data over MQTT"),
+        ("memory", "file", "data in a file instead of data in memory"),
+        ("mqtt", "MQTT", ""),
+        (None, "digital", ""),
+        (None, "ros", ""),
+    ],
+)
+def test_another_medium_is_another_wire(compared: Compared, old: str | None, new: str | None, said: str) -> None:
+    rows = "{type: Rows, d"
+    written = [rows if word is None else f"{{type: Rows, medium: {word}, d" for word in (old, new)]
+    before = NO_NODES.replace(rows, written[0])
+    assert losses(compared, before, [(written[0], written[1])]) == (
+        [f"wire orsa: gives {said} as `sense.eye.rows`; `nav.plan.rows` of Orsa reads it"] if said else []
+    )
+
+
 def test_what_was_weak_before_is_no_weaker(compared: Compared) -> None:
     weak = ROBOT.replace("jitter: 1 ms", "outputs: {rows: {conditional: true, max_gap: 1 s}}")
     assert losses(compared, weak, [("outputs: {rows: {conditional: true, max_gap: 1 s}}", "jitter: 1 ms")]) == []

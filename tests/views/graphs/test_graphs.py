@@ -30,6 +30,8 @@ from archgen.views.graphs import (
 from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
 from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.search.implementation_entries import make_host_entries
+from archgen.views.tables.architecture_tables import make_link_table
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.architectures import generated, robot, topics
 from tests.timings import timed
@@ -291,6 +293,44 @@ def test_hosts_have_containers_nodes_and_links() -> None:
         ("no host", (), ()),
         ("link lan", (), ()),
     ]
+
+
+def test_a_link_names_its_protocol_and_its_devices() -> None:
+    names = ["eye", "arm", "leg", "hand", "head"]
+    bus = Link("bus", "Bus", ("pc",), devices=("g.eye",), protocol="canopen")
+    architecture = replace(
+        make(f"g: {' '.join(names)}", ""),
+        hosts={name: Host(name, name.upper()) for name in ("pc", "plc")},
+        links={
+            "bus": bus,
+            "far": replace(bus, id="far", connects=()),
+            "full": Link("full", "Full", ("pc", "plc"), devices=tuple(f"g.{name}" for name in names)),
+            "lan": Link("lan", "LAN", ("pc", "plc"), protocol="ethercat"),
+        },
+    )
+    graph = draw_hosts(view(architecture))
+    assert text(graph) == [
+        "link bus > host pc [link]",
+        "link full > host pc [link]",
+        "link full > host plc [link]",
+        "host pc > host plc: LAN\nEtherCAT [link]",
+    ]
+    assert [(box.id, box.lines) for box in graph.boxes if box.style == "link"] == [
+        ("link bus", ("CANopen", "Eye")),
+        ("link full", ("5 devices",)),
+    ]
+    table = make_link_table(view(architecture))
+    assert table is not None
+    assert table.caption == "Links between hosts and devices"
+    assert [column.title for column in table.columns] == ["Link", "Connects", "Protocol", "Bandwidth", "Latency"]
+    assert [["".join(part.text for part in cell) for cell in row[1:3]] for row in table.rows] == [
+        ["PC, Eye", "CANopen"],
+        ["Eye", "CANopen"],
+        ["PC, PLC, Eye, Arm, Leg, Hand, Head", ""],
+        ["PC, PLC", "EtherCAT"],
+    ]
+    lines = [entry.line for entry in make_host_entries(view(architecture)) if entry.kind == "link"]
+    assert lines[:2] == ["link · CANopen · pc, g.eye", "link · CANopen · g.eye"]
 
 
 LOADED = """\
