@@ -106,7 +106,7 @@ class InputWiring:
             return PHYSICAL if PHYSICAL in written else next(filter(None, written))
         words = {self._medium_of_output(output) for connection in connections for output in connection.outputs}
         # What is heard or seen is turned into data by who reads it: that is said at the input, if it is so.
-        return words.pop() if len(words) == 1 and PHYSICAL not in words else self.outline.middleware
+        return min(words) if len(words) == 1 and PHYSICAL not in words else self.outline.middleware
 
     def _medium_of_output(self, output_id: str) -> str:
         component_id, _, name = output_id.rpartition(".")

@@ -247,7 +247,7 @@ class PortSources:
             words = {leaf.medium for leaf in self._find_given(shell_id, name)}
             if mapping_values.get_medium(body, "medium") is None and len(words) == 1:
                 outputs = self.outline.outputs[shell_id]
-                outputs[name] = replace(outputs[name], medium=words.pop())
+                outputs[name] = replace(outputs[name], medium=min(words))
         # Which outputs a whole component stands for hangs on their media.
         self.forget_outputs()
 

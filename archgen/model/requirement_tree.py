@@ -77,8 +77,8 @@ def add_wholes(requirements: Mapping[str, Requirement], own_ids: Iterable[str]) 
     """Return the requirements of which something holds: those of which it is known, and each whose parts all have it."""
     parts = index_parts(requirements)
     missing_counts = {requirement_id: len(part_ids) for requirement_id, part_ids in parts.items()}
-    holding_ids = {each for each in own_ids if each in requirements}
-    waiting_ids = list(holding_ids)
+    waiting_ids = list(dict.fromkeys(each for each in own_ids if each in requirements))
+    holding_ids = set(waiting_ids)
     while waiting_ids:
         for parent in dict.fromkeys(requirements[waiting_ids.pop()].parents):
             if parent not in missing_counts:

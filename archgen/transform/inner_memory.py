@@ -64,7 +64,7 @@ def _replace_ports(architecture: Architecture, inputs: Collection[str], outputs:
     """Return the architecture with the medium `memory` at these ports."""
     changed = {name.rpartition(".")[0] for name in (*inputs, *outputs)}
     components = dict(architecture.components)
-    for name in changed:
+    for name in sorted(changed):
         component = components[name]
         components[name] = replace(
             component, inputs=_mark_ports(component.inputs, inputs), outputs=_mark_ports(component.outputs, outputs)

@@ -71,7 +71,7 @@ def _list_judged(architecture: Architecture, chain_verdicts: Mapping[str, str], 
         for chain, verdict in chain_verdicts.items()
         if verdict in verdicts and architecture.chains[chain].deadline is not None
     }
-    for chain in chain_ids:
+    for chain in sorted(chain_ids):
         yield from (name for name in architecture.chains[chain].requirements if name in architecture.requirements)
     for requirement in architecture.requirements.values() if chain_ids else ():
         if any(each.kind == "chain" and each.text in chain_ids for each in requirement.verified_by):

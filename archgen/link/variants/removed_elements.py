@@ -33,7 +33,7 @@ def find_removed(outline: ElementOutline, leaves: frozenset[str], nodes: frozens
             components.add(shell.id)
     groups = {group_id for group_id, members in outline.members.items() if members and components.issuperset(members)}
     words = {word for component_id in components for word in component_id.split(".")[1:]}
-    words.update(name for component_id in components for name in outline.outputs[component_id])
+    words.update(name for component_id in sorted(components) for name in outline.outputs[component_id])
     return RemovedElements(frozenset(components), nodes, frozenset(groups), frozenset(words | groups))
 
 

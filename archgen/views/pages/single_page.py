@@ -72,6 +72,7 @@ def _make_surrounding_pages(page_maker: PageMaker) -> Iterator[Page]:
     lookup, edition = page_maker.lookup, page_maker.edition
     yield from context_pages.make_context_pages(lookup, page_maker.keep_drawn)
     yield from requirement_pages.make_requirement_pages(lookup)
+    yield from page_maker.variant_pages()
     yield from matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation")
     yield from page_maker.message_pages().make_pages()
     yield from partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags)

@@ -29,7 +29,7 @@ def make_sequence_charts(lookup: Lookup, components: Collection[str] | None = No
     """Yield the sequence of each use case with steps; of some components, by complete ids, those that one takes part in."""
     for use_case_id, steps in lookup.steps.by_use_case.items():
         ends = {end.participant for each in steps for end in (each.step.source, each.step.target)}
-        parts = (leaf for end in ends for leaf in lookup.architecture.leaves_of(end))
+        parts = (leaf for end in sorted(ends) for leaf in lookup.architecture.leaves_of(end))
         if components is None or any(part in components for part in parts):
             yield make_sequence_chart(lookup, use_case_id)
 
@@ -164,8 +164,8 @@ def find_carrier_ref(lookup: Lookup, connected: ConnectedStep) -> str | None:
         architecture.outputs.get(each.output or "") or architecture.inputs.get(each.input or "")
         for each in connected.connections
     )
-    types = {port.type for port in ports if port is not None}
-    return f"type:{types.pop()}" if len(types) == 1 and None not in types else None
+    types = tuple(dict.fromkeys(port.type for port in ports if port is not None))
+    return f"type:{types[0]}" if len(types) == 1 and types[0] is not None else None
 
 
 def _describe_chart(use_case: UseCase, lifelines: Sequence[Lifeline], messages: Sequence[SequenceMessage]) -> str:

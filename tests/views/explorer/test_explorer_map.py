@@ -103,6 +103,7 @@ def test_keys_are_those_that_selectors_find(tables: dict[str, list[Any]]) -> Non
         "type:sensor_msgs/msg/PointCloud2",
         "medium:physical",
         "medium:digital",
+        "medium:ros",
         "behaviour:periodic",
         "finding:unjustified-component",
     ]
