@@ -136,9 +136,9 @@ def test_a_name_that_is_no_backend(
 
 
 def test_where_no_backend_makes_such_a_thing(run: Run, first: Path) -> None:
-    ran = run("export", "zzz", "-C", first)
+    ran = run("generate", "zzz", "-C", first, "-o", first.parent / "workspace")
     assert ran.err == (
-        "Error: there is no text backend `zzz`; no backend here says `makes: file`; a project brings its own in backends/\n"
+        "Error: there is no text backend `zzz`; no backend here says `makes: workspace`; a project brings its own in backends/\n"
     )
 
 
@@ -187,13 +187,14 @@ def test_a_template_that_fails_leaves_the_file_as_it_was(run: Run, robot: Path, 
 
 
 TABLE = """\
-id      title        makes      emitter  view           origin
-report  Word report  documents  docx     outline        shipped
-site    Static site  documents  site     pages          shipped
-wiki    Wiki pages   documents  text     pages, graphs  shipped
-code    The code     workspace  text     graphs         own
-pages   The pages    documents  text     record         own
-table   The table    file       text     record         own
+id      title                  makes      emitter  view                      origin
+report  Word report            documents  docx     outline                   shipped
+reqif   Requirements as ReqIF  file       reqif    record                    shipped
+site    Static site            documents  site     pages                     shipped
+wiki    Wiki pages             documents  text     pages, graphs, sequences  shipped
+code    The code               workspace  text     graphs                    own
+pages   The pages              documents  text     record                    own
+table   The table              file       text     record                    own
 """
 
 
@@ -233,7 +234,7 @@ def test_a_selector_does_not_go_with_backends(run: Run, robot: Path) -> None:
     ("words", "names"),
     [
         ("generate ", ["code"]),
-        ("export ", ["table"]),
+        ("export ", ["reqif", "table"]),
         ("build --backend p", ["pages"]),
         ("build --only report,p", ["report,packed", "report,pages"]),
     ],

@@ -161,13 +161,13 @@ nodes:
 # As before, but the only node says little: what it carries then is said for it.
 IMPLIED = (
     """\
-groups: {g: {components: {a: {inputs: {i: b.o}, outputs: {o: T, p: T}}, b: {inputs: {j: a.o}, outputs: {o: T}}, c: {outputs: {q: T}}}}}
+groups: {g: {components: {a: {inputs: {i: c.q}, outputs: {o: T, p: T}}, b: {outputs: {o: T}}, c: {inputs: {j: a.o}, outputs: {q: T}}}}}
 nodes:
   n: {implements: [a, b], publishes: {a.o: {topic: /o}}}
   k: {implements: c}
 """,
     """\
-groups: {g: {components: {a: {inputs: {i: b.o}, outputs: {o: T, p: T}}, b: {inputs: {j: a.o}, outputs: {o: T}}, c: {outputs: {q: T}}}}}
+groups: {g: {components: {a: {inputs: {i: c.q}, outputs: {o: T, p: T}}, b: {outputs: {o: T}}, c: {inputs: {j: a.o}, outputs: {q: T}}}}}
 nodes:
   n: {implements: [a, b], publishes: {a.o: {topic: /o}}}
   m: {implements: a, publishes: {p: {topic: /p}}, subscribes: {i: {}}}
