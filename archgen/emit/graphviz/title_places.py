@@ -29,9 +29,13 @@ def clear_titles(scene: Scene) -> Scene:
 def count_cut_titles(scene: Scene) -> int:
     """Return how many titles stand on a line."""
     points = _sample_lines(scene)
-    return sum(
-        any(left < x < right and bottom < y < top for x, y in points)
-        for left, bottom, right, top in (part.rectangle for part in scene.parts if part.kind == "title")
+    rectangles = [part.rectangle for part in scene.parts if part.kind == "title"]
+    return len(
+        [
+            rectangle
+            for rectangle in rectangles
+            if any(rectangle[0] < x < rectangle[2] and rectangle[1] < y < rectangle[3] for x, y in points)
+        ]
     )
 
 
