@@ -60,7 +60,7 @@ def test_order_and_indentation_are_no_change(
 
 
 _ORDERED = frozenset(
-    {"implements", "chapters", "through", "parameters", "parameter_files", "definitions", "texts", "pictures"}
+    {"implements", "chapters", "through", "steps", "parameters", "parameter_files", "definitions", "texts", "pictures"}
 )
 
 

@@ -51,16 +51,16 @@ def _line(system: TimingSystem, arc: Arc) -> str:
 
 
 def test_arcs_join_writers_with_readers_over_the_quickest_link() -> None:
-    """Of several links the one with the least worst latency counts; none joins q or p with r."""
+    """Of several links the one with the least worst latency counts; none joins q or p with r. Inside `head` it is memory."""
     system = _system(TEXT)
     assert [_line(system, arc) for arc in system.arcs] == [
-        "head.eye g.eye.seen > head.mind g.mind.a data on /g/eye/seen by None 0..0 depth 10 size 1000 @6:26 0",
-        "head.eye g.eye.spare > head.mind g.mind.b data on /g/eye/spare by None 0..0 depth 10 size 1000 optional@6:46 0",
         "head.mind g.mind.told > arm.g.hand g.hand.do data on /g/mind/told by fast 2..3 depth 3 size 1000 asked@7:27 15",
         "head.mind g.mind.told > arm.h.hand h.hand.do data on /g/mind/told by fast 2..3 depth 10 size 1000 @11:27 0",
         "head.mind g.mind.told > rest g.late.told data on /g/mind/told by None None..None depth None size 1000 @8:29 16",
         "arm.g.hand g.hand.ask > head.mind g.mind.ask request on /g/mind/ask by fast 2..3 depth 10 size None @7:43 0",
         "head.mind g.mind.ask > arm.g.hand g.hand.ask answer on /g/mind/ask by fast 2..3 depth 10 size None @7:43 0",
+        "head.eye g.eye.seen > head.mind g.mind.a data on memory g.eye.seen by None 0..0 depth 10 size 1000 @6:26 0",
+        "head.eye g.eye.spare > head.mind g.mind.b data on memory g.eye.spare by None 0..0 depth 10 size 1000 optional@6:46 0",
     ]
 
 
@@ -97,7 +97,7 @@ def test_hosts_links_and_topics_of_the_system() -> None:
     assert (system.cores, system.threads) == ({"p": 2, "q": None, "r": 4}, {"box": 3})
     assert system.bandwidths == {"slow": None, "fast": 10_000_000, "dark": None}
     assert system.served_outputs == frozenset({("head.mind", "g.mind.ask")})
-    assert system.topic_writers["/g/eye/seen"] == (("head.eye", "g.eye.seen"),)
+    assert system.topic_writers["memory g.eye.seen"] == (("head.eye", "g.eye.seen"),)
     assert "/g/mind/ask" not in system.topic_writers
     assert set(system.topic_sizes.values()) == {1000}
 
