@@ -43,6 +43,10 @@ LIST_TABLES: Mapping[tuple[str, ...], tuple[str, Mapping[str, str]]] = {
         {"id": "node", "implements": "component", "package": "package", "status": "status", "place": "place"},
     ),
     ("id", "title", "use_cases", "served_by", "place"): ("requirement", {"id": "requirement", "title": "title"}),
+    ("id", "title", "parent", "kind", "priority", "use_cases", "served_by", "verified_by", "state", "place"): (
+        "requirement",
+        {"id": "requirement", "title": "title"},
+    ),
     ("type", "message", "size", "remarks"): ("type", {"type": "type", "message": "message"}),
 }
 """The tables that `archgen list` writes: what a row is, and what its columns mean. The other columns can be derived."""

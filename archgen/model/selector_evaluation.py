@@ -186,7 +186,7 @@ class SelectorEvaluator:
     def _evaluate_atom(self, atom: SelectorAtom, problems: list[SelectorProblem]) -> SelectorHit:
         if atom.key is not None:
             hit = (
-                self._find_by_variant(atom.value)
+                self.find_by_variant(atom.value)
                 if atom.key == "variant"
                 else find_by_key(self.architecture, atom.key, atom.value, self.findings)
             )
@@ -205,7 +205,7 @@ class SelectorEvaluator:
             return hit
         return self._evaluate_path(atom, problems)
 
-    def _find_by_variant(self, pattern: str) -> SelectorHit:
+    def find_by_variant(self, pattern: str) -> SelectorHit:
         """Return what is different in some variants: what they take out, drop keys of, or write to."""
         variants = [each for name, each in self.architecture.variants.items() if matches_wildcard(pattern, name)]
         components, nodes = set[str](), set[str]()

@@ -17,6 +17,8 @@ from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import list_medium_words
 from archgen.model.property_conditions import find_component_properties, find_node_properties
 from archgen.model.requirement_tree import add_above
+from archgen.model.selector_evaluation import SelectorEvaluator
+from archgen.model.selector_keys import SelectorHit
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -28,6 +30,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
     architecture = lookup.architecture
     types = _list_types(architecture)
     rules = _list_rules(lookup)
+    variants = find_changed_by_variants(architecture)
     return {
         component.id: tuple(
             dict.fromkeys(
@@ -44,6 +47,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("library", name) for name in architecture.list_libraries_of(component)),
                     *(("parameter", name) for name in component.parameters),
                     *_list_properties(find_component_properties(architecture, component)),
+                    *(("variant", name) for name, hit in variants.items() if component.id in hit.components),
                 )
             )
         )
@@ -66,8 +70,8 @@ def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Ke
     )
 
 
-def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
-    """Return the keys of a node, each once."""
+def list_node_keys(lookup: Lookup, node: Node, variants: Mapping[str, SelectorHit]) -> tuple[Key, ...]:
+    """Return the keys of a node, each once, with the variants in which it is different."""
     host = lookup.architecture.hosts.get(node.host or "")
     rules = [finding.rule for finding in lookup.findings_of.get(node.id, ()) if finding.element == node.id]
     single_values = (("status", node.status), ("host", node.host), ("package", node.package))
@@ -81,9 +85,16 @@ def list_node_keys(lookup: Lookup, node: Node) -> tuple[Key, ...]:
                 *(("finding", rule) for rule in rules),
                 *(("parameter", name) for name in find_effective_parameters(lookup.architecture, node)),
                 *_list_properties(find_node_properties(lookup.architecture, node)),
+                *(("variant", name) for name, hit in variants.items() if node.id in hit.nodes),
             )
         )
     )
+
+
+def find_changed_by_variants(architecture: Architecture) -> Mapping[str, SelectorHit]:
+    """Return what is different in each variant by its id."""
+    evaluator = SelectorEvaluator(architecture)
+    return {name: evaluator.find_by_variant(name) for name in architecture.variants}
 
 
 def _list_properties(properties: Mapping[str, str]) -> Iterator[Key]:

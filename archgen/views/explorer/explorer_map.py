@@ -102,7 +102,8 @@ class _MapMaker:
 
     @cached_property
     def node_keys(self) -> Mapping[str, tuple[element_keys.Key, ...]]:
-        return {node.id: element_keys.list_node_keys(self.lookup, node) for node in self.nodes}
+        variants = element_keys.find_changed_by_variants(self.lookup.architecture)
+        return {node.id: element_keys.list_node_keys(self.lookup, node, variants) for node in self.nodes}
 
     @cached_property
     def key_numbers(self) -> Mapping[element_keys.Key, int]:

@@ -28,7 +28,7 @@ def make_variant_table(architecture: Architecture, differences: Mapping[str, Var
         (
             (Text(each.title, ref=f"variant:{each.id}"), Text(" "), Text(each.id, code=True, muted=True)),
             _link_variants(architecture, each.of),
-            inline_text.to_inlines(Text(each.without, code=True)) if each.without else (),
+            _link_words(architecture, each.without or ""),
             inline_text.to_inlines(_count_changes(differences.get(each.id))),
             inline_text.to_inlines(differences[each.id].findings if each.id in differences else ""),
         )
@@ -60,7 +60,7 @@ def _make_blocks(architecture: Architecture, variant: Variant, difference: Varia
     if variant.of:
         facts.append(("Built on", _link_variants(architecture, variant.of)))
     if variant.without:
-        facts.append(("Without", (Text(variant.without, code=True),)))
+        facts.append(("Without", _link_words(architecture, variant.without)))
     if variant.drop:
         facts.append(("Drops", inline_text.join_inlines((Text(path, code=True),) for path in variant.drop)))
     facts.append(("Written at", (Text(str(variant.at), code=True),)))
@@ -76,6 +76,16 @@ def _make_blocks(architecture: Architecture, variant: Variant, difference: Varia
 def _link_variants(architecture: Architecture, names: Sequence[str]) -> Inlines:
     return inline_text.join_inlines(
         (Text(name, ref=f"variant:{name}" if name in architecture.variants else None, code=True),) for name in names
+    )
+
+
+def _link_words(architecture: Architecture, selector: str) -> Inlines:
+    """Write a selector, with links from the complete ids in it."""
+    words = [f"`{word}`" if "`" not in word else word for word in selector.split()]
+    return tuple(
+        inline
+        for at, word in enumerate(words)
+        for inline in (*((Text(" "),) if at else ()), *link_names(architecture, word))
     )
 
 

@@ -11,8 +11,8 @@ from playwright.sync_api import Page as BrowserPage
 
 from tests.emit.site.test_page_policy import choose_pages
 
-# What scrolls by itself is left out: tables, listings, the matrix, and the explorer's bar of tools and its map.
-WIDE = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken, .matrix-box, .explorer-tools, .map, thead") &&
+# What scrolls by itself is left out: sequences, tables, listings, the matrix, and the explorer's bar of tools and its map.
+WIDE = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken, .matrix-box, .explorer-tools, .map, .sequence .canvas, thead") &&
     e.getBoundingClientRect().right > innerWidth + 1).map(e => e.outerHTML.slice(0, 90))"""
 
 
