@@ -61,7 +61,7 @@ def list_missing_words(definition: Interface, ros: int) -> Iterator[str]:
     for part in definition.parts:
         for field in part:
             base_type = field.type.partition("<=")[0]
-            if base_type in {"wstring"} and ros == 1:
+            if base_type == "wstring" and ros == 1:
                 yield f"ROS 1 has no `{base_type}`, which `{field.name}` is"
             elif "/" not in field.type and base_type not in _FIELD_TYPES | {"string", "wstring"}:
                 yield f"nobody says what `{field.type}` is, which `{field.name}` holds"

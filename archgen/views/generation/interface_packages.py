@@ -181,20 +181,22 @@ def _order_packages(architecture: Architecture, names: Iterable[str]) -> dict[st
 def _find_wanted_packages(context: GenerationContext, packages: Mapping[str, list[str]]) -> Collection[str]:
     """Return the packages that the wanted components use, with all that these hold: a package is made whole or not at all."""
     architecture = context.architecture
-    types = {
-        port.type: architecture.types[port.type]
+    port_types = dict.fromkeys(
+        port.type
         for component_id in context.wanted_components
         for port in architecture.components[component_id].ports
         if port.type in architecture.types
-    }
-    node_ids = set(context.wanted_nodes)
-    topics = {e.topic for e in architecture.endpoints if e.node in node_ids}
-    used_messages = collect_messages(
-        architecture, types.values(), [architecture.topics[name] for name in topics if name in architecture.topics]
     )
+    types = [architecture.types[name] for name in port_types if name]
+    topics = [
+        topic
+        for topic in architecture.topics.values()
+        if any(each.node in context.wanted_nodes for each in (*topic.writers, *topic.readers))
+    ]
+    used_messages = collect_messages(architecture, types, topics)
     wanted = {message.partition("/")[0] for message in used_messages}
     # Behind one another: those that a wanted package uses stand before it.
-    for package in reversed(packages):
+    for package in reversed(list(packages)):
         if package in wanted:
             definitions = [architecture.interfaces.definitions[name] for name in packages[package]]
             wanted |= {m.partition("/")[0] for each in definitions for m in _list_messages(each)}
