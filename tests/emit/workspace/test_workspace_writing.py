@@ -275,7 +275,7 @@ def _count_steps(monkeypatch: pytest.MonkeyPatch, last_step: int) -> Callable[[]
         watch(Path, name)
     watch(os, "replace")
     # A killed process cleans nothing up.
-    monkeypatch.setattr(workspace_writing.shutil, "rmtree", lambda *_words, **_named: None)
+    monkeypatch.setattr(shutil, "rmtree", lambda *_words, **_named: None)
     return lambda: done[0]
 
 
