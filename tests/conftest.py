@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -78,6 +80,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # Images of containers often tell Python to keep no bytecode: each of the hundreds of processes started here would compile
+    # archgen anew, for more than half of its time. `-B` is another matter: who writes it means this run.
+    if "-B" not in sys.orig_argv:
+        sys.dont_write_bytecode = False
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     property_sizes.choose_profile(config)
 
 
