@@ -109,7 +109,7 @@ def _read_flags(data: Any) -> Any:  # noqa: ANN401 - what the file holds
     """Return data with booleans for the flags of files, which are the only values in a manifest that are no text."""
     files = data.get("files") if isinstance(data, dict) else None
     for file in files if isinstance(files, list) else ():
-        for key in _FLAG_KEYS & file.keys() if isinstance(file, dict) else ():
+        for key in sorted(_FLAG_KEYS & file.keys()) if isinstance(file, dict) else ():
             file[key] = {"true": True, "false": False}.get(file[key], file[key]) if isinstance(file[key], str) else None
     return data
 
