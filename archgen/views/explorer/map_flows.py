@@ -101,7 +101,7 @@ def _list_extra_steps(
 ) -> Iterator[Row]:
     """Yield the steps that selectors take and no flow shows: from components of which no output is known yet, ..."""
     known_steps = set()
-    for style, reader, numbers in flows:
+    for style, reader, numbers, *_ in flows:
         for number in numbers:  # type: ignore[attr-defined]
             ends = (outputs[number].component, inputs[reader].component)  # type: ignore[call-overload]
             known_steps.add(ends)

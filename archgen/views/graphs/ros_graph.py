@@ -84,7 +84,7 @@ def _merge_node_flows(lookup: Lookup, node_flows: Sequence[NodeFlow], home_frame
             tail,
             head,
             style=style,  # type: ignore[arg-type]
-            label=f"({medium})" if medium else "",
+            label=(f"({medium})" if len(bundle) == 1 else f"{len(bundle)} ({medium})") if medium else "",
             medium=medium,
             count=len(bundle),
             # A frame may be a namespace, which has no hue, and a node may have the id of a group.

@@ -113,7 +113,7 @@ archgenExplorer.makeDrawing = function (map, layers) {
     const node = shape("g", { class: `arrow ${weight} ${arrow.style}${arrow.optional ? " optional" : ""}${arrow.made ? " made" : ""}`, "data-arrow": arrow.id },
       shape("path", { class: "hit", d: arrow.path }), shape("path", { class: "way", d: arrow.path }),
       ...(arrow.style === "physical" ? [shape("path", { class: "core", d: arrow.path })] : []),
-      shape("path", { class: "head", d: `M${x} ${y}l${back * 8} -4v8z${arrow.medium ? `m${back * 9} 0v8h${back * 7}v-8z` : ""}` }));
+      shape("path", { class: "head", d: `M${x} ${y}l${back * 8} -4v8z${arrow.medium ? `m${back * 9} -4v8h${back * 7}v-8z` : ""}` }));
     const title = shape("title");
     title.textContent = arrow.tip;
     node.prepend(title);

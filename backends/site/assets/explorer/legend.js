@@ -8,7 +8,7 @@ archgenExplorer.makeLegend = function (actions) {
   function sample(name, path, head = true) {
     return shape("svg", { width: 34, height: 14, "aria-hidden": "true" }, shape("g", { class: name }, shape("path", { class: "way", d: path ?? "M1 7H25" }),
       ...(name.includes("physical") ? [shape("path", { class: "core", d: path ?? "M1 7H25" })] : []),
-      ...(head ? [shape("path", { class: "head", d: `M33 7l-8 -4v8z${name.includes("medium") ? "m-9 0v8h-7v-8z" : ""}` })] : [])));
+      ...(head ? [shape("path", { class: "head", d: `M33 7l-8 -4v8z${name.includes("medium") ? "m-9 -4v8h-7v-8z" : ""}` })] : [])));
   }
 
   function entry(mark, text) {
