@@ -31,6 +31,7 @@ from archgen.frozen import dataclass, replace
 from archgen.link import (
     chapter_pictures,
     element_outline,
+    hint_checks,
     interface_sources,
     library_merging,
     mapping_values,
@@ -475,6 +476,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     missing_verifications = verification_files.find_missing_verifications(
         linked_architecture, loaded_project.files if is_folder else None
     )
+    wrong_hints = tuple(hint_checks.find_wrong_hints(linked_architecture, loaded_project.files)) if is_folder else ()
     linking_errors = _list_structural_errors((*merge_findings, *interface_findings, *link_findings))
     waiting_rules = error_aftermath.list_waiting_rules(
         (*reading_errors, *linking_errors), loaded_project.lost_keys, is_partial=loaded_project.partial
@@ -491,6 +493,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
         *missing_files,
         *named_file_findings,
         *missing_verifications,
+        *wrong_hints,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules

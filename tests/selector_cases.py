@@ -29,7 +29,7 @@ groups:
       base: {role: sink, parameters: {speed.max: 1.5}, properties: {mass: 12 kg, vendor: Acme Ltd, hot: 12 g}, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
       camera: {title: Rear Camera}
       odd: {inputs: {x: stub}}
-      stub:
+      stub: {title: Stub, status: existing}
 nodes:
   cam: {implements: sensing.camera, package: usb_cam, host: board, status: existing, parameters: {image: {fps: 30}}}
   eyes: {implements: [detector, fusion], package: our_vision, host: pc, tags: [certified], owner: certh, publishes: {world: }}
@@ -76,7 +76,8 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ("tag:gpu", "camera"),  # of a host
     ("tag:certified", "detector fusion"),  # of a node
     ("owner:certh", "camera lidar"),
-    ("status:existing", "camera"),
+    ("status:existing", "camera d.stub"),  # by its node, and by itself
+    ("status:existing+", "camera detector fusion solver executor d.base d.odd d.stub"),
     ("status:planned", "lidar solver executor d.base d.camera d.odd d.stub"),
     ('type:"Colour  image"', "camera detector"),
     ("type:sensor_msgs/msg/LaserScan", "lidar fusion d.base"),

@@ -20,6 +20,9 @@ _PLAIN_NAME = re.compile(r"[A-Za-z0-9_/~][A-Za-z0-9_./~:+-]*\Z")
 """Names that mean the same in YAML with and without quotes; others cannot be put into a list as they stand."""
 
 
+_BOOLEANS = ("true", "false")
+
+
 class OfferedName(NamedTuple):
     """A name, and what it means in a few words: the element's title, an output's type, a type's message."""
 
@@ -102,6 +105,7 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
             *(OfferedName(f"tag:{tag}", "what bears this tag") for tag in sorted(_list_tags(architecture))),
             *(OfferedName(f"owner:{each.id}", _shorten_text(each.title)) for each in architecture.partners.values()),
         ),
+        **_list_declared_properties(architecture),
         "media": tuple(_list_media(architecture)),
         "distros": tuple(OfferedName(name, "") for name in KNOWN_DISTROS),
         "chapters": tuple(OfferedName(name, "a chapter that archgen writes") for name in GENERATED_CHAPTERS),
@@ -142,6 +146,17 @@ def _list_inputs(components: Iterable[Component]) -> Iterator[OfferedName]:
             if name not in seen_names:
                 seen_names.add(name)
                 yield OfferedName(name, _shorten_text(f"input of {component.title}"))
+
+
+def _list_declared_properties(architecture: Architecture) -> dict[str, tuple[OfferedName, ...]]:
+    """Return the declared properties, and for each that has choices these, below `choices:` and its id."""
+    declared = architecture.properties.values()
+    choices = {
+        f"choices:{each.id}": tuple(OfferedName(choice, "") for choice in each.choices or _BOOLEANS)
+        for each in declared
+        if each.choices or each.type == "boolean"
+    }
+    return {"properties": tuple(OfferedName(each.id, _shorten_text(each.title)) for each in declared), **choices}
 
 
 def _list_media(architecture: Architecture) -> Iterator[OfferedName]:

@@ -102,3 +102,15 @@ def test_media_of_the_project_stand_before_the_known_ones(derived: Derived) -> N
     )
     assert OfferedName("mqtt", "MQTT") in names
     assert len({name for name, _ in names}) == len(names)
+
+
+def test_declared_properties_stand_with_their_choices(derived: Derived) -> None:
+    declared = "properties: {sil: Safety level, maturity: {choices: [idea, product]}, safe: {type: boolean}}\n"
+    names = list_offered_names(derived(ROBOT + declared))
+    assert names["properties"] == (
+        OfferedName("sil", "Safety level"),
+        OfferedName("maturity", "Maturity"),
+        OfferedName("safe", "Safe"),
+    )
+    choices = {kind: [name for name, _ in each] for kind, each in names.items() if kind.startswith("choices:")}
+    assert choices == {"choices:maturity": ["idea", "product"], "choices:safe": ["true", "false"]}

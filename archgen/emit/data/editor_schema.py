@@ -156,6 +156,11 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     for section in _SECTIONS:
         _offer_keys(definitions[section], names[section])
     _offer_keys(definitions["timing_uses"], names["resources"])
+    _offer_keys(definitions["properties"], names["properties"])
+    for name, part in definitions["properties"]["properties"].items():
+        if choices := names.get(f"choices:{name}"):
+            _inline_reference(part, definitions)
+            part["anyOf"] = [{}, _list_words(choices)]
     for part in list(_walk_parts(schema)):
         _explain_part(part, keeps_examples=any(part is definitions[name] for name in _OFFERED_EXAMPLES))
         if part is not schema:
