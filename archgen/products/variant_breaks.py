@@ -27,7 +27,9 @@ def add_variant_breaks(comparison: Comparison, variant_comparisons: dict[str, Co
     for name, variant_comparison in variant_comparisons.items():
         for change in variant_comparison.changes:
             identity = _identify_change(change)
-            known_losses = set(map(_identify_loss, base_changes[identity].breaks)) if identity in base_changes else set()
+            known_losses = (
+                set(map(_identify_loss, base_changes[identity].breaks)) if identity in base_changes else set()
+            )
             for each in change.breaks:
                 if _identify_loss(each) not in known_losses:
                     broken_changes.setdefault(identity, change)

@@ -65,11 +65,11 @@ _ELEMENT_SECTIONS = {
 def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     """Return the place where a key is written that an element of a kind (its title in the schema) does not have."""
     is_port = len(path) > 2 and path[-2] in {"inputs", "outputs"} and path[0] == "groups"  # noqa: PLR2004
+    if path[:1] == ("variants",) and path[2:] == ("changes",):
+        return _find_changes_help(key)
     parent = _find_parent(key, kind)
-    if parent is not None:
-        return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`"
-    if key in _TELLING_NOTHING:
-        return None
+    if parent is not None or key in _TELLING_NOTHING:
+        return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`" if parent else None
     if key in _READER_KEYS and kind != "Input":
         return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
     if key in _GIVER_KEYS and kind != "Output":
@@ -176,6 +176,22 @@ def _find_parent(key: str, kind: str) -> str | None:
         if key in below.get("properties", ()) and below.get("title") != kind:
             return str(parent)
     return None
+
+
+def _find_changes_help(key: str) -> str | None:
+    """Return help for a key that no section of a variant's changes has."""
+    if key == "components":
+        return "components are changed in their group: `groups: {GROUP: {components: {COMPONENT: ...}}}`"
+    if key in _list_keys("variant"):
+        return f"`{key}` says something of the variant: begin it in the column of `changes`"
+    if key in load_schema()["properties"]:
+        return f"no variant changes `{key}`: it says what the project is, and holds in all of them"
+    home = _find_kind(key, tuple(_HOMES))
+    return (
+        f"write it as {_HOMES[home].format(key=key, implements='', use='publishes', port='PORT', type='TYPE')}"
+        if home
+        else None
+    )
 
 
 def _find_section_help(key: str, path: KeyPath) -> str | None:
