@@ -331,6 +331,7 @@ def test_where_a_finding_of_the_project_does_not_hold_is_a_note(tmp_path: Path, 
     lines = "".join(
         f"  {name}: {{{'without: drive' if name in removing.split() else 'title: V'}}}\n" for name in "abcd"
     )
-    checked = check(tmp_path, lines)
+    robot = "archgen: 1\ngroups: {driving: {components: {drive: {outputs: {log: T}}, other: {inputs: {log: {from: drive.log, optional: true}}}}}}\ntypes: {T: std_msgs/msg/String}\n"
+    checked = check(tmp_path, lines, robot)
     found = [each for each in checked.findings if each.rule == "missing-detail" and "driving.drive" in each.message]
     assert [phrase_absence(each) for each in found] == ([note] if removing != "a b c d" else [])
