@@ -48,6 +48,8 @@ def _component(text: str) -> str:
         ("variants: {v: {changes: {components: {a: A}}}}", "components are changed in their group: `groups: {GROUP: "),
         ("variants: {v: {changes: {without: lidar}}}", "`without` says something of the variant: begin it in the column"),
         ("variants: {v: {changes: {package: urg}}}", "write it as `nodes: {NODE: {package: ...}}`"),
+        ("policies: {p: {forbid: {from: a, to: b, of: c}}}", "a flow has two ends: `forbid: {from: ..., to: ...}`; `of` "),
+        ("policies: {p: {require: {of: a, inputs_from: b, from: c}}}", "`require` asks something of elements: `require: "),
         ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),
     ],
 )  # fmt: skip
