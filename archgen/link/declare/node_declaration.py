@@ -86,6 +86,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         *(each for each in implements if not any(each.startswith(f"{whole}.") for whole in wholes)),
     )
     ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
+    resolver.diagnostics.extend(_find_shared_own_names(node_id, body))
     return Node(
         id=node_id,
         title=mapping_values.get_title(body, node_id),
@@ -172,6 +173,22 @@ def _make_port_resolver(
     # Not `not implements`: a node whose `implements` could not be resolved has no ports, one without it has free ones.
     is_free = body.get("implements") is None
     return PortResolver(context.resolver, node_id, implements, context.outline.port_names, is_free=is_free)
+
+
+def _find_shared_own_names(node_id: str, body: MappingNode) -> Iterator[Diagnostic]:
+    """Yield a finding for each port with several topics and one own name: remapping gives one name another one."""
+    for section in (body, mapping_values.get_mapping(body, "internal")):
+        for use in USE_KINDS:
+            for key, _, use_body in mapping_values.iterate_elements(section, use):
+                names = mapping_values.get_scalars(use_body, "topic")
+                if len(names) > 1 and mapping_values.get_text(use_body, "own_name"):
+                    yield Diagnostic(
+                        "conflicting-values",
+                        f"`{key}` of `{node_id}` has {len(names)} topics, but one name in the program",
+                        mapping_values.get_span(use_body, "own_name"),
+                        help="leave `own_name` out, and write what becomes of each name of the program in `remaps`",
+                        element=node_id,
+                    )
 
 
 def _declare_uses(body: MappingNode, ports: PortResolver, implemented: ImplementingNodes) -> Iterator[PortUse]:

@@ -73,7 +73,7 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("Command", inline_text.to_inlines(Text(shlex.join(node.command), code=True)) if node.command else ()),
         ("Arguments", inline_text.to_inlines(Text(shlex.join(node.arguments), code=True)) if node.arguments else ()),
         ("Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
-        ("Remaps", _remap_facts(node)),
+        ("Remaps", _remap_facts(lookup, node)),
         ("Start", _start_facts(node)),
         ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         ("Runs on", _location_cell(lookup, node)),
@@ -92,14 +92,12 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
     return [(name, value) for name, value in rows if value]
 
 
-def _remap_facts(node: Node) -> Inlines:
+def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     """Return the names that become others when the node starts, those of its ports first."""
-    pairs = [
-        *((use.own_name, topic) for use in node.uses if use.own_name for topic in use.topics),
-        *node.remaps.items(),
-    ]
+    port_names = {each.own_name: each.name for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
     return inline_text.join_inlines(
-        (Text(own_name, code=True), Text(" is "), Text(name, code=True)) for own_name, name in pairs
+        (Text(own_name, code=True), Text(" is "), Text(name, code=True))
+        for own_name, name in (port_names | dict(node.remaps)).items()
     )
 
 
