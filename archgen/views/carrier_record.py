@@ -50,6 +50,7 @@ def _record_endpoint(endpoint: Endpoint) -> dict[str, object]:
         {
             "use": endpoint.use,
             "name": endpoint.name,
+            "own_name": endpoint.own_name,
             "flow": endpoint.flow,
             "message": endpoint.message,
             "type": endpoint.type,
