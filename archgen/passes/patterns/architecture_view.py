@@ -1,0 +1,371 @@
+"""What rules see of a project: every component at any depth with all that it has from its type, and conceptual types.
+
+Worked out from the tree when it is asked for, and again after an edit of it, for what the edit touches alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from archgen.compose.instance_overlay import InstanceOverlay
+from archgen.compose.library_types import library_of_type, list_libraries, list_type_entries
+from archgen.compose.type_expressions import TypeExpression, parse_type_expression
+from archgen.compose.type_table import TypeTable, list_generic_names
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.element_origins import TreePath
+from archgen.model.generic_names import read_generic_name
+from archgen.passes.patterns.matching import IndexToken, list_tokens
+from archgen.passes.patterns.pattern_shapes import PortReference, ScalarText, ViewValue
+from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements, path_of_type
+from archgen.passes.patterns.view_references import ViewReferences
+from archgen.passes.project_tree import ProjectTree
+from archgen.schema import fold_type_name
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+
+VIRTUAL_KEYS = ("in", "id", "kind")
+"""What a view says of a component beside the language's own keys: these follow from where it stands."""
+_PORT_KEYS = ("inputs", "outputs")
+
+
+class Layer(NamedTuple):
+    """One of the places in the tree that a component has its values from: its own, or that of a type."""
+
+    path: TreePath
+    node: MappingNode
+    type_name: str | None
+    """The type, None for the component's own place."""
+
+
+class ArchitectureView:
+    """The view of a tree that is edited: say what was edited with `note_edit`."""
+
+    def __init__(self, tree: ProjectTree) -> None:
+        """Take the tree of a merged project."""
+        self.tree = tree
+        self.elements: dict[str, ViewElement] = {}
+        self._order: dict[str, int] = {}
+        self._next_number = 0
+        self._bodies: dict[str, dict[str, ViewValue]] = {}
+        self._expanded: dict[str, MappingNode] = {}
+        self._users: dict[str, set[str]] = {}
+        self._tokens: dict[str, tuple[IndexToken, ...]] = {}
+        self._postings: dict[IndexToken, dict[str, None]] = {}
+        self._stale: dict[str, None] = {}
+        self._resolved: dict[int, tuple[ScalarNode, PortReference]] = {}
+        self._written: dict[int, tuple[ScalarNode, str, bool]] = {}
+        self._diagnostics: list[Diagnostic] = []
+        self._type_entries = list_type_entries(tree.root)
+        self._type_table = TypeTable(self._type_entries, self._diagnostics)
+        self._types: dict[str, dict[str, ViewValue]] | None = None
+        self.type_paths: dict[str, TreePath] = {}
+        self.references = ViewReferences(self.elements, self._list_outputs)
+        inherited_ids = {name: self._list_inherited(name) for name in self._type_entries}
+        for element in list_elements(tree.root, self._type_entries, inherited_ids):
+            self._add(element)
+        self.type_keys = {each.type_name: key for key, each in self.elements.items() if each.kind == "type"}
+        for key in self.elements:
+            self._resolve_sources(key)
+
+    # What rules ask.
+
+    def list_components(self) -> Sequence[str]:
+        """Return the paths of all components, in order."""
+        return tuple(self.elements)
+
+    def get_component(self, path: str) -> dict[str, ViewValue] | None:
+        """Return what a component has, None where there is none."""
+        if path not in self.elements:
+            return None
+        if path not in self._bodies:
+            self._bodies[path] = self._make_body(self.elements[path])
+        return self._bodies[path]
+
+    def find_having(self, token: IndexToken) -> Sequence[str]:
+        """Return the paths of the components that the index knows by a token, in order."""
+        self._renew_index()
+        return sorted(self._postings.get(token, ()), key=self._order.__getitem__)
+
+    def count_having(self, token: IndexToken) -> int:
+        """Return how many components the index knows by a token."""
+        self._renew_index()
+        return len(self._postings.get(token, ()))
+
+    def list_types(self) -> Sequence[str]:
+        """Return the names of all conceptual types, in order."""
+        return tuple(self._read_types())
+
+    def get_type(self, name: str) -> dict[str, ViewValue] | None:
+        """Return what a conceptual type has, None where there is none."""
+        return self._read_types().get(name)
+
+    def is_a(self, name: str, wanted: str) -> bool:
+        """Whether a conceptual type is one, or made from a generic one; whether a component, or its type, is made from another."""
+        if name == wanted or read_generic_name(name).base == wanted:
+            return True
+        key = name if name in self.elements else self.type_keys.get(read_generic_name(name).base, "")
+        names = {each.type_name for each in self.list_layers(key)} if key in self.elements else set()
+        return any(each is not None and wanted in (each, self.type_keys.get(each)) for each in names)
+
+    # What edits ask.
+
+    def list_layers(self, key: str) -> list[Layer]:
+        """Return where a component has its values from: its own place, its type's, that type's type's, and so on."""
+        element = self.elements[key]
+        node = self._node_of(element)
+        body = node if isinstance(node, MappingNode) else MappingNode({}, self.tree.find_place(element.path))
+        layers = [Layer(element.path, body, None)]
+        seen: set[str] = {element.type_name} if element.kind == "type" and element.type_name else set()
+        while (name := self._find_type_name(layers[-1].node)) is not None and name not in seen:
+            seen.add(name)
+            entry = self._type_entries[name]
+            type_body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
+            layers.append(Layer(path_of_type(name), type_body, name))
+        return layers
+
+    def remember_reference(self, node: ScalarNode, reference: PortReference, writer: str, *, is_output: bool) -> None:
+        """Keep what a reference that a rule wrote means."""
+        self._resolved[id(node)] = (node, reference)
+        self._written[id(node)] = (node, writer, is_output)
+
+    def list_references(self) -> list[tuple[ScalarNode, str, bool, PortReference]]:
+        """Return all references with who writes them, whether at an output, and what they mean."""
+        return [(*self._written[key], reference) for key, (_, reference) in self._resolved.items()]
+
+    def find_reference(self, node: YamlNode) -> PortReference | None:
+        """Return what a reference in the tree means."""
+        found = self._resolved.get(id(node))
+        return found[1] if found else None
+
+    def note_edit(self, key: str, layer: Layer) -> None:
+        """Work out anew what an edit at a layer of a component touches."""
+        if layer.type_name is not None or self.elements[key].type_name is not None:
+            name = layer.type_name or self.elements[key].type_name
+            self._renew_type(str(name))
+        self._mark_stale(key)
+
+    def note_type_edit(self) -> None:
+        """Read the conceptual types again."""
+        self._types = None
+
+    def add_element(self, element: ViewElement) -> None:
+        """Take up a component that was written into the tree."""
+        if element.type_name is not None:
+            self._renew_type(element.type_name)
+            if element.kind == "type":
+                self.type_keys[element.type_name] = element.key
+        self._add(element)
+        self._resolve_sources(element.key)
+        self.references.forget_names()
+
+    def remove_element(self, key: str) -> None:
+        """Forget a component that was taken out of the tree, with all that stood in it."""
+        for inner in [each for each in self.elements if each == key or each.startswith(f"{key}.")]:
+            element = self.elements[inner]
+            self._mark_stale(inner)
+            del self.elements[inner], self._order[inner]
+            if element.kind == "type" and element.type_name:
+                del self.type_keys[element.type_name]
+            if element.type_name is not None:
+                self._renew_type(element.type_name)
+        self.references.forget_names()
+
+    # How it is worked out.
+
+    def _add(self, element: ViewElement) -> None:
+        self.elements[element.key] = element
+        self._order[element.key] = self._next_number
+        self._next_number += 1
+        self._mark_stale(element.key)
+
+    def _node_of(self, element: ViewElement) -> YamlNode | None:
+        if element.type_name is None:
+            return self.tree.get(element.path)
+        # The types of libraries name one another without their library: here they are as the project knows them.
+        entry = self._type_entries.get(element.type_name)
+        node = entry.value if entry else None
+        for inner_id in element.inner_ids:
+            components = node.get("components") if isinstance(node, MappingNode) else None
+            node = components.get(inner_id) if isinstance(components, MappingNode) else None
+        return node
+
+    def _find_type_name(self, node: MappingNode) -> str | None:
+        reference = node.get("same_as" if "same_as" in node.entries else "is")
+        expression = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+        return expression.name if expression and expression.name in self._type_entries else None
+
+    def _list_inherited(self, name: str) -> frozenset[str]:
+        entry = self._type_entries[name]
+        base = self._find_type_name(entry.value) if isinstance(entry.value, MappingNode) else None
+        seen, ids = {name}, set[str]()
+        while base is not None and base not in seen:
+            seen.add(base)
+            body = self._type_entries[base].value
+            components = body.get("components") if isinstance(body, MappingNode) else None
+            ids.update(components.entries if isinstance(components, MappingNode) else ())
+            base = self._find_type_name(body) if isinstance(body, MappingNode) else None
+        return frozenset(ids)
+
+    def _expand(self, key: str) -> MappingNode:
+        """Return what a component has with all of its types laid under it."""
+        if key not in self._expanded:
+            layers = self.list_layers(key)
+            for layer in layers:
+                if layer.type_name is not None:
+                    self._users.setdefault(layer.type_name, set()).add(key)
+            self._expanded[key] = self._lay_layers(self.elements[key], layers)
+        return self._expanded[key]
+
+    def _lay_layers(self, element: ViewElement, layers: list[Layer]) -> MappingNode:
+        own = layers[0].node
+        if element.kind == "type" and element.type_name in self._type_entries:
+            expression = TypeExpression(element.type_name, list_generic_names(self._type_entries[element.type_name]))
+            body = self._type_table.get_body(expression)
+            return MappingNode({**(body.entries if body else {}), **self._keep_own_keys(own, body)}, own.span)
+        reference = own.get("same_as" if "same_as" in own.entries else "is")
+        expression = self._type_table.find_type(reference, element.key) if isinstance(reference, ScalarNode) else None
+        type_body = self._type_table.get_body(expression) if expression else None
+        if type_body is None:
+            return own
+        overlay = InstanceOverlay(self._diagnostics, self._type_table.may_replace)
+        return overlay.lay_over_instance(type_body, own, element.key)
+
+    @staticmethod
+    def _keep_own_keys(own: MappingNode, body: MappingNode | None) -> dict[str, MappingEntry]:
+        known_keys = body.entries if body else {}
+        return {entry.key: entry for entry in own if entry.key not in known_keys}
+
+    def _list_outputs(self, key: str) -> Sequence[str]:
+        outputs = self._expand(key).get("outputs")
+        return tuple(outputs.entries) if isinstance(outputs, MappingNode) else ()
+
+    def _make_body(self, element: ViewElement) -> dict[str, ViewValue]:
+        expanded = self._expand(element.key)
+        body: dict[str, ViewValue] = {"kind": element.kind, "id": element.id}
+        if element.parent is not None:
+            body["in"] = element.parent
+        for entry in expanded:
+            if entry.key != "components":
+                body[entry.key] = self._read_value(entry.value)
+        for key in ("is", "same_as"):
+            name = body.get(key)
+            base = read_generic_name(name).base if isinstance(name, str) else ""
+            if isinstance(name, str) and self.type_keys.get(base, base) != base:
+                body[key] = self.type_keys[base] + name[len(base) :]
+        return body
+
+    def _read_value(self, node: YamlNode) -> ViewValue:
+        if isinstance(node, MappingNode):
+            return {entry.key: self._read_value(entry.value) for entry in node}
+        if isinstance(node, SequenceNode):
+            return [self._read_value(item) for item in node.items]
+        return self.find_reference(node) or read_scalar(node)
+
+    def _resolve_sources(self, key: str) -> None:
+        """Resolve what the ports of a component name in its own place: what its type writes is resolved there."""
+        own = self.list_layers(key)[0].node
+        for item in _list_items(own.get("from")):
+            self._resolve_item(item, key, is_output=False)
+        for port_key in _PORT_KEYS:
+            ports = own.get(port_key)
+            for port in ports if isinstance(ports, MappingNode) else ():
+                for item in _list_items(port.value.get("from") if isinstance(port.value, MappingNode) else None):
+                    self._resolve_item(item, key, is_output=port_key == "outputs")
+
+    def _resolve_item(self, node: ScalarNode, key: str, *, is_output: bool) -> None:
+        if id(node) not in self._resolved:
+            reference = self.references.resolve(node.text, key, is_output=is_output, span=node.span)
+            if reference is not None:
+                self.remember_reference(node, reference, key, is_output=is_output)
+
+    def _renew_type(self, name: str) -> None:
+        """Read a component type from the tree again, and what is made from it."""
+        library = library_of_type(name)
+        if library is None:
+            types = self.tree.root.get("component_types")
+            fresh_entry = types.entries.get(name) if isinstance(types, MappingNode) else None
+        else:
+            fresh_entry = _read_library_type(self.tree.root, library, name)
+        if fresh_entry is None:
+            self._type_entries.pop(name, None)
+        else:
+            self._type_entries[name] = fresh_entry
+        self._type_table = TypeTable(self._type_entries, self._diagnostics)
+        if name in self.type_keys:
+            self._mark_stale(self.type_keys[name])
+        for key in self._users.pop(name, ()):
+            self._mark_stale(key)
+
+    def _mark_stale(self, key: str) -> None:
+        self._bodies.pop(key, None)
+        self._expanded.pop(key, None)
+        self._stale[key] = None
+        element = self.elements.get(key)
+        if element and element.kind == "type" and element.type_name in self._users:
+            for user in self._users.pop(element.type_name):
+                self._mark_stale(user)
+
+    def _renew_index(self) -> None:
+        if not self._stale:
+            return
+        stale_keys, self._stale = self._stale, {}
+        for key in stale_keys:
+            for token in self._tokens.pop(key, ()):
+                del self._postings[token][key]
+            body = self.get_component(key)
+            if body is not None:
+                tokens = tuple(dict.fromkeys(list_tokens(body)))
+                self._tokens[key] = tokens
+                for token in tokens:
+                    self._postings.setdefault(token, {})[key] = None
+
+    def _read_types(self) -> dict[str, dict[str, ViewValue]]:
+        if self._types is None:
+            self._types, self.type_paths = {}, {}
+            sections: list[tuple[TreePath, YamlNode | None]] = [(("types",), self.tree.root.get("types"))]
+            for library in list_libraries(self.tree.root):
+                body = library.value
+                types = body.get("types") if isinstance(body, MappingNode) else None
+                sections.append((("libraries", library.key, "types"), types))
+            for path, section in sections:
+                for entry in section if isinstance(section, MappingNode) else ():
+                    name = fold_type_name(entry.key)
+                    if name not in self._types:
+                        value = self._read_value(entry.value)
+                        self._types[name] = value if isinstance(value, dict) else {}
+                        self.type_paths[name] = (*path, entry.key)
+        return self._types
+
+
+def _read_library_type(root: MappingNode, library: str, name: str) -> MappingEntry | None:
+    """Return one component type of a library, as the project knows it."""
+    for entry in list_libraries(root):
+        types = entry.value.get("component_types") if isinstance(entry.value, MappingNode) else None
+        own_name = name.removeprefix(f"{library}.")
+        if entry.key == library and isinstance(types, MappingNode) and own_name in types.entries:
+            node: YamlNode = MappingNode({own_name: types.entries[own_name]}, types.span)
+            for key in (library, "libraries"):
+                held_key = "component_types" if key == library else library
+                node = MappingNode({held_key: MappingEntry(held_key, entry.key_span, node)}, entry.key_span)
+            held = MappingNode({"libraries": MappingEntry("libraries", entry.key_span, node)}, entry.key_span)
+            return list_type_entries(held).get(name)
+    return None
+
+
+def _list_items(node: YamlNode | None) -> list[ScalarNode]:
+    items = node.items if isinstance(node, SequenceNode) else [node]
+    return [item for item in items if isinstance(item, ScalarNode) and item.value is not None]
+
+
+def read_scalar(node: ScalarNode) -> ScalarText | None:
+    """Return a scalar as rules see it: its text, None where nothing is written."""
+    if node.value is None:
+        return None
+    text = str(node.value).lower() if isinstance(node.value, bool) else node.text
+    return ScalarText(text, node.value, node.span)
+
+
+def find_instance(view: ArchitectureView, key: str) -> bool:
+    """Whether a component is made from a type, and seen with what it has from it alone."""
+    element = view.elements[key]
+    return element.kind == "component" and is_instance(view.list_layers(key)[0].node)

@@ -1,0 +1,120 @@
+"""What the ports of a view take their data from: references resolved to paths, and paths written as references.
+
+What stands beside the writer wins, then what stands around it, then its group, then the rest: as the linker has it
+(`link/source_references.py`), for component types too, which the linker sees in their instances only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+
+from archgen.diagnostics.source_span import Span
+from archgen.model.path_resolver import PathResolver
+from archgen.passes.patterns.pattern_shapes import PortReference
+from archgen.passes.patterns.view_elements import ViewElement
+
+_KINDS = ("group", "component", "output")
+_SELF = "self."
+_PORT_PATH_LENGTH = 2
+
+
+class ViewReferences:
+    """Resolves references between the elements of a view; `list_outputs` names the outputs of one."""
+
+    def __init__(
+        self, elements: Mapping[str, ViewElement], list_outputs: Callable[[str], Collection[str]]
+    ) -> None:
+        """Take the elements by path; changes of the mapping are seen after `forget_names`."""
+        self._elements = elements
+        self._list_outputs = list_outputs
+        self._open_names: PathResolver | None = None
+
+    def forget_names(self) -> None:
+        """Look the names up again: components or outputs have come or gone."""
+        self._open_names = None
+
+    def resolve(self, text: str, writer: str, *, is_output: bool, span: Span | None = None) -> PortReference | None:
+        """Return what a reference means at an input of a component, or at an output that it gives on; None if unclear."""
+        shell = writer if is_output else self._elements[writer].parent
+        if text.startswith(_SELF):
+            name = text.removeprefix(_SELF)
+            return PortReference(shell, name, holder=shell, span=span) if shell else None
+        for around in self._list_shells(shell):
+            found = self._match_inside(around, text, writer, span)
+            if found or is_output:
+                return found
+        if self._elements[writer].type_name is not None:
+            return None
+        match = self._resolver().resolve_path(text, _KINDS, component_id=writer).unique_element
+        if match is not None:
+            return self._make_reference(match.kind, match.id, span)
+        if text in self._elements:
+            return PortReference(text, None, span=span)
+        component, _, port = text.rpartition(".")
+        is_port = component in self._elements and port in self._list_outputs(component)
+        return PortReference(component, port, span=span) if is_port else None
+
+    def write(self, target: PortReference, writer: str, *, is_output: bool) -> str | None:
+        """Return the words that mean a port, or a whole component, where a component writes them; None where nothing does."""
+        if target.holder is not None:
+            shell = writer if is_output else self._elements[writer].parent
+            return str(target) if target.holder == shell else None
+        component = self._elements.get(target.component)
+        if component is None:
+            return None
+        words = component.id if target.port is None else f"{component.id}.{target.port}"
+        shell = writer if is_output else self._elements[writer].parent
+        candidates = [words, str(target)] if component.kind == "component" else [str(target)]
+        for text in candidates:
+            # A complete path of what everybody sees is never taken for anything else.
+            is_complete = text == str(target) and self._is_open(component) and not is_output
+            is_inside = component.parent in self._list_shells(shell)
+            if is_complete and self._elements[writer].type_name is None:
+                return text
+            if is_inside and self.resolve(text, writer, is_output=is_output) == target:
+                return text
+            if text == str(target) and component.type_name is None and self._elements[writer].type_name is None:
+                return None if is_output else text
+        return None
+
+    def _list_shells(self, shell: str | None) -> Iterator[str]:
+        """Yield the composed components around, from the inside to the outside: groups are none."""
+        while shell is not None and self._elements[shell].kind != "group":
+            yield shell
+            shell = self._elements[shell].parent
+
+    def _is_open(self, element: ViewElement) -> bool:
+        if element.type_name is not None:
+            return False
+        return element.parent is None or self._elements[element.parent].kind == "group"
+
+    def _match_inside(self, shell: str, text: str, writer: str, span: Span | None) -> PortReference | None:
+        words = text.split(".")
+        child = f"{shell}.{words[0]}"
+        if len(words) > 1:
+            is_port = child in self._elements and len(words) == _PORT_PATH_LENGTH
+            found = is_port and words[1] in self._list_outputs(child)
+            return PortReference(child, words[1], span=span) if found else None
+        if child in self._elements and child != writer:
+            return PortReference(child, None, span=span)
+        children = [key for key, each in self._elements.items() if each.parent == shell and key != writer]
+        owners = [key for key in children if text in self._list_outputs(key)]
+        return PortReference(owners[0], text, span=span) if len(owners) == 1 else None
+
+    def _resolver(self) -> PathResolver:
+        if self._open_names is None:
+            open_keys = [each.key for each in self._elements.values() if each.kind == "component" and self._is_open(each)]
+            self._open_names = PathResolver(
+                {
+                    "group": [each.key for each in self._elements.values() if each.kind == "group"],
+                    "component": open_keys,
+                    "output": [f"{key}.{name}" for key in open_keys for name in self._list_outputs(key)],
+                }
+            )
+        return self._open_names
+
+    def _make_reference(self, kind: str, element_id: str, span: Span | None) -> PortReference:
+        if kind != "output":
+            return PortReference(element_id, None, span=span)
+        component, _, port = element_id.rpartition(".")
+        return PortReference(component, port, span=span)
