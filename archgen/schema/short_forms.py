@@ -122,6 +122,11 @@ _ROOT_FORM = ElementForm(
 )
 
 
+COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM = _COMPONENT_FORM, _COMPONENT_TYPE_FORM, _TYPE_FORM
+"""What components, component types and conceptual types look like, for those who write them."""
+GROUP_FORM = _ROOT_FORM.keyed_forms["groups"]
+
+
 def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Bring a validated document into the normal form. Its tree is changed in place."""
     inner_diagnostics = (*_normalise_libraries(document), *_normalise_changes(document))

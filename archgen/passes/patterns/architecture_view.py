@@ -16,7 +16,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.element_origins import TreePath
 from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.matching import IndexToken, list_tokens
-from archgen.passes.patterns.pattern_shapes import PortReference, ScalarText, ViewValue
+from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ScalarText, ViewValue
 from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements, path_of_type
 from archgen.passes.patterns.view_references import ViewReferences
 from archgen.passes.project_tree import ProjectTree
@@ -137,6 +137,13 @@ class ArchitectureView:
         found = self._resolved.get(id(node))
         return found[1] if found else None
 
+    def write_type_name(self, name: str) -> str:
+        """Return the name of a component type as it is written, of the path that rules know it by."""
+        base = read_generic_name(name).base
+        element = self.elements.get(base)
+        is_type = element is not None and element.kind == "type"
+        return f"{element.type_name}{name[len(base) :]}" if element is not None and is_type else name
+
     def note_edit(self, key: str, layer: Layer) -> None:
         """Work out anew what an edit at a layer of a component touches."""
         if layer.type_name is not None or self.elements[key].type_name is not None:
@@ -241,12 +248,12 @@ class ArchitectureView:
 
     def _make_body(self, element: ViewElement) -> dict[str, ViewValue]:
         expanded = self._expand(element.key)
-        body: dict[str, ViewValue] = {"kind": element.kind, "id": element.id}
+        body = ComponentBody({"kind": element.kind, "id": element.id})
+        body.path = element.key
         if element.parent is not None:
             body["in"] = element.parent
         for entry in expanded:
-            if entry.key != "components":
-                body[entry.key] = self._read_value(entry.value)
+            body[entry.key] = self._read_value(entry.value)
         for key in ("is", "same_as"):
             name = body.get(key)
             base = read_generic_name(name).base if isinstance(name, str) else ""
@@ -274,7 +281,7 @@ class ArchitectureView:
 
     def _resolve_item(self, node: ScalarNode, key: str, *, is_output: bool) -> None:
         if id(node) not in self._resolved:
-            reference = self.references.resolve(node.text, key, is_output=is_output, span=node.span)
+            reference = self.references.resolve(node.text, key, is_output=is_output, at=node)
             if reference is not None:
                 self.remember_reference(node, reference, key, is_output=is_output)
 

@@ -9,7 +9,7 @@ from typing import Protocol
 from archgen.compose.type_expressions import bind_type_name
 from archgen.passes.patterns.expressions import Call, Comparison, ListOperand, Operand, TextOperand
 from archgen.passes.patterns.matching import resolve_text
-from archgen.passes.patterns.pattern_shapes import Anything, Bindings, Variable, ViewValue
+from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
 _TYPE_KEYS = frozenset({"type", "is", "same_as"})
@@ -125,9 +125,10 @@ def _find_free_name(name: str, view: NamedElements) -> str:
     return free_name
 
 
-def specialise(body: Mapping[str, ViewValue], stands_for: Mapping[str, str]) -> dict[str, ViewValue]:
+def specialise(body: Mapping[str, ViewValue], stands_for: Mapping[str, str]) -> ComponentBody:
     """Return a generic type with what its names stand for in their places; a name that nobody binds stays generic."""
-    special = _bind_names(body, stands_for)
+    special = ComponentBody(_bind_names(body, stands_for, is_component=True))
+    special.path = body.path if isinstance(body, ComponentBody) else ""
     generic = special.pop("generic", None)
     if isinstance(generic, list):
         open_names: Sequence[ViewValue] = [name for name in generic if name not in stands_for]
@@ -136,11 +137,19 @@ def specialise(body: Mapping[str, ViewValue], stands_for: Mapping[str, str]) -> 
     return special
 
 
-def _bind_names(body: Mapping[str, ViewValue], stands_for: Mapping[str, str]) -> dict[str, ViewValue]:
+def _bind_names(
+    body: Mapping[str, ViewValue], stands_for: Mapping[str, str], *, is_component: bool = False
+) -> dict[str, ViewValue]:
     bound: dict[str, ViewValue] = {}
     for key, value in body.items():
-        if isinstance(value, dict):
-            bound[key] = dict(value) if key in _DATA_KEYS else _bind_names(value, stands_for)
+        if isinstance(value, dict) and is_component and key == INNER_KEY:
+            bound[key] = {
+                inner: _bind_names(each, stands_for, is_component=True) if isinstance(each, dict) else each
+                for inner, each in value.items()
+            }
+        elif isinstance(value, dict):
+            is_data = is_component and key in _DATA_KEYS
+            bound[key] = dict(value) if is_data else _bind_names(value, stands_for)
         elif key in _TYPE_KEYS and isinstance(value, str):
             name = bind_type_name(value, stands_for)
             bound[key] = value if name == value else name

@@ -12,6 +12,7 @@ from typing import NamedTuple, Protocol
 from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.pattern_shapes import (
     ANY_NAME,
+    INNER_KEY,
     Anything,
     Bindings,
     Constant,
@@ -88,8 +89,9 @@ class ViewPattern(NamedTuple):
 def list_tokens(body: Mapping[str, ViewValue], depth: int = INDEXED_DEPTH) -> Iterator[IndexToken]:
     """Yield what the index knows a component by."""
     for key, value in body.items():
-        yield (key,)
-        yield from _list_value_tokens(key, value, depth)
+        if key != INNER_KEY or depth < INDEXED_DEPTH:
+            yield (key,)
+            yield from _list_value_tokens(key, value, depth)
 
 
 def _list_value_tokens(key: str, value: ViewValue, depth: int) -> Iterator[IndexToken]:

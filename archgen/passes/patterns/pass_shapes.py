@@ -36,6 +36,8 @@ class NegativePattern(NamedTuple):
 
     pattern: ViewPattern
     where: tuple[WrittenComparison, ...]
+    distinct: frozenset[str]
+    """Its own variables that stand for components."""
 
 
 class LetBinding(NamedTuple):

@@ -10,8 +10,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.diagnostics.source_span import Span
-from archgen.syntax.yaml_tree import PlainValue
+from archgen.syntax.yaml_tree import PlainValue, ScalarNode
 
+INNER_KEY = "components"
+"""What stands inside of a component is in a copy of all that it has; rules find it by paths of its own."""
 ViewValue = str | list["ViewValue"] | dict[str, "ViewValue"] | None
 Bindings = Mapping[str, ViewValue]
 """What the variables of a rule stand for, by name without `$`."""
@@ -35,17 +37,19 @@ class ScalarText(str):
 class PortReference(str):
     """What a port takes its data from: the path of a component, and the name of a port where it names one.
 
-    `holder` is the composed component whose input it is, where it is written as `self.x`.
+    `holder` is the composed component whose input it is, where it is written as `self.x`. `written` are the words that
+    stand in the tree.
     """
 
-    __slots__ = ("component", "holder", "port", "span")
+    __slots__ = ("component", "holder", "port", "span", "written")
     component: str
     port: str | None
     holder: str | None
     span: Span | None
+    written: str
 
     def __new__(
-        cls, component: str, port: str | None, *, holder: str | None = None, span: Span | None = None
+        cls, component: str, port: str | None, *, holder: str | None = None, at: ScalarNode | None = None
     ) -> PortReference:
         """Make a reference. With a holder it reads `self.port`."""
         whole = f"self.{port}" if holder is not None else component if port is None else f"{component}.{port}"
@@ -53,8 +57,16 @@ class PortReference(str):
         reference.component = component
         reference.port = port
         reference.holder = holder
-        reference.span = span
+        reference.span = at.span if at else None
+        reference.written = at.text if at else whole
         return reference
+
+
+class ComponentBody(dict[str, "ViewValue"]):
+    """All that a component has. `path` is the component that it is read from."""
+
+    __slots__ = ("path",)
+    path: str
 
 
 class Anything(NamedTuple):

@@ -65,8 +65,7 @@ class RuleReader:
         if not edits:
             help_line = "write `add`, `set` or `drop`"
             self._report("a rule that changes nothing that it finds comes to no end", find_entry.key_span, help_line)
-        distinct = frozenset(entry.key.name for entry in find.components if isinstance(entry.key, Variable))
-        rule = RewriteRule(find, unless, where, let, edits, distinct, find_entry.key_span)
+        rule = RewriteRule(find, unless, where, let, edits, _list_distinct(find), find_entry.key_span)
         if len(self.diagnostics) == count:
             self.diagnostics += check_rule(rule)
         return rule if len(self.diagnostics) == count else None
@@ -126,7 +125,7 @@ class RuleReader:
         for item in items:
             pattern = self._read_view(item, "unless")
             where = item.get("where") if isinstance(item, MappingNode) else None
-            yield NegativePattern(pattern, tuple(self._read_where(where)))
+            yield NegativePattern(pattern, tuple(self._read_where(where)), _list_distinct(pattern))
 
     def _read_where(self, node: YamlNode | None) -> Iterator[WrittenComparison]:
         items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
@@ -160,6 +159,10 @@ class RuleReader:
 
     def _report(self, message: str, span: Span, help_line: str | None = None) -> None:
         self.diagnostics.append(Diagnostic(PASS_ERROR_RULE.name, message, span, help=help_line))
+
+
+def _list_distinct(pattern: ViewPattern) -> frozenset[str]:
+    return frozenset(entry.key.name for entry in pattern.components if isinstance(entry.key, Variable))
 
 
 def _first_place(node: MappingNode) -> Span:

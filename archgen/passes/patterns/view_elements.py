@@ -43,7 +43,7 @@ def list_elements(
         key = f"{TYPE_PREFIX}{name}" if name in taken_keys else name
         path = path_of_type(name)
         yield ViewElement(key, name.rpartition(".")[2], "type", None, path, name)
-        yield from _list_inside(entry.value, key, path, name, (), inherited_ids.get(name, frozenset()))
+        yield from list_inside(entry.value, key, path, name, (), inherited_ids.get(name, frozenset()))
     yield from groups
 
 
@@ -60,10 +60,10 @@ def _list_groups(root: MappingNode) -> Iterator[ViewElement]:
     for group in groups if isinstance(groups, MappingNode) else ():
         path = ("groups", group.key)
         yield ViewElement(group.key, group.key, "group", None, path, None)
-        yield from _list_inside(group.value, group.key, path, None, (), frozenset())
+        yield from list_inside(group.value, group.key, path, None, (), frozenset())
 
 
-def _list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
+def list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
     node: YamlNode,
     parent: str,
     path: TreePath,
@@ -71,6 +71,7 @@ def _list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
     inner_ids: tuple[str, ...],
     left_out: frozenset[str],
 ) -> Iterator[ViewElement]:
+    """Yield what stands inside of a component, to any depth; nothing of an instance."""
     # What an instance writes of components inside belongs to its type.
     if not isinstance(node, MappingNode) or (len(path) > 2 and is_instance(node) and not _is_type(path)):  # noqa: PLR2004
         return
@@ -81,7 +82,7 @@ def _list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
         key, inner_path = f"{parent}.{part.key}", (*path, "components", part.key)
         ids = (*inner_ids, part.key)
         yield ViewElement(key, part.key, "component", parent, inner_path, type_name, ids)
-        yield from _list_inside(part.value, key, inner_path, type_name, ids, frozenset())
+        yield from list_inside(part.value, key, inner_path, type_name, ids, frozenset())
 
 
 def _is_type(path: TreePath) -> bool:

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from archgen.diagnostics.source_span import Span
 from archgen.model.path_resolver import PathResolver
 from archgen.passes.patterns.pattern_shapes import PortReference
 from archgen.passes.patterns.view_elements import ViewElement
+from archgen.syntax.yaml_tree import ScalarNode
 
 _KINDS = ("group", "component", "output")
 _SELF = "self."
@@ -33,26 +33,26 @@ class ViewReferences:
         """Look the names up again: components or outputs have come or gone."""
         self._open_names = None
 
-    def resolve(self, text: str, writer: str, *, is_output: bool, span: Span | None = None) -> PortReference | None:
+    def resolve(self, text: str, writer: str, *, is_output: bool, at: ScalarNode | None = None) -> PortReference | None:
         """Return what a reference means at an input of a component, or at an output that it gives on; None if unclear."""
         shell = writer if is_output else self._elements[writer].parent
         if text.startswith(_SELF):
             name = text.removeprefix(_SELF)
-            return PortReference(shell, name, holder=shell, span=span) if shell else None
+            return PortReference(shell, name, holder=shell, at=at) if shell else None
         for around in self._list_shells(shell):
-            found = self._match_inside(around, text, writer, span)
+            found = self._match_inside(around, text, writer, at)
             if found or is_output:
                 return found
         if self._elements[writer].type_name is not None:
             return None
         match = self._resolver().resolve_path(text, _KINDS, component_id=writer).unique_element
         if match is not None:
-            return self._make_reference(match.kind, match.id, span)
+            return self._make_reference(match.kind, match.id, at)
         if text in self._elements:
-            return PortReference(text, None, span=span)
+            return PortReference(text, None, at=at)
         component, _, port = text.rpartition(".")
         is_port = component in self._elements and port in self._list_outputs(component)
-        return PortReference(component, port, span=span) if is_port else None
+        return PortReference(component, port, at=at) if is_port else None
 
     def write(self, target: PortReference, writer: str, *, is_output: bool) -> str | None:
         """Return the words that mean a port, or a whole component, where a component writes them; None where nothing does."""
@@ -88,18 +88,18 @@ class ViewReferences:
             return False
         return element.parent is None or self._elements[element.parent].kind == "group"
 
-    def _match_inside(self, shell: str, text: str, writer: str, span: Span | None) -> PortReference | None:
+    def _match_inside(self, shell: str, text: str, writer: str, at: ScalarNode | None) -> PortReference | None:
         words = text.split(".")
         child = f"{shell}.{words[0]}"
         if len(words) > 1:
             is_port = child in self._elements and len(words) == _PORT_PATH_LENGTH
             found = is_port and words[1] in self._list_outputs(child)
-            return PortReference(child, words[1], span=span) if found else None
+            return PortReference(child, words[1], at=at) if found else None
         if child in self._elements and child != writer:
-            return PortReference(child, None, span=span)
+            return PortReference(child, None, at=at)
         children = [key for key, each in self._elements.items() if each.parent == shell and key != writer]
         owners = [key for key in children if text in self._list_outputs(key)]
-        return PortReference(owners[0], text, span=span) if len(owners) == 1 else None
+        return PortReference(owners[0], text, at=at) if len(owners) == 1 else None
 
     def _resolver(self) -> PathResolver:
         if self._open_names is None:
@@ -113,8 +113,8 @@ class ViewReferences:
             )
         return self._open_names
 
-    def _make_reference(self, kind: str, element_id: str, span: Span | None) -> PortReference:
+    def _make_reference(self, kind: str, element_id: str, at: ScalarNode | None) -> PortReference:
         if kind != "output":
-            return PortReference(element_id, None, span=span)
+            return PortReference(element_id, None, at=at)
         component, _, port = element_id.rpartition(".")
-        return PortReference(component, port, span=span)
+        return PortReference(component, port, at=at)

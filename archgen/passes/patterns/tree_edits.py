@@ -1,0 +1,377 @@
+"""Write what rules find to write: each value goes where the element that it belongs to is declared.
+
+A port of an instance is declared in its type, what it takes its data from at the instance; a type of a library stands in
+the library.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+from archgen.diagnostics.element_origins import TreePath
+from archgen.diagnostics.source_span import Span
+from archgen.passes.patterns.architecture_view import ArchitectureView, Layer, find_instance
+from archgen.passes.patterns.edit_values import EditError, expand_value, fill_key, fill_pattern
+from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
+from archgen.passes.patterns.pattern_shapes import (
+    INNER_KEY,
+    Bindings,
+    ComponentBody,
+    PatternEntry,
+    PortReference,
+    ScalarText,
+    ViewValue,
+)
+from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside
+from archgen.passes.patterns.view_words import VIRTUAL_KEYS
+from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+
+_ID = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_MAX_ID_LENGTH = 64
+_ID_SECTIONS = frozenset({"inputs", "outputs", "operations"})
+_DECLARED_SECTIONS = frozenset({"inputs", "outputs", "parameters", "operations"})
+"""What an instance has from its type alone: what is new there goes to the type."""
+_WIRING_KEYS = frozenset({"from", "external"})
+"""Keys of an input that its component says, whatever it is made from."""
+_JOINED_LISTS = frozenset({"requirements", "tags"})
+"""Lists that an instance adds to."""
+_PATH_OF_LEAF = 3
+
+DataPath = tuple[str, ...]
+
+
+class TreeEditor:
+    """Applies edits of rules to the tree of a view, and tells the view."""
+
+    def __init__(self, view: ArchitectureView) -> None:
+        """Take the view of the tree."""
+        self._view = view
+        self._tree = view.tree
+        self.has_new_names = False
+        """Whether components or outputs came or went: references may be taken for others."""
+
+    def apply(self, edits: Sequence[RuleEdit], bindings: Bindings, origin: TreePath) -> bool:
+        """Write what a rule writes under some bindings; say whether that changed anything. Raise EditError.
+
+        `origin` is where what the rule found is written.
+        """
+        count = self._tree.edit_count
+        for edit in edits:
+            for entry in edit.pattern.components:
+                self._edit_component(edit.kind, entry, bindings, origin)
+            for entry in edit.pattern.types:
+                self._edit_type(edit.kind, entry, bindings, origin)
+        return self._tree.edit_count != count
+
+    def _edit_component(self, kind: EditKind, entry: PatternEntry, bindings: Bindings, origin: TreePath) -> None:
+        key, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
+        is_known = key in self._view.elements
+        if kind == "drop":
+            if is_known and value is None:
+                self._tree.drop(self._view.elements[key].path)
+                self._view.remove_element(key)
+                self.has_new_names = True
+            elif is_known and isinstance(value, dict):
+                for name, each in value.items():
+                    self._drop(key, (name,), each)
+            return
+        if value is not None and not isinstance(value, dict):
+            message = f"`{key}` is to be a component, and what is written of it is no mapping"
+            raise EditError(message)
+        if not is_known:
+            self._add_component(key, value or {}, origin)
+            return
+        element = self._view.elements[key]
+        form = {"type": COMPONENT_TYPE_FORM, "group": GROUP_FORM}.get(element.kind, COMPONENT_FORM)
+        expanded = expand_value({k: v for k, v in (value or {}).items() if k not in VIRTUAL_KEYS and k != INNER_KEY}, form)
+        for name, each in expanded.items() if isinstance(expanded, dict) else ():
+            self._write(kind, key, (name,), each)
+
+    def _add_component(self, key: str, value: Mapping[str, ViewValue], origin: TreePath) -> None:
+        parent, dot, name = key.rpartition(".")
+        if not _ID.match(name) or len(name) > _MAX_ID_LENGTH:
+            message = f"`{name}` is no id, so nothing can be called so"
+            raise EditError(message, "`snake(...)` in `let` makes one of any text")
+        kind = str(value.get("kind", "component"))
+        is_group = not dot and kind == "group"
+        if dot and parent not in self._view.elements:
+            message = f"`{key}` is to stand in `{parent}`, which there is not"
+            raise EditError(message, "its path begins with that of what it stands in: `$outer.name`")
+        if dot and find_instance(self._view, parent):
+            message = f"`{key}` is to stand in an instance, which has what its type has"
+            raise EditError(message, f"write it into the type of `{parent}`: `kind: type` finds types")
+        type_name = self._view.elements[parent].type_name if dot else None if is_group else name
+        path = (
+            (*self._view.elements[parent].path, INNER_KEY, name)
+            if dot
+            else ("groups", name)
+            if is_group
+            else ("component_types", name)
+        )
+        form = COMPONENT_FORM if dot else GROUP_FORM if is_group else COMPONENT_TYPE_FORM
+        copied_from = value.path if isinstance(value, ComponentBody) else ""
+        body, sources = _split_sources({k: v for k, v in value.items() if k not in VIRTUAL_KEYS}, copied_from)
+        span = self._tree.find_place(origin)
+        self._tree.set(path, self._make_node(expand_value(body, form), span, copied_from), origin)
+        inner_ids = (*self._view.elements[parent].inner_ids, name) if dot else ()
+        element_kind: ElementKind = "component" if dot else "group" if is_group else "type"
+        element = ViewElement(key, name, element_kind, parent if dot else None, path, type_name, inner_ids)
+        self._view.add_element(element)
+        for inner in list_inside(self._tree.get(path), key, path, type_name, inner_ids, frozenset()):
+            self._view.add_element(inner)
+        self.has_new_names = True
+        for data_path, each in sources:
+            self._write("set", key, data_path, each)
+
+    def _edit_type(self, kind: EditKind, entry: PatternEntry, bindings: Bindings, origin: TreePath) -> None:
+        name, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
+        is_known = self._view.get_type(name) is not None
+        path: TreePath = self._view.type_paths.get(name, ("types", name))
+        if kind == "drop":
+            self._drop_at(path, value) if is_known else None
+        else:
+            expanded = expand_value(value, DATA_TYPE_FORM)
+            span = self._tree.find_place(path if is_known else origin)
+            self._merge_data(kind, path, expanded, span, path if is_known else origin)
+        self._view.note_type_edit()
+
+    def _merge_data(self, kind: EditKind, path: TreePath, value: ViewValue, span: Span, source: TreePath) -> None:
+        """Write plain data over what stands at a path."""
+        present = self._tree.get(path)
+        if isinstance(value, dict) and value and isinstance(present, MappingNode):
+            for name, each in value.items():
+                self._merge_data(kind, (*path, name), each, span, source)
+        elif kind == "add" and isinstance(value, list) and isinstance(present, SequenceNode):
+            for item in value:
+                self._tree.append(path, self._make_node(item, span), source)
+        elif kind == "set" or present is None or _is_empty(present):
+            self._tree.set(path, self._make_node(value, span), source)
+        elif not _is_same(present, value) and not (isinstance(value, dict) and not value):
+            message = f"`add` finds another value at `{'.'.join(map(str, path))}`"
+            raise EditError(message, "`set` replaces it")
+
+    def _drop_at(self, path: TreePath, value: ViewValue) -> None:
+        """Take a leaf, a key or items of a list out of plain data."""
+        present = self._tree.get(path)
+        if value is None or (isinstance(present, ScalarNode) and value == present.text):
+            self._tree.drop(path)
+        elif isinstance(value, dict) and isinstance(present, MappingNode):
+            for name, each in value.items():
+                self._drop_at((*path, name), each)
+        elif isinstance(value, list) and isinstance(present, SequenceNode):
+            self._drop_items(path, present, [str(item) for item in value if isinstance(item, str)])
+
+    def _drop(self, key: str, path: DataPath, value: ViewValue) -> None:
+        """Take something out of all places that a component has it from."""
+        if isinstance(value, dict):
+            for name, each in value.items():
+                self._drop(key, (*path, name), each)
+            return
+        for layer in self._view.list_layers(key):
+            count = self._tree.edit_count
+            self._drop_at((*layer.path, *path), value)
+            if self._tree.edit_count != count:
+                self.has_new_names |= path[0] == "outputs"
+                self._note(key, layer, path)
+
+    def _drop_items(self, path: TreePath, sequence: SequenceNode, texts: Sequence[str]) -> None:
+        for number in range(len(sequence.items) - 1, -1, -1):
+            item = sequence.items[number]
+            if isinstance(item, ScalarNode) and (self._view.find_reference(item) or item.text) in texts:
+                self._tree.drop((*path, number))
+        if not sequence.items:
+            self._tree.drop(path)
+
+    def _write(self, kind: EditKind, key: str, path: DataPath, value: ViewValue) -> None:
+        """Write a value at a path of a component: mappings key by key, where there is one already."""
+        present = _get(self._view.get_component(key), path)
+        if isinstance(value, dict) and isinstance(present, dict):
+            for name, each in value.items():
+                self._write(kind, key, (*path, name), each)
+            return
+        if isinstance(value, dict) and present is not None and kind == "add":
+            message = f"`add` finds a value at `{'.'.join(path)}` of `{key}`, where it is to write a mapping"
+            raise EditError(message, "`set` replaces it")
+        if path[0] in _ID_SECTIONS and len(path) > 1 and present is None and not _ID.match(path[1]):
+            message = f"`{path[1]}` is no id, so no port can be called so"
+            raise EditError(message, "`snake(...)` in `let` makes one of any text")
+        if present is not None and present == value:
+            return
+        layer = self._choose_layer(key, path, present)
+        writer = self._view.type_keys.get(layer.type_name or "", key) if layer.type_name else key
+        target: TreePath = (*layer.path, *path)
+        source = self._find_source(layer, path)
+        span = self._tree.find_place(source)
+        is_list_of_sources = path[-1] == "from" and (len(path) == 1 or path[0] in {"inputs", "outputs"})
+        if is_list_of_sources:
+            self._write_sources(kind, target, value, writer, source, is_output=path[0] == "outputs")
+        elif isinstance(value, dict) and path[0] in {"inputs", "outputs"}:
+            self._write_port(kind, key, layer, path, value, source)
+            return
+        elif kind == "add" and isinstance(value, list):
+            for item in value:
+                self._tree.append(target, self._make_node(item, span), source)
+        elif kind == "add" and present is not None:
+            message = f"`add` finds `{present}` at `{'.'.join(path)}` of `{key}`, and not `{value}`"
+            raise EditError(message, "`set` replaces it")
+        else:
+            self._tree.set(target, self._make_node(self._name_types(path, value, layer), span), source)
+        self._note(key, layer, path)
+
+    def _write_port(
+        self, kind: EditKind, key: str, layer: Layer, path: DataPath, value: Mapping[str, ViewValue], source: TreePath
+    ) -> None:
+        """Write a port that is new, or a section of new ports: first that it is there, then each of its keys."""
+        self._tree.set((*layer.path, *path), self._make_node({}, self._tree.find_place(source)), source)
+        self._note(key, layer, path)
+        for name, each in value.items():
+            self._write(kind, key, (*path, name), each)
+
+    def _write_sources(
+        self, kind: EditKind, target: TreePath, value: ViewValue, writer: str, source: TreePath, *, is_output: bool
+    ) -> None:
+        span = self._tree.find_place(source)
+        nodes: list[YamlNode] = []
+        for item in value if isinstance(value, list) else [value]:
+            reference = self._find_target(item, writer, is_output=is_output)
+            words = self._view.references.write(reference, writer, is_output=is_output)
+            if words is None:
+                message = f"`{reference}` cannot be named at `{writer}`: it lies outside of what is seen from there"
+                raise EditError(message, "lead it through the ports of what stands around")
+            node = ScalarNode(words, words, reference.span or span)
+            self._view.remember_reference(node, reference, writer, is_output=is_output)
+            nodes.append(node)
+        if kind == "set":
+            self._tree.set(target, SequenceNode(nodes, span), source)
+        for node in nodes if kind == "add" else ():
+            self._tree.append(target, node, source)
+
+    def _find_target(self, item: ViewValue, writer: str, *, is_output: bool) -> PortReference:
+        if isinstance(item, PortReference):
+            return item
+        text = str(item) if isinstance(item, str) else ""
+        if text.startswith("self."):
+            shell = writer if is_output else self._view.elements[writer].parent
+            return PortReference(shell or "", text.removeprefix("self."), holder=shell or "")
+        if text in self._view.elements:
+            return PortReference(text, None)
+        component, _, port = text.rpartition(".")
+        if component not in self._view.elements:
+            message = f"`{text}` is no port and no component"
+            raise EditError(message, "a source is a path and a port: `$source.$port`, or `self.$port`")
+        return PortReference(component, port)
+
+    def _choose_layer(self, key: str, path: DataPath, present: ViewValue) -> Layer:
+        """Return the place that a value at a path belongs to: its own, or that of a type."""
+        layers = self._view.list_layers(key)
+        own = layers[0]
+        is_reference = self._view.elements[key].kind == "component" and "same_as" in own.node.entries
+        if path[0] == "inputs" and (path[_PATH_OF_LEAF - 1 :] or ("",))[0] in _WIRING_KEYS:
+            return own
+        if len(layers) == 1 or (path == ("from",)) or (path[0] in _JOINED_LISTS and not is_reference):
+            return own
+        for layer in layers[1:] if is_reference and path[0] != "title" else layers:
+            written = _get_node(layer.node, path)
+            if written is not None:
+                # What a generic name stands for is the instance's: the type says the name.
+                is_bound = isinstance(written, ScalarNode) and isinstance(present, str) and written.text != present
+                return own if is_bound and layer is not own and not is_reference else layer
+        if len(path) > 1:
+            declaring = [layer for layer in layers if _get_node(layer.node, path[:2]) is not None]
+            if declaring:
+                return declaring[-1]
+        if is_reference or (path[0] in _DECLARED_SECTIONS and self._view.elements[key].kind != "type"):
+            return layers[1]
+        return own
+
+    def _find_source(self, layer: Layer, path: DataPath) -> TreePath:
+        """Return the innermost thing on the way to a value that is written."""
+        for length in range(len(path), 0, -1):
+            if self._tree.get((*layer.path, *path[:length])) is not None:
+                return (*layer.path, *path[:length])
+        return layer.path
+
+    def _note(self, key: str, layer: Layer, path: DataPath) -> None:
+        if path[0] == "outputs":
+            self.has_new_names = True
+            self._view.references.forget_names()
+        self._view.note_edit(key, layer)
+
+    def _name_types(self, path: DataPath, value: ViewValue, layer: Layer) -> ViewValue:
+        """Return the name of a component type as it is written at a layer: in a library without its library."""
+        if path not in {("is",), ("same_as",)} or not isinstance(value, str):
+            return value
+        name = self._view.write_type_name(value)
+        return name.removeprefix(f"{layer.path[1]}.") if layer.path[0] == "libraries" else name
+
+    def _make_node(self, value: ViewValue, span: Span, copied_from: str = "") -> YamlNode:
+        """Return plain data as a tree. What a copy names inside of itself is written as it was."""
+        if isinstance(value, dict):
+            entries = {
+                key: MappingEntry(key, span, self._make_node(each, span, copied_from)) for key, each in value.items()
+            }
+            return MappingNode(entries, span)
+        if isinstance(value, list):
+            return SequenceNode([self._make_node(item, span, copied_from) for item in value], span)
+        if isinstance(value, PortReference):
+            words = value.written if _lies_inside(value, copied_from) else str(value)
+            return ScalarNode(words, words, value.span or span)
+        if isinstance(value, ScalarText):
+            return ScalarNode(value.value, str(value), value.span or span)
+        return ScalarNode(value, value or "", span)
+
+
+def _split_sources(
+    body: dict[str, ViewValue], copied_from: str
+) -> tuple[dict[str, ViewValue], list[tuple[DataPath, ViewValue]]]:
+    """Return what a new component has without what its ports take data from, and that by path.
+
+    What a copy names inside of itself stays: it means the copy's own.
+    """
+    kept, sources = dict(body), list[tuple[DataPath, ViewValue]]()
+    if "from" in body and not _is_inside(body["from"], copied_from):
+        sources.append((("from",), kept.pop("from")))
+    for side in ("inputs", "outputs"):
+        ports = kept.get(side)
+        if not isinstance(ports, dict):
+            continue
+        kept[side] = kept_ports = dict(ports)
+        for name, port in ports.items():
+            if isinstance(port, dict) and "from" in port and not _is_inside(port["from"], copied_from):
+                kept_ports[name] = {key: each for key, each in port.items() if key != "from"}
+                sources.append(((side, name, "from"), port["from"]))
+    return kept, sources
+
+
+def _is_inside(sources: ViewValue, copied_from: str) -> bool:
+    items = sources if isinstance(sources, list) else [sources]
+    return all(_lies_inside(item, copied_from) for item in items)
+
+
+def _lies_inside(item: ViewValue, copied_from: str) -> bool:
+    is_reference = isinstance(item, PortReference) and bool(copied_from)
+    return is_reference and f"{item.holder or item.component}.".startswith(f"{copied_from}.")  # type: ignore[union-attr]
+
+
+def _get(value: ViewValue, path: DataPath) -> ViewValue:
+    for key in path:
+        if not isinstance(value, dict) or key not in value:
+            return None
+        value = value[key]
+    return value
+
+
+def _get_node(node: YamlNode | None, path: DataPath) -> YamlNode | None:
+    for key in path:
+        node = node.get(key) if isinstance(node, MappingNode) else None
+    return node
+
+
+def _is_empty(node: YamlNode) -> bool:
+    return isinstance(node, ScalarNode) and node.value is None
+
+
+def _is_same(node: YamlNode, value: ViewValue) -> bool:
+    return isinstance(node, ScalarNode) and isinstance(value, str) and node.text == value
