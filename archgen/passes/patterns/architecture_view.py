@@ -46,11 +46,13 @@ class ArchitectureView:
         self.elements: dict[str, ViewElement] = {}
         self._order: dict[str, int] = {}
         self._next_number = 0
+        self._keys: tuple[str, ...] | None = None
         self._bodies: dict[str, dict[str, ViewValue]] = {}
         self._expanded: dict[str, MappingNode] = {}
         self._users: dict[str, set[str]] = {}
         self._tokens: dict[str, tuple[IndexToken, ...]] = {}
         self._postings: dict[IndexToken, dict[str, None]] = {}
+        self._sorted: dict[IndexToken, list[str]] = {}
         self._stale: dict[str, None] = {}
         self._resolved: dict[int, tuple[ScalarNode, PortReference]] = {}
         self._written: dict[int, tuple[ScalarNode, str, bool]] = {}
@@ -71,7 +73,9 @@ class ArchitectureView:
 
     def list_components(self) -> Sequence[str]:
         """Return the paths of all components, in order."""
-        return tuple(self.elements)
+        if self._keys is None:
+            self._keys = tuple(self.elements)
+        return self._keys
 
     def get_component(self, path: str) -> dict[str, ViewValue] | None:
         """Return what a component has, None where there is none."""
@@ -84,7 +88,9 @@ class ArchitectureView:
     def find_having(self, token: IndexToken) -> Sequence[str]:
         """Return the paths of the components that the index knows by a token, in order."""
         self._renew_index()
-        return sorted(self._postings.get(token, ()), key=self._order.__getitem__)
+        if token not in self._sorted:
+            self._sorted[token] = sorted(self._postings.get(token, ()), key=self._order.__getitem__)
+        return self._sorted[token]
 
     def count_having(self, token: IndexToken) -> int:
         """Return how many components the index knows by a token."""
@@ -171,6 +177,7 @@ class ArchitectureView:
             element = self.elements[inner]
             self._mark_stale(inner)
             del self.elements[inner], self._order[inner]
+            self._keys = None
             if element.kind == "type" and element.type_name:
                 del self.type_keys[element.type_name]
             if element.type_name is not None:
@@ -181,6 +188,7 @@ class ArchitectureView:
 
     def _add(self, element: ViewElement) -> None:
         self.elements[element.key] = element
+        self._keys = None
         self._order[element.key] = self._next_number
         self._next_number += 1
         self._mark_stale(element.key)
@@ -319,12 +327,14 @@ class ArchitectureView:
         for key in stale_keys:
             for token in self._tokens.pop(key, ()):
                 del self._postings[token][key]
+                self._sorted.pop(token, None)
             body = self.get_component(key)
             if body is not None:
                 tokens = tuple(dict.fromkeys(list_tokens(body)))
                 self._tokens[key] = tokens
                 for token in tokens:
                     self._postings.setdefault(token, {})[key] = None
+                    self._sorted.pop(token, None)
 
     def _read_types(self) -> dict[str, dict[str, ViewValue]]:
         if self._types is None:

@@ -146,10 +146,10 @@ class _Search(NamedTuple):
                     return None
             else:
                 bindings = {**bindings, key.name: name}
-            if kind == "component" and any(
-                bindings.get(other) == name for other in self.distinct if other != key.name
-            ):
-                return None
+            if kind == "component":
+                for other in self.distinct:
+                    if other != key.name and bindings.get(other) == name:
+                        return None
             return bindings
         return next(match_value(key, name, bindings, self.budget), None)
 
@@ -222,18 +222,8 @@ def resolve_text(pattern: Pattern, bindings: Bindings) -> str | None:
 def match_value(pattern: Pattern, value: ViewValue, bindings: Bindings, budget: MatchBudget) -> Iterator[Bindings]:
     """Yield the bindings under which a value is what a pattern asks for."""
     budget.spend()
-    if isinstance(pattern, Anything):
-        yield bindings
-    elif isinstance(pattern, Variable):
-        if pattern.name not in bindings:
-            yield {**bindings, pattern.name: value}
-        elif bindings[pattern.name] == value:
-            yield bindings
-    elif isinstance(pattern, Constant):
-        if pattern.text == value:
-            yield bindings
-    elif isinstance(pattern, TextPattern):
-        bound = _match_text(pattern, value, bindings)
+    if not isinstance(pattern, _BRANCHING_PATTERNS):
+        bound = _match_leaf(pattern, value, bindings)
         if bound is not None:
             yield bound
     elif isinstance(pattern, ListPattern):
@@ -245,25 +235,59 @@ def match_value(pattern: Pattern, value: ViewValue, bindings: Bindings, budget: 
         yield from _match_term(pattern, value, bindings, budget)
 
 
+_BRANCHING_PATTERNS = (ListPattern, MappingPattern)
+"""Patterns that a value may match in several ways."""
+
+
+def _match_leaf(pattern: Pattern, value: ViewValue, bindings: Bindings) -> Bindings | None:
+    """Return the bindings under which a value is what a pattern asks for, None where it is not."""
+    if isinstance(pattern, Variable):
+        if pattern.name not in bindings:
+            return {**bindings, pattern.name: value}
+        return bindings if bindings[pattern.name] == value else None
+    if isinstance(pattern, Constant):
+        return bindings if pattern.text == value else None
+    if isinstance(pattern, TextPattern):
+        return _match_text(pattern, value, bindings)
+    return bindings
+
+
 def _match_entries(
     entries: tuple[PatternEntry, ...], mapping: dict[str, ViewValue], bindings: Bindings, budget: MatchBudget
 ) -> Iterator[Bindings]:
-    if not entries:
-        yield bindings
-        return
-    # Keys that are known first: they leave the fewest ways.
-    chosen, key = 0, None
-    for index, entry in enumerate(entries):
-        key = resolve_text(entry.key, bindings)
-        if key is not None:
-            chosen = index
-            break
-    entry, rest = entries[chosen], entries[:chosen] + entries[chosen + 1 :]
-    if key is not None:
-        if key in mapping:
+    while entries:
+        # Keys that are known first: they leave the fewest ways.
+        chosen, key = 0, None
+        for index, entry in enumerate(entries):
+            key = resolve_text(entry.key, bindings)
+            if key is not None:
+                chosen = index
+                break
+        entry, rest = entries[chosen], entries[:chosen] + entries[chosen + 1 :]
+        if key is None:
+            yield from _match_each_key(entry, rest, mapping, bindings, budget)
+            return
+        if key not in mapping:
+            return
+        if isinstance(entry.value, _BRANCHING_PATTERNS):
             for bound in match_value(entry.value, mapping[key], bindings, budget):
                 yield from _match_entries(rest, mapping, bound, budget)
-        return
+            return
+        budget.spend()
+        matched = _match_leaf(entry.value, mapping[key], bindings)
+        if matched is None:
+            return
+        entries, bindings = rest, matched
+    yield bindings
+
+
+def _match_each_key(
+    entry: PatternEntry,
+    rest: tuple[PatternEntry, ...],
+    mapping: dict[str, ViewValue],
+    bindings: Bindings,
+    budget: MatchBudget,
+) -> Iterator[Bindings]:
     for name, value in mapping.items():
         for with_key in match_value(entry.key, name, bindings, budget):
             for bound in match_value(entry.value, value, with_key, budget):

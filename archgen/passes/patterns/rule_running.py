@@ -20,9 +20,9 @@ from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
 
 MAX_APPLICATIONS = 10_000
 """So often the rules of one pass may write something."""
-MATCH_STEPS = 3_000_000
+MATCH_STEPS = 1_000_000
 """So many steps matching may take in one pass: some seconds."""
-_STEPS_PER_COMPONENT = 1000
+_STEPS_PER_COMPONENT = 500
 """So many more for each component, so that large projects have room."""
 _MAX_NAMED = 4
 
@@ -65,14 +65,19 @@ class _RuleRunner:
         self._max_applications = max_applications
         self._editor = TreeEditor(view)
         self._count = 0
+        self._idle_at: dict[int, int] = {}
 
     def run(self) -> None:
         has_changed = True
         while has_changed:
             has_changed = False
-            for rule in self._pass.rules:
-                while self._run_rule(rule):
-                    has_changed = True
+            for number, rule in enumerate(self._pass.rules):
+                # What found nothing finds nothing in the same tree.
+                while self._idle_at.get(number) != self._view.tree.edit_count:
+                    if self._run_rule(rule):
+                        has_changed = True
+                    else:
+                        self._idle_at[number] = self._view.tree.edit_count
         if self._editor.has_new_names:
             keep_meanings(self._view)
 
