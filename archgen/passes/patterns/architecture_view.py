@@ -5,7 +5,7 @@ Worked out from the tree when it is asked for, and again after an edit of it, fo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compose.instance_overlay import InstanceOverlay
@@ -23,8 +23,6 @@ from archgen.passes.project_tree import ProjectTree
 from archgen.schema import fold_type_name
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
-VIRTUAL_KEYS = ("in", "id", "kind")
-"""What a view says of a component beside the language's own keys: these follow from where it stands."""
 _PORT_KEYS = ("inputs", "outputs")
 
 
@@ -55,7 +53,6 @@ class ArchitectureView:
         self._sorted: dict[IndexToken, list[str]] = {}
         self._stale: dict[str, None] = {}
         self._resolved: dict[int, tuple[ScalarNode, PortReference]] = {}
-        self._written: dict[int, tuple[ScalarNode, str, bool]] = {}
         self._diagnostics: list[Diagnostic] = []
         self._type_entries = list_type_entries(tree.root)
         self._type_table = TypeTable(self._type_entries, self._diagnostics)
@@ -129,14 +126,9 @@ class ArchitectureView:
             layers.append(Layer(path_of_type(name), type_body, name))
         return layers
 
-    def remember_reference(self, node: ScalarNode, reference: PortReference, writer: str, *, is_output: bool) -> None:
+    def remember_reference(self, node: ScalarNode, reference: PortReference) -> None:
         """Keep what a reference that a rule wrote means."""
         self._resolved[id(node)] = (node, reference)
-        self._written[id(node)] = (node, writer, is_output)
-
-    def list_references(self) -> list[tuple[ScalarNode, str, bool, PortReference]]:
-        """Return all references with who writes them, whether at an output, and what they mean."""
-        return [(*self._written[key], reference) for key, (_, reference) in self._resolved.items()]
 
     def find_reference(self, node: YamlNode) -> PortReference | None:
         """Return what a reference in the tree means."""
@@ -260,8 +252,10 @@ class ArchitectureView:
         body.path = element.key
         if element.parent is not None:
             body["in"] = element.parent
+        # What a type's ports give on from inside is inside of what is made from it, too.
+        moves = {self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name}
         for entry in expanded:
-            body[entry.key] = self._read_value(entry.value)
+            body[entry.key] = self._read_value(entry.value, moves)
         for key in ("is", "same_as"):
             name = body.get(key)
             base = read_generic_name(name).base if isinstance(name, str) else ""
@@ -269,12 +263,15 @@ class ArchitectureView:
                 body[key] = self.type_keys[base] + name[len(base) :]
         return body
 
-    def _read_value(self, node: YamlNode) -> ViewValue:
+    def _read_value(self, node: YamlNode, moves: Mapping[str, str]) -> ViewValue:
         if isinstance(node, MappingNode):
-            return {entry.key: self._read_value(entry.value) for entry in node}
+            return {entry.key: self._read_value(entry.value, moves) for entry in node}
         if isinstance(node, SequenceNode):
-            return [self._read_value(item) for item in node.items]
-        return self.find_reference(node) or read_scalar(node)
+            return [self._read_value(item, moves) for item in node.items]
+        reference = self.find_reference(node)
+        if reference is None:
+            return read_scalar(node)
+        return _move_reference(reference, moves, node) if moves else reference
 
     def _resolve_sources(self, key: str) -> None:
         """Resolve what the ports of a component name in its own place: what its type writes is resolved there."""
@@ -284,14 +281,24 @@ class ArchitectureView:
         for port_key in _PORT_KEYS:
             ports = own.get(port_key)
             for port in ports if isinstance(ports, MappingNode) else ():
-                for item in _list_items(port.value.get("from") if isinstance(port.value, MappingNode) else None):
+                body = port.value if isinstance(port.value, MappingNode) else MappingNode({}, port.key_span)
+                for item in _list_items(body.get("from")):
                     self._resolve_item(item, key, is_output=port_key == "outputs")
+                for item in _list_items(body.get("to")):
+                    self._resolve_target(item, key)
 
     def _resolve_item(self, node: ScalarNode, key: str, *, is_output: bool) -> None:
         if id(node) not in self._resolved:
             reference = self.references.resolve(node.text, key, is_output=is_output, at=node)
             if reference is not None:
-                self.remember_reference(node, reference, key, is_output=is_output)
+                self.remember_reference(node, reference)
+
+    def _resolve_target(self, node: ScalarNode, key: str) -> None:
+        """Resolve what an output is written to: an input of a component beside it."""
+        name, _, port = node.text.rpartition(".")
+        reader = f"{self.elements[key].parent}.{name}"
+        if name and reader in self.elements:
+            self._resolved[id(node)] = (node, PortReference(reader, port, at=node))
 
     def _renew_type(self, name: str) -> None:
         """Read a component type from the tree again, and what is made from it."""
@@ -348,10 +355,20 @@ class ArchitectureView:
                 for entry in section if isinstance(section, MappingNode) else ():
                     name = fold_type_name(entry.key)
                     if name not in self._types:
-                        value = self._read_value(entry.value)
+                        value = self._read_value(entry.value, {})
                         self._types[name] = value if isinstance(value, dict) else {}
                         self.type_paths[name] = (*path, entry.key)
         return self._types
+
+
+def _move_reference(reference: PortReference, moves: Mapping[str, str], node: YamlNode) -> PortReference:
+    at = node if isinstance(node, ScalarNode) else None
+    for type_key, key in moves.items():
+        if reference.holder == type_key:
+            return PortReference(key, reference.port, holder=key, at=at)
+        if reference.component.startswith(f"{type_key}."):
+            return PortReference(key + reference.component[len(type_key) :], reference.port, at=at)
+    return reference
 
 
 def _read_library_type(root: MappingNode, library: str, name: str) -> MappingEntry | None:

@@ -88,6 +88,8 @@ def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewV
             message = "`specialise` takes all that a type has: `$body` in `components: {$name: $body}`"
             raise WrongValueError(message)
         return specialise(values[0], stands_for)
+    if operand.function == "without":
+        return _leave_out(values[0], [_ask_text(value, operand) for value in values[1:]])
     texts = [_ask_text(value, operand) for value in values]
     match operand.function:
         case "snake":
@@ -98,6 +100,18 @@ def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewV
             return _find_free_name(texts[0], view)
         case _:
             return "".join(texts)
+
+
+def _leave_out(value: ViewValue, left_out: Sequence[str]) -> ViewValue:
+    """Return a mapping without some of its keys, or a list without some of its items."""
+    if isinstance(value, list):
+        return [item for item in value if item not in left_out]
+    if not isinstance(value, dict):
+        message = "`without` takes a mapping or a list, and what it is to be without"
+        raise WrongValueError(message)
+    kept = ComponentBody({key: each for key, each in value.items() if key not in left_out})
+    kept.path = value.path if isinstance(value, ComponentBody) else ""
+    return kept
 
 
 def _ask_text(value: ViewValue, call: Call) -> str:

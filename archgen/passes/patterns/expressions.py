@@ -21,6 +21,7 @@ VALUE_FUNCTIONS: Mapping[str, tuple[int, int | None]] = {
     "join": (1, None),
     "unique": (1, 1),
     "specialise": (1, None),
+    "without": (2, None),
 }
 """The functions that give a value, with the least and the greatest number of what they take."""
 TEST_FUNCTIONS: Mapping[str, tuple[int, int | None]] = {"is_a": (2, 2)}

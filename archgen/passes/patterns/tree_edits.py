@@ -86,6 +86,10 @@ class TreeEditor:
         element = self._view.elements[key]
         form = {"type": COMPONENT_TYPE_FORM, "group": GROUP_FORM}.get(element.kind, COMPONENT_FORM)
         expanded = expand_value({k: v for k, v in (value or {}).items() if k not in VIRTUAL_KEYS and k != INNER_KEY}, form)
+        inner = value.get(INNER_KEY) if isinstance(value, ComponentBody) else None
+        for name, each in inner.items() if isinstance(inner, dict) else ():
+            if f"{key}.{name}" not in self._view.elements and not find_instance(self._view, key):
+                self._add_component(f"{key}.{name}", _copy_inner(each, key), origin)
         for name, each in expanded.items() if isinstance(expanded, dict) else ():
             self._write(kind, key, (name,), each)
 
@@ -241,7 +245,7 @@ class TreeEditor:
                 message = f"`{reference}` cannot be named at `{writer}`: it lies outside of what is seen from there"
                 raise EditError(message, "lead it through the ports of what stands around")
             node = ScalarNode(words, words, reference.span or span)
-            self._view.remember_reference(node, reference, writer, is_output=is_output)
+            self._view.remember_reference(node, reference)
             nodes.append(node)
         if kind == "set":
             self._tree.set(target, SequenceNode(nodes, span), source)
@@ -321,6 +325,13 @@ class TreeEditor:
         if isinstance(value, ScalarText):
             return ScalarNode(value.value, str(value), value.span or span)
         return ScalarNode(value, value or "", span)
+
+
+def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:
+    """Return what stands inside of a component as a part of its copy."""
+    copy = ComponentBody(body if isinstance(body, dict) else {})
+    copy.path = holder
+    return copy
 
 
 def _split_sources(
