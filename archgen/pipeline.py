@@ -470,8 +470,20 @@ def _merge_project(loaded_project: LoadedProject) -> _MergedProject:
         if "variants" in merged_table.entries
         else ()
     )
-    all_findings = (*merge_findings, *library_findings, *variant_findings)
+    pass_findings = _find_wrong_passes(loaded_project)
+    all_findings = (*merge_findings, *library_findings, *variant_findings, *pass_findings)
     return _MergedProject(loaded_project, merged_table, all_findings, reading_errors, damaged_elements)
+
+
+def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
+    is_folder = loaded_project.first_file == project.PROJECT_FILE
+    if not is_folder or not loaded_project.files.has_path(project.PASS_FOLDER.rstrip("/")):
+        return ()
+    # Imported here: hardly any project has passes of its own.
+    from archgen.passes.pass_shape import STATES
+    from archgen.passes.patterns.pass_files import find_wrong_passes
+
+    return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources, tuple(STATES)))
 
 
 def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:

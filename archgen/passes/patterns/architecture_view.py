@@ -6,33 +6,21 @@ Worked out from the tree when it is asked for, and again after an edit of it, fo
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
-from archgen.compose.instance_overlay import InstanceOverlay
-from archgen.compose.library_types import library_of_type, list_libraries, list_type_entries
-from archgen.compose.type_expressions import TypeExpression, parse_type_expression
-from archgen.compose.type_table import TypeTable, list_generic_names
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.element_origins import TreePath
 from archgen.model.generic_names import read_generic_name
-from archgen.passes.patterns.matching import IndexToken, list_tokens
+from archgen.passes.patterns.matching import IndexToken
 from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ScalarText, ViewValue
-from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements, path_of_type
+from archgen.passes.patterns.type_layers import Layer, TypeLayers
+from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements
+from archgen.passes.patterns.view_index import ComponentIndex
 from archgen.passes.patterns.view_references import ViewReferences
 from archgen.passes.project_tree import ProjectTree
 from archgen.schema import fold_type_name
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _PORT_KEYS = ("inputs", "outputs")
-
-
-class Layer(NamedTuple):
-    """One of the places in the tree that a component has its values from: its own, or that of a type."""
-
-    path: TreePath
-    node: MappingNode
-    type_name: str | None
-    """The type, None for the component's own place."""
 
 
 class ArchitectureView:
@@ -42,25 +30,19 @@ class ArchitectureView:
         """Take the tree of a merged project."""
         self.tree = tree
         self.elements: dict[str, ViewElement] = {}
-        self._order: dict[str, int] = {}
-        self._next_number = 0
         self._keys: tuple[str, ...] | None = None
+        self._index = ComponentIndex(self.get_component)
         self._bodies: dict[str, dict[str, ViewValue]] = {}
         self._expanded: dict[str, MappingNode] = {}
         self._users: dict[str, set[str]] = {}
-        self._tokens: dict[str, tuple[IndexToken, ...]] = {}
-        self._postings: dict[IndexToken, dict[str, None]] = {}
-        self._sorted: dict[IndexToken, list[str]] = {}
-        self._stale: dict[str, None] = {}
         self._resolved: dict[int, tuple[ScalarNode, PortReference]] = {}
-        self._diagnostics: list[Diagnostic] = []
-        self._type_entries = list_type_entries(tree.root)
-        self._type_table = TypeTable(self._type_entries, self._diagnostics)
+        self._component_types = TypeLayers(tree.root)
         self._types: dict[str, dict[str, ViewValue]] | None = None
         self.type_paths: dict[str, TreePath] = {}
         self.references = ViewReferences(self.elements, self._list_outputs)
-        inherited_ids = {name: self._list_inherited(name) for name in self._type_entries}
-        for element in list_elements(tree.root, self._type_entries, inherited_ids):
+        type_entries = self._component_types.entries
+        inherited_ids = {name: self._component_types.list_inherited(name) for name in type_entries}
+        for element in list_elements(tree.root, type_entries, inherited_ids):
             self._add(element)
         self.type_keys = {each.type_name: key for key, each in self.elements.items() if each.kind == "type"}
         for key in self.elements:
@@ -84,15 +66,11 @@ class ArchitectureView:
 
     def find_having(self, token: IndexToken) -> Sequence[str]:
         """Return the paths of the components that the index knows by a token, in order."""
-        self._renew_index()
-        if token not in self._sorted:
-            self._sorted[token] = sorted(self._postings.get(token, ()), key=self._order.__getitem__)
-        return self._sorted[token]
+        return self._index.find_having(token)
 
     def count_having(self, token: IndexToken) -> int:
         """Return how many components the index knows by a token."""
-        self._renew_index()
-        return len(self._postings.get(token, ()))
+        return self._index.count_having(token)
 
     def list_types(self) -> Sequence[str]:
         """Return the names of all conceptual types, in order."""
@@ -117,14 +95,8 @@ class ArchitectureView:
         element = self.elements[key]
         node = self._node_of(element)
         body = node if isinstance(node, MappingNode) else MappingNode({}, self.tree.find_place(element.path))
-        layers = [Layer(element.path, body, None)]
-        seen: set[str] = {element.type_name} if element.kind == "type" and element.type_name else set()
-        while (name := self._find_type_name(layers[-1].node)) is not None and name not in seen:
-            seen.add(name)
-            entry = self._type_entries[name]
-            type_body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
-            layers.append(Layer(path_of_type(name), type_body, name))
-        return layers
+        own_type = element.type_name if element.kind == "type" else None
+        return self._component_types.list_layers(Layer(element.path, body, None), own_type)
 
     def remember_reference(self, node: ScalarNode, reference: PortReference) -> None:
         """Keep what a reference that a rule wrote means."""
@@ -168,7 +140,7 @@ class ArchitectureView:
         for inner in [each for each in self.elements if each == key or each.startswith(f"{key}.")]:
             element = self.elements[inner]
             self._mark_stale(inner)
-            del self.elements[inner], self._order[inner]
+            del self.elements[inner]
             self._keys = None
             if element.kind == "type" and element.type_name:
                 del self.type_keys[element.type_name]
@@ -181,37 +153,19 @@ class ArchitectureView:
     def _add(self, element: ViewElement) -> None:
         self.elements[element.key] = element
         self._keys = None
-        self._order[element.key] = self._next_number
-        self._next_number += 1
+        self._index.add(element.key)
         self._mark_stale(element.key)
 
     def _node_of(self, element: ViewElement) -> YamlNode | None:
         if element.type_name is None:
             return self.tree.get(element.path)
         # The types of libraries name one another without their library: here they are as the project knows them.
-        entry = self._type_entries.get(element.type_name)
+        entry = self._component_types.entries.get(element.type_name)
         node = entry.value if entry else None
         for inner_id in element.inner_ids:
             components = node.get("components") if isinstance(node, MappingNode) else None
             node = components.get(inner_id) if isinstance(components, MappingNode) else None
         return node
-
-    def _find_type_name(self, node: MappingNode) -> str | None:
-        reference = node.get("same_as" if "same_as" in node.entries else "is")
-        expression = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
-        return expression.name if expression and expression.name in self._type_entries else None
-
-    def _list_inherited(self, name: str) -> frozenset[str]:
-        entry = self._type_entries[name]
-        base = self._find_type_name(entry.value) if isinstance(entry.value, MappingNode) else None
-        seen, ids = {name}, set[str]()
-        while base is not None and base not in seen:
-            seen.add(base)
-            body = self._type_entries[base].value
-            components = body.get("components") if isinstance(body, MappingNode) else None
-            ids.update(components.entries if isinstance(components, MappingNode) else ())
-            base = self._find_type_name(body) if isinstance(body, MappingNode) else None
-        return frozenset(ids)
 
     def _expand(self, key: str) -> MappingNode:
         """Return what a component has with all of its types laid under it."""
@@ -220,27 +174,14 @@ class ArchitectureView:
             for layer in layers:
                 if layer.type_name is not None:
                     self._users.setdefault(layer.type_name, set()).add(key)
-            self._expanded[key] = self._lay_layers(self.elements[key], layers)
+            element, own = self.elements[key], layers[0].node
+            is_type = element.kind == "type" and element.type_name in self._component_types.entries
+            self._expanded[key] = (
+                self._component_types.lay_type(str(element.type_name), own)
+                if is_type
+                else self._component_types.lay_instance(own, key)
+            )
         return self._expanded[key]
-
-    def _lay_layers(self, element: ViewElement, layers: list[Layer]) -> MappingNode:
-        own = layers[0].node
-        if element.kind == "type" and element.type_name in self._type_entries:
-            expression = TypeExpression(element.type_name, list_generic_names(self._type_entries[element.type_name]))
-            body = self._type_table.get_body(expression)
-            return MappingNode({**(body.entries if body else {}), **self._keep_own_keys(own, body)}, own.span)
-        reference = own.get("same_as" if "same_as" in own.entries else "is")
-        expression = self._type_table.find_type(reference, element.key) if isinstance(reference, ScalarNode) else None
-        type_body = self._type_table.get_body(expression) if expression else None
-        if type_body is None:
-            return own
-        overlay = InstanceOverlay(self._diagnostics, self._type_table.may_replace)
-        return overlay.lay_over_instance(type_body, own, element.key)
-
-    @staticmethod
-    def _keep_own_keys(own: MappingNode, body: MappingNode | None) -> dict[str, MappingEntry]:
-        known_keys = body.entries if body else {}
-        return {entry.key: entry for entry in own if entry.key not in known_keys}
 
     def _list_outputs(self, key: str) -> Sequence[str]:
         outputs = self._expand(key).get("outputs")
@@ -253,7 +194,9 @@ class ArchitectureView:
         if element.parent is not None:
             body["in"] = element.parent
         # What a type's ports give on from inside is inside of what is made from it, too.
-        moves = {self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name}
+        moves = {
+            self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name
+        }
         for entry in expanded:
             body[entry.key] = self._read_value(entry.value, moves)
         for key in ("is", "same_as"):
@@ -302,17 +245,7 @@ class ArchitectureView:
 
     def _renew_type(self, name: str) -> None:
         """Read a component type from the tree again, and what is made from it."""
-        library = library_of_type(name)
-        if library is None:
-            types = self.tree.root.get("component_types")
-            fresh_entry = types.entries.get(name) if isinstance(types, MappingNode) else None
-        else:
-            fresh_entry = _read_library_type(self.tree.root, library, name)
-        if fresh_entry is None:
-            self._type_entries.pop(name, None)
-        else:
-            self._type_entries[name] = fresh_entry
-        self._type_table = TypeTable(self._type_entries, self._diagnostics)
+        self._component_types.renew_type(self.tree.root, name)
         if name in self.type_keys:
             self._mark_stale(self.type_keys[name])
         for key in self._users.pop(name, ()):
@@ -321,27 +254,11 @@ class ArchitectureView:
     def _mark_stale(self, key: str) -> None:
         self._bodies.pop(key, None)
         self._expanded.pop(key, None)
-        self._stale[key] = None
+        self._index.mark_stale(key)
         element = self.elements.get(key)
         if element and element.kind == "type" and element.type_name in self._users:
             for user in self._users.pop(element.type_name):
                 self._mark_stale(user)
-
-    def _renew_index(self) -> None:
-        if not self._stale:
-            return
-        stale_keys, self._stale = self._stale, {}
-        for key in stale_keys:
-            for token in self._tokens.pop(key, ()):
-                del self._postings[token][key]
-                self._sorted.pop(token, None)
-            body = self.get_component(key)
-            if body is not None:
-                tokens = tuple(dict.fromkeys(list_tokens(body)))
-                self._tokens[key] = tokens
-                for token in tokens:
-                    self._postings.setdefault(token, {})[key] = None
-                    self._sorted.pop(token, None)
 
     def _read_types(self) -> dict[str, dict[str, ViewValue]]:
         if self._types is None:
@@ -369,21 +286,6 @@ def _move_reference(reference: PortReference, moves: Mapping[str, str], node: Ya
         if reference.component.startswith(f"{type_key}."):
             return PortReference(key + reference.component[len(type_key) :], reference.port, at=at)
     return reference
-
-
-def _read_library_type(root: MappingNode, library: str, name: str) -> MappingEntry | None:
-    """Return one component type of a library, as the project knows it."""
-    for entry in list_libraries(root):
-        types = entry.value.get("component_types") if isinstance(entry.value, MappingNode) else None
-        own_name = name.removeprefix(f"{library}.")
-        if entry.key == library and isinstance(types, MappingNode) and own_name in types.entries:
-            node: YamlNode = MappingNode({own_name: types.entries[own_name]}, types.span)
-            for key in (library, "libraries"):
-                held_key = "component_types" if key == library else library
-                node = MappingNode({held_key: MappingEntry(held_key, entry.key_span, node)}, entry.key_span)
-            held = MappingNode({"libraries": MappingEntry("libraries", entry.key_span, node)}, entry.key_span)
-            return list_type_entries(held).get(name)
-    return None
 
 
 def _list_items(node: YamlNode | None) -> list[ScalarNode]:

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.model.generic_names import write_generic_name
-from archgen.passes.patterns.matching import resolve_text
 from archgen.passes.patterns.pattern_shapes import (
     Anything,
     Bindings,
     Constant,
     ListPattern,
+    MappingPattern,
     Pattern,
     ScalarText,
+    TextPattern,
     Variable,
     ViewValue,
 )
+from archgen.passes.patterns.text_matching import resolve_text
 from archgen.schema.short_forms import ElementForm
 
 _TYPE_KEYS = frozenset({"type", "is", "same_as", "message"})
@@ -43,11 +45,15 @@ def fill_pattern(pattern: Pattern, bindings: Bindings, key: str = "") -> ViewVal
     if isinstance(pattern, ListPattern):
         return [fill_pattern(item, bindings, key) for item in pattern.items]
     text = resolve_text(pattern, bindings)
-    if text is not None:
-        return str(text)
-    if not hasattr(pattern, "entries"):
+    if isinstance(pattern, TextPattern) and text is not None:
+        return text
+    if not isinstance(pattern, MappingPattern):
         message = "a text is made of texts, and one of these variables stands for a list or a mapping"
         raise EditError(message)
+    return _fill_mapping(pattern, bindings, key)
+
+
+def _fill_mapping(pattern: MappingPattern, bindings: Bindings, key: str) -> ViewValue:
     entries = {fill_key(entry.key, bindings): entry.value for entry in pattern.entries}
     if key in _TYPE_KEYS and len(entries) == 1:
         return _fill_term(*next(iter(entries.items())), bindings)

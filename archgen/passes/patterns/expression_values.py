@@ -8,8 +8,8 @@ from typing import Protocol
 
 from archgen.compose.type_expressions import bind_type_name
 from archgen.passes.patterns.expressions import Call, Comparison, ListOperand, Operand, TextOperand
-from archgen.passes.patterns.matching import resolve_text
 from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
+from archgen.passes.patterns.text_matching import resolve_text
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
 _TYPE_KEYS = frozenset({"type", "is", "same_as"})
@@ -46,7 +46,9 @@ def holds(comparison: Comparison, bindings: Bindings, view: NamedElements) -> bo
 def _compare(comparison: Comparison, bindings: Bindings, view: NamedElements) -> bool:
     left = comparison.left
     if not comparison.operator:
-        name, wanted = (evaluate(each, bindings, view) for each in left.arguments) if isinstance(left, Call) else ("", "")
+        name, wanted = (
+            (evaluate(each, bindings, view) for each in left.arguments) if isinstance(left, Call) else ("", "")
+        )
         return isinstance(name, str) and isinstance(wanted, str) and view.is_a(name, wanted)
     value = evaluate(left, bindings, view)
     other = evaluate(comparison.right, bindings, view) if comparison.right else None
@@ -70,7 +72,7 @@ def _has(holder: ViewValue, value: ViewValue) -> bool:
     return isinstance(holder, (dict, str)) and isinstance(value, str) and value in holder
 
 
-def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:
+def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: PLR0911 - one for each function
     """Return what an operand stands for. Raise WrongValueError."""
     if isinstance(operand, TextOperand):
         if isinstance(operand.pattern, Variable):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.passes.patterns.pattern_shapes import Pattern, list_variables, parse_text_pattern
 
-_TOKEN = re.compile(r"""\s*(==|!=|[()\[\],]|"[^"]*"|'[^']*'|=|[^\s()\[\],="'!]+|\S)""")
+_WORD = re.compile(r"""\s*(==|!=|[()\[\],]|"[^"]*"|'[^']*'|=|[^\s()\[\],="'!]+|\S)""")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _QUOTES = ('"', "'")
 MAX_EXPRESSION_LENGTH = 1000
@@ -79,7 +79,9 @@ def parse_comparison(text: str) -> Comparison:
     if not operator:
         if not isinstance(left, Call) or left.function not in TEST_FUNCTIONS:
             message = f"`{text}` compares nothing"
-            raise ExpressionError(message, f"write one of {', '.join(f'`{each}`' for each in OPERATORS)} between two values")
+            raise ExpressionError(
+                message, f"write one of {', '.join(f'`{each}`' for each in OPERATORS)} between two values"
+            )
         reader.expect_end()
         return Comparison(left, is_negated=is_negated)
     right = reader.read_operand()
@@ -125,13 +127,13 @@ class _Reader:
             message = f"an expression of {len(text):,} letters; at most {MAX_EXPRESSION_LENGTH:,} are read"
             raise ExpressionError(message, "give its parts names with `let`")
         self._text = text
-        self._tokens = [match[1] for match in _TOKEN.finditer(text)]
+        self._words = [match[1] for match in _WORD.finditer(text)]
         self._at = 0
         self._depth = 0
 
     def _peek(self, offset: int = 0) -> str:
         index = self._at + offset
-        return self._tokens[index] if index < len(self._tokens) else ""
+        return self._words[index] if index < len(self._words) else ""
 
     def take_word(self, word: str) -> bool:
         if self._peek() == word and self._peek(1) not in {"", *OPERATORS, "starts"}:
@@ -140,16 +142,16 @@ class _Reader:
         return False
 
     def read_operator(self) -> str:
-        token = self._peek()
-        if token == "starts" and self._peek(1) == "with":
+        word = self._peek()
+        if word == "starts" and self._peek(1) == "with":
             self._at += 2
             return "starts with"
-        if token in OPERATORS:
+        if word in OPERATORS:
             self._at += 1
-            return token
-        if token and token not in {")", "]", ","}:
-            guess = did_you_mean(token, OPERATORS)
-            message = f"`{token}` is no comparison"
+            return word
+        if word and word not in {")", "]", ","}:
+            guess = did_you_mean(word, OPERATORS)
+            message = f"`{word}` is no comparison"
             raise ExpressionError(message, guess or f"there are {', '.join(f'`{each}`' for each in OPERATORS)}")
         return ""
 
@@ -163,22 +165,26 @@ class _Reader:
         return operand
 
     def _read_operand(self) -> Operand:
-        token = self._peek()
-        if not token or token in {"==", "!=", ")", "]", ",", "=", "("}:
-            found = f"`{token}`" if token else "the end"
+        word = self._peek()
+        if not word or word in {"==", "!=", ")", "]", ",", "=", "("}:
+            found = f"`{word}`" if word else "the end"
             message = f"a value is missing before {found} in `{self._text}`"
             raise ExpressionError(message)
         self._at += 1
-        if token == "[":
-            return ListOperand(tuple(self._read_items("]")))
-        if token.startswith(_QUOTES):
-            if len(token) == 1:
+        if word == "[":
+            items = list(self._read_items("]"))
+            if not all(isinstance(item, _OPERANDS) for item in items):
+                message = f"a list has no names: `=` is too much in `{self._text}`"
+                raise ExpressionError(message)
+            return ListOperand(tuple(item for item in items if isinstance(item, _OPERANDS)))
+        if word.startswith(_QUOTES):
+            if len(word) == 1:
                 message = f"a quote is not closed in `{self._text}`"
                 raise ExpressionError(message)
-            return TextOperand(parse_text_pattern(token[1:-1], token[1:-1], None))
+            return TextOperand(parse_text_pattern(word[1:-1], word[1:-1], None))
         if self._peek() == "(":
-            return self._read_call(token)
-        return TextOperand(parse_text_pattern(token, token, None))
+            return self._read_call(word)
+        return TextOperand(parse_text_pattern(word, word, None))
 
     def _read_call(self, function: str) -> Call:
         known_functions = {**VALUE_FUNCTIONS, **TEST_FUNCTIONS}
@@ -188,7 +194,7 @@ class _Reader:
             raise ExpressionError(message, guess or f"there are {', '.join(f'`{each}`' for each in known_functions)}")
         self._at += 1
         items = list(self._read_items(")"))
-        arguments = tuple(item for item in items if not isinstance(item, tuple) or isinstance(item, _OPERANDS))
+        arguments = tuple(item for item in items if isinstance(item, _OPERANDS))
         names = tuple(item for item in items if not isinstance(item, _OPERANDS))
         least, most = known_functions[function]
         if len(arguments) < least or (most is not None and len(arguments) > most):

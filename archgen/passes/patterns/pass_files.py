@@ -6,15 +6,16 @@ from collections.abc import Iterator
 
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
-from archgen.passes.patterns.pass_shapes import PASS_ERROR_RULE, PatternPass, RewriteRule
+from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass, RewriteRule
 from archgen.passes.patterns.rule_reading import RuleReader
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, list_spans
 
-PASS_FOLDER = "passes"
+PASS_FOLDER = "passes"  # noqa: S105 - not a password
 """The folder of a project that holds its own passes."""
 FILE_KEYS = ("title", "description", "needs", "leaves", "ends", "rules")
 _MAX_TEXT = 200_000
@@ -31,6 +32,8 @@ class ReadPass:
     text: str
     read_pass: PatternPass | None
     diagnostics: tuple[Diagnostic, ...]
+    has_rules: bool = False
+    """Whether it is meant as a pass: its `rules` are a list."""
 
 
 def read_pass(name: str, file: str, text: str, known_states: tuple[str, ...] = ()) -> ReadPass:
@@ -39,14 +42,15 @@ def read_pass(name: str, file: str, text: str, known_states: tuple[str, ...] = (
         message = f"a pass file of {len(text):,} letters; at most {_MAX_TEXT:,} are read"
         return ReadPass(name, file, text, None, (_report(message, Span.of_file(file), "write several passes"),))
     document, findings = parse_yaml(file, text)
-    diagnostics = [Diagnostic(PASS_ERROR_RULE.name, f.message, f.span, labels=f.labels, help=f.help) for f in findings]
+    diagnostics = [Diagnostic(WRONG_PASS, f.message, f.span, labels=f.labels, help=f.help) for f in findings]
     if document is None or diagnostics:
         return ReadPass(name, file, text, None, tuple(diagnostics))
     if sum(1 for _ in list_spans(document.root)) > _MAX_VALUES:
         message = f"a pass file of more than {_MAX_VALUES:,} keys and values"
         return ReadPass(name, file, text, None, (_report(message, Span.of_file(file), "write several passes"),))
     read = _FileReader(name, file, known_states).read(document.root)
-    return ReadPass(name, file, text, *read)
+    has_rules = isinstance(document.root.get("rules"), SequenceNode)
+    return ReadPass(name, file, text, *read, has_rules=has_rules)
 
 
 class _FileReader:
@@ -64,7 +68,7 @@ class _FileReader:
         texts = {key: self._read_text(root.get(key), key) for key in ("title", "description")}
         if not texts["title"] and "title" not in root.entries:
             found.append(_report("a pass has a title", Span.of_file(self._file), "write `title: What it does.`"))
-        lists = {key: self._read_states(root.get(key), key) for key in ("needs", "leaves", "ends")}
+        lists = {key: self._read_states(root.get(key)) for key in ("needs", "leaves", "ends")}
         rules_entry = root.entries.get("rules")
         rules: list[RewriteRule] = []
         if rules_entry is None or not isinstance(rules_entry.value, SequenceNode) or not rules_entry.value.items:
@@ -88,9 +92,7 @@ class _FileReader:
             return ""
         return node.text
 
-    def _read_states(self, node: YamlNode | None, key: str) -> tuple[str, ...]:
-        from archgen.diagnostics.suggestions import did_you_mean
-
+    def _read_states(self, node: YamlNode | None) -> tuple[str, ...]:
         items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
         words: list[str] = []
         for item in items:
@@ -98,7 +100,9 @@ class _FileReader:
             if word in self._states:
                 words.append(word)
                 continue
-            help_line = did_you_mean(word, self._states) or f"there are {', '.join(f'`{each}`' for each in self._states)}"
+            help_line = (
+                did_you_mean(word, self._states) or f"there are {', '.join(f'`{each}`' for each in self._states)}"
+            )
             self._rules.diagnostics.append(_report(f"`{word}` is nothing that passes leave true", item.span, help_line))
         return tuple(words)
 
@@ -126,6 +130,14 @@ def list_project_passes(files: ProjectFiles, known_states: tuple[str, ...] = ())
             yield read_pass(name, file, file_text.text, known_states)
 
 
+def find_wrong_passes(files: ProjectFiles, sources: SourceTexts, known_states: tuple[str, ...]) -> Iterator[Diagnostic]:
+    """Yield what is wrong with the passes of a project."""
+    for each in list_project_passes(files, known_states):
+        if each.has_rules:
+            sources.add_text(each.file, each.text)
+            yield from each.diagnostics
+
+
 def list_pass_files(files: ProjectFiles) -> list[str]:
     """Return the paths of a project's pass files: those directly in its folder `passes`."""
     for folder, _, names in files.walk_folders(PASS_FOLDER):
@@ -136,4 +148,4 @@ def list_pass_files(files: ProjectFiles) -> list[str]:
 
 
 def _report(message: str, span: Span, help_line: str | None) -> Diagnostic:
-    return Diagnostic(PASS_ERROR_RULE.name, message, span, help=help_line)
+    return Diagnostic(WRONG_PASS, message, span, help=help_line)

@@ -4,21 +4,13 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from archgen.diagnostics.diagnostic import Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.passes.patterns.expressions import Comparison, Operand
 from archgen.passes.patterns.matching import ViewPattern
 from archgen.passes.patterns.pattern_shapes import Pattern
 
-PASS_ERROR_RULE = Rule(
-    "pass-error",
-    Severity.ERROR,
-    "A pass that is written as rules cannot be read, or comes to no end.\n\n"
-    "Why: a pass of a project is a file in `passes/` with rules: what each finds, and what it writes there. Where a rule "
-    "names a variable that nothing binds, asks for what there is not, changes nothing that it finds, or finds something "
-    "again and again, nothing is made of the project.",
-    fixed=True,
-)
+WRONG_PASS = "wrong-pass"  # noqa: S105 - not a password
+"""The rule of all that is wrong with a pass that is written as rules."""
 EditKind = Literal["add", "set", "drop"]
 EDIT_KINDS: tuple[EditKind, ...] = ("drop", "set", "add")
 """What a rule does with what it found, in this order: what is dropped makes room."""

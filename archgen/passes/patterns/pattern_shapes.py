@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from archgen.diagnostics.source_span import Span
 from archgen.syntax.yaml_tree import PlainValue, ScalarNode
@@ -26,7 +26,7 @@ class ScalarText(str):
     value: PlainValue
     span: Span | None
 
-    def __new__(cls, text: str, value: PlainValue, span: Span | None = None) -> ScalarText:
+    def __new__(cls, text: str, value: PlainValue, span: Span | None = None) -> Self:
         """Make a text that remembers its value."""
         scalar = super().__new__(cls, text)
         scalar.value = value
@@ -50,7 +50,7 @@ class PortReference(str):
 
     def __new__(
         cls, component: str, port: str | None, *, holder: str | None = None, at: ScalarNode | None = None
-    ) -> PortReference:
+    ) -> Self:
         """Make a reference. With a holder it reads `self.port`."""
         whole = f"self.{port}" if holder is not None else component if port is None else f"{component}.{port}"
         reference = super().__new__(cls, whole)
@@ -71,6 +71,9 @@ class ComponentBody(dict[str, "ViewValue"]):
 
 class Anything(NamedTuple):
     """`$_` or nothing at all: whatever stands there."""
+
+    is_named: bool = False
+    """Whether `$_` is written."""
 
 
 class Variable(NamedTuple):
@@ -138,7 +141,7 @@ def parse_text_pattern(text: str, value: PlainValue, span: Span | None) -> Patte
     if len(joined) == 1:
         only = joined[0]
         if isinstance(only, Variable):
-            return Anything() if only.name == ANY_NAME else only
+            return Anything(is_named=True) if only.name == ANY_NAME else only
         return Constant(ScalarText(only, only if only != text else value, span))
     return TextPattern(joined, _is_path(joined))
 

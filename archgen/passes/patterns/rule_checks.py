@@ -9,7 +9,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.passes.patterns.expressions import Operand, list_operand_variables
 from archgen.passes.patterns.matching import ViewPattern
-from archgen.passes.patterns.pass_shapes import PASS_ERROR_RULE, LetBinding, RewriteRule
+from archgen.passes.patterns.pass_shapes import WRONG_PASS, LetBinding, RewriteRule
 from archgen.passes.patterns.pattern_shapes import (
     Anything,
     Constant,
@@ -28,9 +28,13 @@ def check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
     bound = dict.fromkeys(_list_view_variables(rule.find))
     yield from _check_kinds(rule.find)
     for let in rule.let:
-        yield from _check_names(_list_let_variables(let), bound, let.span, "`let` comes behind `find`, from the top down")
+        yield from _check_names(
+            _list_let_variables(let), bound, let.span, "`let` comes behind `find`, from the top down"
+        )
         if let.name in bound:
-            yield _report(f"`${let.name}` is bound already: `let` gives it a second meaning", let.span, "choose another name")
+            yield _report(
+                f"`${let.name}` is bound already: `let` gives it a second meaning", let.span, "choose another name"
+            )
         bound[let.name] = None
     for written in rule.where:
         names = _list_comparison_variables(written.comparison.left, written.comparison.right)
@@ -43,15 +47,13 @@ def check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
     hidden = {name for each in rule.unless for name in _list_view_variables(each.pattern)} - bound.keys()
     for edit in rule.edits:
         for entry in (*edit.pattern.components, *edit.pattern.types):
-            yield from _check_edit(entry, bound, hidden, is_drop=edit.kind == "drop")
+            yield from _check_edit(entry, bound, hidden)
     yield from _check_contradictions(rule)
 
 
-def _check_edit(
-    entry: PatternEntry, bound: Iterable[str], hidden: set[str], *, is_drop: bool
-) -> Iterator[Diagnostic]:
+def _check_edit(entry: PatternEntry, bound: Iterable[str], hidden: set[str]) -> Iterator[Diagnostic]:
     for part, span in _list_parts(entry):
-        if _holds_anything(part) and not (is_drop and isinstance(part, Anything)):
+        if _holds_anything(part):
             yield _report("`$_` stands for anything, and cannot be written", span, "give it a name in `find`")
         for name in _list_own_variables(part):
             if name in hidden:
@@ -78,6 +80,8 @@ def _list_value_parts(value: Pattern, span: Span) -> Iterator[tuple[Pattern, Spa
 
 
 def _holds_anything(part: Pattern) -> bool:
+    if isinstance(part, Anything):
+        return part.is_named
     return isinstance(part, TextPattern) and any(isinstance(each, Variable) and each.name == "_" for each in part.parts)
 
 
@@ -100,7 +104,7 @@ def _check_kinds(find: ViewPattern) -> Iterator[Diagnostic]:
         if isinstance(entry.key, Variable) and entry.key.name in components:
             label = Label(components[entry.key.name], "a component")
             message = f"`${entry.key.name}` is a component and a conceptual type: nothing is both"
-            yield Diagnostic(PASS_ERROR_RULE.name, message, entry.span, labels=(label,), help="use two variables")
+            yield Diagnostic(WRONG_PASS, message, entry.span, labels=(label,), help="use two variables")
 
 
 def _check_contradictions(rule: RewriteRule) -> Iterator[Diagnostic]:
@@ -112,13 +116,15 @@ def _check_contradictions(rule: RewriteRule) -> Iterator[Diagnostic]:
                 for path, value, span in _list_leaves((section,), entry):
                     first = seen.setdefault(path, (edit.kind, value, span))
                     is_same_text = first[1] == value
-                    if first[2] != span and {first[0], edit.kind} != {"drop", "add"} and not (
-                        is_same_text and first[0] == edit.kind
+                    if (
+                        first[2] != span
+                        and {first[0], edit.kind} != {"drop", "add"}
+                        and not (is_same_text and first[0] == edit.kind)
                     ):
                         label = Label(first[2], f"`{first[0]}`")
                         message = f"`{edit.kind}` contradicts `{first[0]}` at the same place"
                         yield Diagnostic(
-                            PASS_ERROR_RULE.name, message, span, labels=(label,), help="`set` alone replaces a value"
+                            WRONG_PASS, message, span, labels=(label,), help="`set` alone replaces a value"
                         )
 
 
@@ -158,4 +164,4 @@ def _report_unbound(name: str, bound: Iterable[str], span: Span, help_line: str)
 
 
 def _report(message: str, span: Span, help_line: str | None = None) -> Diagnostic:
-    return Diagnostic(PASS_ERROR_RULE.name, message, span, help=help_line)
+    return Diagnostic(WRONG_PASS, message, span, help=help_line)

@@ -11,7 +11,7 @@ from archgen.passes.patterns.expressions import ExpressionError, parse_compariso
 from archgen.passes.patterns.matching import ViewPattern
 from archgen.passes.patterns.pass_shapes import (
     EDIT_KINDS,
-    PASS_ERROR_RULE,
+    WRONG_PASS,
     LetBinding,
     NegativePattern,
     RewriteRule,
@@ -60,7 +60,9 @@ class RuleReader:
         where = tuple(self._read_where(node.get("where")))
         let = tuple(self._read_let(node.entries.get("let")))
         edits = tuple(
-            RuleEdit(kind, self._read_view(node.entries[kind].value, kind)) for kind in EDIT_KINDS if kind in node.entries
+            RuleEdit(kind, self._read_view(node.entries[kind].value, kind))
+            for kind in EDIT_KINDS
+            if kind in node.entries
         )
         if not edits:
             help_line = "write `add`, `set` or `drop`"
@@ -74,7 +76,9 @@ class RuleReader:
         """Report keys that mean nothing."""
         for entry in node:
             if entry.key not in known_keys:
-                help_line = did_you_mean(entry.key, known_keys) or f"{subject} has {', '.join(f'`{k}`' for k in known_keys)}"
+                help_line = (
+                    did_you_mean(entry.key, known_keys) or f"{subject} has {', '.join(f'`{k}`' for k in known_keys)}"
+                )
                 self._report(f"`{entry.key}` is no key of {subject}", entry.key_span, help_line)
 
     def _read_view(self, node: YamlNode, key: str) -> ViewPattern:
@@ -158,7 +162,7 @@ class RuleReader:
                 self._report(str(error), entry.value.span, error.help_line)
 
     def _report(self, message: str, span: Span, help_line: str | None = None) -> None:
-        self.diagnostics.append(Diagnostic(PASS_ERROR_RULE.name, message, span, help=help_line))
+        self.diagnostics.append(Diagnostic(WRONG_PASS, message, span, help=help_line))
 
 
 def _list_distinct(pattern: ViewPattern) -> frozenset[str]:

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.element_origins import TreePath
+from archgen.diagnostics.source_span import Span
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.edit_values import EditError, fill_pattern
 from archgen.passes.patterns.expression_values import WrongValueError, evaluate, holds
 from archgen.passes.patterns.expressions import Call, ListOperand, TextOperand
-from archgen.passes.patterns.matching import BudgetExceededError, MatchBudget, match_view
-from archgen.passes.patterns.pass_shapes import PASS_ERROR_RULE, LetBinding, PatternPass, RewriteRule
+from archgen.passes.patterns.matching import match_view
+from archgen.passes.patterns.pass_shapes import WRONG_PASS, LetBinding, PatternPass, RewriteRule
 from archgen.passes.patterns.pattern_shapes import Bindings, PortReference, ViewValue
 from archgen.passes.patterns.tree_edits import TreeEditor
+from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget
 from archgen.passes.project_tree import ProjectTree
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
 
@@ -94,9 +95,11 @@ class _RuleRunner:
                     self._apply(rule, bindings)
                     has_applied = True
         except BudgetExceededError:
-            message = f"the pass `{self._pass.name}` takes more than {self._budget.steps:,} steps to find what it looks for"
+            message = (
+                f"the pass `{self._pass.name}` takes more than {self._budget.steps:,} steps to find what it looks for"
+            )
             help_line = "let the components of `find` have more in common: a variable, or `in`"
-            raise _PassStoppedError(Diagnostic(PASS_ERROR_RULE.name, message, rule.span, help=help_line)) from None
+            raise _PassStoppedError(Diagnostic(WRONG_PASS, message, rule.span, help=help_line)) from None
         return has_applied
 
     def _is_found(self, rule: RewriteRule, bindings: Bindings) -> bool:
@@ -121,7 +124,9 @@ class _RuleRunner:
             if not all(holds(written.comparison, bindings, self._view) for written in rule.where):
                 return False
             for negative in rule.unless:
-                for inner in match_view(negative.pattern, self._view, bindings, self._budget, rule.distinct | negative.distinct):
+                for inner in match_view(
+                    negative.pattern, self._view, bindings, self._budget, rule.distinct | negative.distinct
+                ):
                     if all(holds(written.comparison, inner, self._view) for written in negative.where):
                         return False
         except WrongValueError as error:
@@ -163,7 +168,7 @@ class _RuleRunner:
         place_of_rule = rule.span if span is None else span
         return _PassStoppedError(
             Diagnostic(
-                PASS_ERROR_RULE.name,
+                WRONG_PASS,
                 message,
                 place_of_rule,
                 labels=(Label(place, text),),

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from archgen.diagnostics.element_origins import TreePath
-from archgen.diagnostics.source_span import Span
-from archgen.passes.patterns.architecture_view import ArchitectureView, Layer, find_instance
+from archgen.passes.patterns.architecture_view import ArchitectureView, find_instance
+from archgen.passes.patterns.data_edits import are_inside, drop_data, make_data_node, merge_data
 from archgen.passes.patterns.edit_values import EditError, expand_value, fill_key, fill_pattern
+from archgen.passes.patterns.layer_choice import DataPath, choose_layer
 from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
@@ -20,26 +22,32 @@ from archgen.passes.patterns.pattern_shapes import (
     ComponentBody,
     PatternEntry,
     PortReference,
-    ScalarText,
     ViewValue,
 )
+from archgen.passes.patterns.type_layers import Layer
 from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside
 from archgen.passes.patterns.view_words import VIRTUAL_KEYS
 from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import ScalarNode, SequenceNode, YamlNode
 
 _ID = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _MAX_ID_LENGTH = 64
+_PORT_SECTIONS = frozenset({"inputs", "outputs"})
 _ID_SECTIONS = frozenset({"inputs", "outputs", "operations"})
-_DECLARED_SECTIONS = frozenset({"inputs", "outputs", "parameters", "operations"})
-"""What an instance has from its type alone: what is new there goes to the type."""
-_WIRING_KEYS = frozenset({"from", "external"})
-"""Keys of an input that its component says, whatever it is made from."""
-_JOINED_LISTS = frozenset({"requirements", "tags"})
-"""Lists that an instance adds to."""
-_PATH_OF_LEAF = 3
 
-DataPath = tuple[str, ...]
+
+class _Place(NamedTuple):
+    """Where a value of a component is written, and what it is made from."""
+
+    key: str
+    layer: Layer
+    path: DataPath
+    source: TreePath
+
+    @property
+    def target(self) -> TreePath:
+        """The path in the tree."""
+        return (*self.layer.path, *self.path)
 
 
 class TreeEditor:
@@ -85,7 +93,9 @@ class TreeEditor:
             return
         element = self._view.elements[key]
         form = {"type": COMPONENT_TYPE_FORM, "group": GROUP_FORM}.get(element.kind, COMPONENT_FORM)
-        expanded = expand_value({k: v for k, v in (value or {}).items() if k not in VIRTUAL_KEYS and k != INNER_KEY}, form)
+        expanded = expand_value(
+            {k: v for k, v in (value or {}).items() if k not in VIRTUAL_KEYS and k != INNER_KEY}, form
+        )
         inner = value.get(INNER_KEY) if isinstance(value, ComponentBody) else None
         for name, each in inner.items() if isinstance(inner, dict) else ():
             if f"{key}.{name}" not in self._view.elements and not find_instance(self._view, key):
@@ -118,7 +128,7 @@ class TreeEditor:
         copied_from = value.path if isinstance(value, ComponentBody) else ""
         body, sources = _split_sources({k: v for k, v in value.items() if k not in VIRTUAL_KEYS}, copied_from)
         span = self._tree.find_place(origin)
-        self._tree.set(path, self._make_node(expand_value(body, form), span, copied_from), origin)
+        self._tree.set(path, make_data_node(expand_value(body, form), span, copied_from), origin)
         inner_ids = (*self._view.elements[parent].inner_ids, name) if dot else ()
         element_kind: ElementKind = "component" if dot else "group" if is_group else "type"
         element = ViewElement(key, name, element_kind, parent if dot else None, path, type_name, inner_ids)
@@ -134,38 +144,11 @@ class TreeEditor:
         is_known = self._view.get_type(name) is not None
         path: TreePath = self._view.type_paths.get(name, ("types", name))
         if kind == "drop":
-            self._drop_at(path, value) if is_known else None
+            drop_data(self._view, path, value) if is_known else None
         else:
             expanded = expand_value(value, DATA_TYPE_FORM)
-            span = self._tree.find_place(path if is_known else origin)
-            self._merge_data(kind, path, expanded, span, path if is_known else origin)
+            merge_data(self._view, kind, path, expanded, path if is_known else origin)
         self._view.note_type_edit()
-
-    def _merge_data(self, kind: EditKind, path: TreePath, value: ViewValue, span: Span, source: TreePath) -> None:
-        """Write plain data over what stands at a path."""
-        present = self._tree.get(path)
-        if isinstance(value, dict) and value and isinstance(present, MappingNode):
-            for name, each in value.items():
-                self._merge_data(kind, (*path, name), each, span, source)
-        elif kind == "add" and isinstance(value, list) and isinstance(present, SequenceNode):
-            for item in value:
-                self._tree.append(path, self._make_node(item, span), source)
-        elif kind == "set" or present is None or _is_empty(present):
-            self._tree.set(path, self._make_node(value, span), source)
-        elif not _is_same(present, value) and not (isinstance(value, dict) and not value):
-            message = f"`add` finds another value at `{'.'.join(map(str, path))}`"
-            raise EditError(message, "`set` replaces it")
-
-    def _drop_at(self, path: TreePath, value: ViewValue) -> None:
-        """Take a leaf, a key or items of a list out of plain data."""
-        present = self._tree.get(path)
-        if value is None or (isinstance(present, ScalarNode) and value == present.text):
-            self._tree.drop(path)
-        elif isinstance(value, dict) and isinstance(present, MappingNode):
-            for name, each in value.items():
-                self._drop_at((*path, name), each)
-        elif isinstance(value, list) and isinstance(present, SequenceNode):
-            self._drop_items(path, present, [str(item) for item in value if isinstance(item, str)])
 
     def _drop(self, key: str, path: DataPath, value: ViewValue) -> None:
         """Take something out of all places that a component has it from."""
@@ -175,18 +158,10 @@ class TreeEditor:
             return
         for layer in self._view.list_layers(key):
             count = self._tree.edit_count
-            self._drop_at((*layer.path, *path), value)
+            drop_data(self._view, (*layer.path, *path), value)
             if self._tree.edit_count != count:
                 self.has_new_names |= path[0] == "outputs"
                 self._note(key, layer, path)
-
-    def _drop_items(self, path: TreePath, sequence: SequenceNode, texts: Sequence[str]) -> None:
-        for number in range(len(sequence.items) - 1, -1, -1):
-            item = sequence.items[number]
-            if isinstance(item, ScalarNode) and (self._view.find_reference(item) or item.text) in texts:
-                self._tree.drop((*path, number))
-        if not sequence.items:
-            self._tree.drop(path)
 
     def _write(self, kind: EditKind, key: str, path: DataPath, value: ViewValue) -> None:
         """Write a value at a path of a component: mappings key by key, where there is one already."""
@@ -195,49 +170,43 @@ class TreeEditor:
             for name, each in value.items():
                 self._write(kind, key, (*path, name), each)
             return
-        if isinstance(value, dict) and present is not None and kind == "add":
-            message = f"`add` finds a value at `{'.'.join(path)}` of `{key}`, where it is to write a mapping"
-            raise EditError(message, "`set` replaces it")
         if path[0] in _ID_SECTIONS and len(path) > 1 and present is None and not _ID.match(path[1]):
             message = f"`{path[1]}` is no id, so no port can be called so"
             raise EditError(message, "`snake(...)` in `let` makes one of any text")
         if present is not None and present == value:
             return
-        layer = self._choose_layer(key, path, present)
-        writer = self._view.type_keys.get(layer.type_name or "", key) if layer.type_name else key
-        target: TreePath = (*layer.path, *path)
-        source = self._find_source(layer, path)
-        span = self._tree.find_place(source)
-        is_list_of_sources = path[-1] == "from" and (len(path) == 1 or path[0] in {"inputs", "outputs"})
-        if is_list_of_sources:
-            self._write_sources(kind, target, value, writer, source, is_output=path[0] == "outputs")
-        elif isinstance(value, dict) and path[0] in {"inputs", "outputs"}:
-            self._write_port(kind, key, layer, path, value, source)
+        layer = choose_layer(self._view, key, path, present)
+        place = _Place(key, layer, path, self._find_source(layer, path))
+        span = self._tree.find_place(place.source)
+        if path[-1] == "from" and (len(path) == 1 or path[0] in _PORT_SECTIONS):
+            self._write_sources(kind, place, value)
+        elif isinstance(value, dict) and path[0] in _PORT_SECTIONS:
+            self._write_port(kind, place, value)
             return
         elif kind == "add" and isinstance(value, list):
             for item in value:
-                self._tree.append(target, self._make_node(item, span), source)
+                self._tree.append(place.target, make_data_node(item, span), place.source)
         elif kind == "add" and present is not None:
             message = f"`add` finds `{present}` at `{'.'.join(path)}` of `{key}`, and not `{value}`"
             raise EditError(message, "`set` replaces it")
         else:
-            self._tree.set(target, self._make_node(self._name_types(path, value, layer), span), source)
+            node = make_data_node(self._name_types(path, value, layer), span)
+            self._tree.set(place.target, node, place.source)
         self._note(key, layer, path)
 
-    def _write_port(
-        self, kind: EditKind, key: str, layer: Layer, path: DataPath, value: Mapping[str, ViewValue], source: TreePath
-    ) -> None:
+    def _write_port(self, kind: EditKind, place: _Place, value: Mapping[str, ViewValue]) -> None:
         """Write a port that is new, or a section of new ports: first that it is there, then each of its keys."""
-        self._tree.set((*layer.path, *path), self._make_node({}, self._tree.find_place(source)), source)
-        self._note(key, layer, path)
+        self._tree.set(place.target, make_data_node({}, self._tree.find_place(place.source)), place.source)
+        self._note(place.key, place.layer, place.path)
         for name, each in value.items():
-            self._write(kind, key, (*path, name), each)
+            self._write(kind, place.key, (*place.path, name), each)
 
-    def _write_sources(
-        self, kind: EditKind, target: TreePath, value: ViewValue, writer: str, source: TreePath, *, is_output: bool
-    ) -> None:
-        span = self._tree.find_place(source)
-        nodes: list[YamlNode] = []
+    def _write_sources(self, kind: EditKind, place: _Place, value: ViewValue) -> None:
+        span = self._tree.find_place(place.source)
+        is_output = place.path[0] == "outputs"
+        type_name = place.layer.type_name
+        writer = self._view.type_keys.get(type_name, place.key) if type_name else place.key
+        nodes: list[ScalarNode] = []
         for item in value if isinstance(value, list) else [value]:
             reference = self._find_target(item, writer, is_output=is_output)
             words = self._view.references.write(reference, writer, is_output=is_output)
@@ -248,9 +217,9 @@ class TreeEditor:
             self._view.remember_reference(node, reference)
             nodes.append(node)
         if kind == "set":
-            self._tree.set(target, SequenceNode(nodes, span), source)
+            self._tree.set(place.target, SequenceNode(list[YamlNode](nodes), span), place.source)
         for node in nodes if kind == "add" else ():
-            self._tree.append(target, node, source)
+            self._tree.append(place.target, node, place.source)
 
     def _find_target(self, item: ViewValue, writer: str, *, is_output: bool) -> PortReference:
         if isinstance(item, PortReference):
@@ -266,29 +235,6 @@ class TreeEditor:
             message = f"`{text}` is no port and no component"
             raise EditError(message, "a source is a path and a port: `$source.$port`, or `self.$port`")
         return PortReference(component, port)
-
-    def _choose_layer(self, key: str, path: DataPath, present: ViewValue) -> Layer:
-        """Return the place that a value at a path belongs to: its own, or that of a type."""
-        layers = self._view.list_layers(key)
-        own = layers[0]
-        is_reference = self._view.elements[key].kind == "component" and "same_as" in own.node.entries
-        if path[0] == "inputs" and (path[_PATH_OF_LEAF - 1 :] or ("",))[0] in _WIRING_KEYS:
-            return own
-        if len(layers) == 1 or (path == ("from",)) or (path[0] in _JOINED_LISTS and not is_reference):
-            return own
-        for layer in layers[1:] if is_reference and path[0] != "title" else layers:
-            written = _get_node(layer.node, path)
-            if written is not None:
-                # What a generic name stands for is the instance's: the type says the name.
-                is_bound = isinstance(written, ScalarNode) and isinstance(present, str) and written.text != present
-                return own if is_bound and layer is not own and not is_reference else layer
-        if len(path) > 1:
-            declaring = [layer for layer in layers if _get_node(layer.node, path[:2]) is not None]
-            if declaring:
-                return declaring[-1]
-        if is_reference or (path[0] in _DECLARED_SECTIONS and self._view.elements[key].kind != "type"):
-            return layers[1]
-        return own
 
     def _find_source(self, layer: Layer, path: DataPath) -> TreePath:
         """Return the innermost thing on the way to a value that is written."""
@@ -310,22 +256,6 @@ class TreeEditor:
         name = self._view.write_type_name(value)
         return name.removeprefix(f"{layer.path[1]}.") if layer.path[0] == "libraries" else name
 
-    def _make_node(self, value: ViewValue, span: Span, copied_from: str = "") -> YamlNode:
-        """Return plain data as a tree. What a copy names inside of itself is written as it was."""
-        if isinstance(value, dict):
-            entries = {
-                key: MappingEntry(key, span, self._make_node(each, span, copied_from)) for key, each in value.items()
-            }
-            return MappingNode(entries, span)
-        if isinstance(value, list):
-            return SequenceNode([self._make_node(item, span, copied_from) for item in value], span)
-        if isinstance(value, PortReference):
-            words = value.written if _lies_inside(value, copied_from) else str(value)
-            return ScalarNode(words, words, value.span or span)
-        if isinstance(value, ScalarText):
-            return ScalarNode(value.value, str(value), value.span or span)
-        return ScalarNode(value, value or "", span)
-
 
 def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:
     """Return what stands inside of a component as a part of its copy."""
@@ -342,7 +272,7 @@ def _split_sources(
     What a copy names inside of itself stays: it means the copy's own.
     """
     kept, sources = dict(body), list[tuple[DataPath, ViewValue]]()
-    if "from" in body and not _is_inside(body["from"], copied_from):
+    if "from" in body and not are_inside(body["from"], copied_from):
         sources.append((("from",), kept.pop("from")))
     for side in ("inputs", "outputs"):
         ports = kept.get(side)
@@ -350,20 +280,10 @@ def _split_sources(
             continue
         kept[side] = kept_ports = dict(ports)
         for name, port in ports.items():
-            if isinstance(port, dict) and "from" in port and not _is_inside(port["from"], copied_from):
+            if isinstance(port, dict) and "from" in port and not are_inside(port["from"], copied_from):
                 kept_ports[name] = {key: each for key, each in port.items() if key != "from"}
                 sources.append(((side, name, "from"), port["from"]))
     return kept, sources
-
-
-def _is_inside(sources: ViewValue, copied_from: str) -> bool:
-    items = sources if isinstance(sources, list) else [sources]
-    return all(_lies_inside(item, copied_from) for item in items)
-
-
-def _lies_inside(item: ViewValue, copied_from: str) -> bool:
-    is_reference = isinstance(item, PortReference) and bool(copied_from)
-    return is_reference and f"{item.holder or item.component}.".startswith(f"{copied_from}.")  # type: ignore[union-attr]
 
 
 def _get(value: ViewValue, path: DataPath) -> ViewValue:
@@ -372,17 +292,3 @@ def _get(value: ViewValue, path: DataPath) -> ViewValue:
             return None
         value = value[key]
     return value
-
-
-def _get_node(node: YamlNode | None, path: DataPath) -> YamlNode | None:
-    for key in path:
-        node = node.get(key) if isinstance(node, MappingNode) else None
-    return node
-
-
-def _is_empty(node: YamlNode) -> bool:
-    return isinstance(node, ScalarNode) and node.value is None
-
-
-def _is_same(node: YamlNode, value: ViewValue) -> bool:
-    return isinstance(node, ScalarNode) and isinstance(value, str) and node.text == value

@@ -64,7 +64,7 @@ def _list_groups(root: MappingNode) -> Iterator[ViewElement]:
 
 
 def list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
-    node: YamlNode,
+    node: YamlNode | None,
     parent: str,
     path: TreePath,
     type_name: str | None,
@@ -86,7 +86,7 @@ def list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
 
 
 def _is_type(path: TreePath) -> bool:
-    return path[0] == "component_types" and len(path) == 2 or (path[0] == "libraries" and len(path) == 4)  # noqa: PLR2004
+    return (path[0] == "component_types" and len(path) == 2) or (path[0] == "libraries" and len(path) == 4)  # noqa: PLR2004
 
 
 def is_instance(node: YamlNode | None) -> bool:

@@ -21,9 +21,7 @@ _PORT_PATH_LENGTH = 2
 class ViewReferences:
     """Resolves references between the elements of a view; `list_outputs` names the outputs of one."""
 
-    def __init__(
-        self, elements: Mapping[str, ViewElement], list_outputs: Callable[[str], Collection[str]]
-    ) -> None:
+    def __init__(self, elements: Mapping[str, ViewElement], list_outputs: Callable[[str], Collection[str]]) -> None:
         """Take the elements by path; changes of the mapping are seen after `forget_names`."""
         self._elements = elements
         self._list_outputs = list_outputs
@@ -68,7 +66,7 @@ class ViewReferences:
         for text in candidates:
             # A complete path of what everybody sees is never taken for anything else.
             is_complete = text == str(target) and self._is_open(component) and not is_output
-            is_inside = component.parent in self._list_shells(shell)
+            is_inside = component.parent in tuple(self._list_shells(shell))
             if is_complete and self._elements[writer].type_name is None:
                 return text
             if is_inside and self.resolve(text, writer, is_output=is_output) == target:
@@ -103,7 +101,9 @@ class ViewReferences:
 
     def _resolver(self) -> PathResolver:
         if self._open_names is None:
-            open_keys = [each.key for each in self._elements.values() if each.kind == "component" and self._is_open(each)]
+            open_keys = [
+                each.key for each in self._elements.values() if each.kind == "component" and self._is_open(each)
+            ]
             self._open_names = PathResolver(
                 {
                     "group": [each.key for each in self._elements.values() if each.kind == "group"],

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.passes.patterns.pass_shapes import PASS_ERROR_RULE
+from archgen.passes.patterns.pass_shapes import WRONG_PASS
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlNode
 
@@ -35,7 +35,9 @@ def _check_component_key(entry: MappingEntry, *, is_edit: bool) -> Iterator[Diag
         help_line = "a new component stands where its path says: `$outer.name`"
         yield _report(f"`{entry.key}` follows from the path, and is not written", entry.key_span, help_line)
     else:
-        yield from _check_key(entry, _list_keys("component", "component_type", "group", extra=VIRTUAL_KEYS), "a component")
+        yield from _check_key(
+            entry, _list_keys("component", "component_type", "group", extra=VIRTUAL_KEYS), "a component"
+        )
     kinds = _PORT_KINDS.get(entry.key)
     for port in _list_entries(entry.value) if kinds else ():
         for inner in _list_entries(port.value):
@@ -60,4 +62,4 @@ def _list_entries(node: YamlNode | None) -> Iterator[MappingEntry]:
 
 
 def _report(message: str, span: Span, help_line: str | None) -> Diagnostic:
-    return Diagnostic(PASS_ERROR_RULE.name, message, span, help=help_line)
+    return Diagnostic(WRONG_PASS, message, span, help=help_line)
