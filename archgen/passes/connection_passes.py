@@ -96,19 +96,17 @@ def _list_children(linked: LinkedTree, holder_id: str) -> tuple[str, ...]:
 def _find_sources(linked: LinkedTree, holder_id: str, key: str) -> dict[TreePath, _FoundSources]:
     """Return what follows from a statement: sources by the path of the port, below what holds the statement."""
     if key == "from":
-        ports = {
-            ("inputs", name): ("input", f"{holder_id}.{name}") for name in linked.outline.inputs.get(holder_id, ())
-        }
-        return dict(_list_found(linked, ports, is_made=False))
+        inputs = linked.outline.inputs.get(holder_id, ())
+        own_ports: dict[TreePath, PortKey] = {("inputs", name): ("input", f"{holder_id}.{name}") for name in inputs}
+        return dict(_list_found(linked, own_ports, is_made=False))
     ports: dict[TreePath, PortKey] = {
         ("components", child.rpartition(".")[2], "inputs", name): ("input", f"{child}.{name}")
         for child in _list_children(linked, holder_id)
         for name in linked.outline.inputs.get(child, ())
     }
     if holder_id in linked.outline.shells:
-        ports |= {
-            ("outputs", name): ("output", f"{holder_id}.{name}") for name in linked.outline.outputs.get(holder_id, ())
-        }
+        outputs = linked.outline.outputs.get(holder_id, ())
+        ports.update({("outputs", name): ("output", f"{holder_id}.{name}") for name in outputs})
     return dict(_list_found(linked, ports, is_made=True))
 
 
@@ -122,7 +120,7 @@ def _list_found(
         elif _is_written(linked, port):
             sources = ()
         if sources:
-            references = tuple(dict.fromkeys(_write_reference(linked, port, each, is_made=is_made) for each in sources))
+            references = tuple(dict.fromkeys(_write_reference(linked, port, each) for each in sources))
             yield path, _FoundSources(references, tuple(each.at for each in sources))
 
 
@@ -131,7 +129,7 @@ def _is_written(linked: LinkedTree, port: PortKey) -> bool:
     return entry is not None and mapping_values.get_body(entry).get("from") is not None
 
 
-def _write_reference(linked: LinkedTree, port: PortKey, source: PortSource, *, is_made: bool) -> str:
+def _write_reference(linked: LinkedTree, port: PortKey, source: PortSource) -> str:
     """Return how the reader of a port names one of its sources."""
     component_id, _, name = source.target.id.rpartition(".")
     if source.target.kind == "input":
@@ -139,10 +137,11 @@ def _write_reference(linked: LinkedTree, port: PortKey, source: PortSource, *, i
     reader_id = port[1].rpartition(".")[0]
     around = reader_id if port[0] == "output" else reader_id.rpartition(".")[0]
     short = f"{component_id.rpartition('.')[2]}.{name}"
-    is_beside = component_id.rpartition(".")[0] == around
-    if is_beside and (is_made or around in linked.outline.shells) and short not in linked.resolver.spans["component"]:
-        return short
-    return short if is_beside and around in linked.outline.shells else source.target.id
+    if component_id.rpartition(".")[0] != around:
+        return source.target.id
+    # In a group two words may be a component of another group.
+    is_taken = around not in linked.outline.shells and short in linked.resolver.spans["component"]
+    return source.target.id if is_taken else short
 
 
 def _is_ambiguous(holder: _Holder, key: str) -> bool:

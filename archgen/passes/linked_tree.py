@@ -62,7 +62,7 @@ class LinkedTree:
     @property
     def joined_findings(self) -> list[Diagnostic]:
         """What is found where ports are joined."""
-        return self.joined_sources and self.resolver.diagnostics
+        return self.resolver.diagnostics if self.joined_sources else []
 
     @cached_property
     def _linked(self) -> tuple[Architecture, tuple[Diagnostic, ...]]:
