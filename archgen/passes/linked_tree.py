@@ -22,7 +22,7 @@ from archgen.project import LoadedProject
 from archgen.syntax.yaml_tree import MappingNode
 
 
-@dataclass
+@dataclass(eq=False)
 class LinkedTree:
     """A merged project as the linker sees it. Each answer is worked out when it is asked for, once."""
 
@@ -58,6 +58,11 @@ class LinkedTree:
         join_ports(self.outline, sources, self.resolver)
         sources.spread_media()
         return sources
+
+    @property
+    def joined_findings(self) -> list[Diagnostic]:
+        """What is found where ports are joined."""
+        return self.resolver.diagnostics if self.joined_sources else []
 
     @cached_property
     def _linked(self) -> tuple[Architecture, tuple[Diagnostic, ...]]:
