@@ -480,10 +480,9 @@ def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
     if not is_folder or not loaded_project.files.has_path(project.PASS_FOLDER.rstrip("/")):
         return ()
     # Imported here: hardly any project has passes of its own.
-    from archgen.passes.pass_shape import STATES
-    from archgen.passes.patterns.pass_files import find_wrong_passes
+    from archgen.passes.patterns.pattern_registry import find_wrong_passes
 
-    return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources, tuple(STATES)))
+    return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
 
 
 def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:

@@ -116,7 +116,7 @@ _ROOT_FORM = ElementForm(
         "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
-        "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
+        "review": ElementForm(list_keys=frozenset({"backends", "passes"}), raw_keys=frozenset({"accepted"})),
         "ros": ElementForm(raw_keys=frozenset({"parameters"})),
     },
 )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass, RewriteRule
@@ -17,6 +18,8 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, Yaml
 
 PASS_FOLDER = "passes"  # noqa: S105 - not a password
 """The folder of a project that holds its own passes."""
+ID_PATTERN = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+"""What a pass may be called: its file, without `.yaml`."""
 FILE_KEYS = ("title", "description", "needs", "leaves", "ends", "rules")
 _MAX_TEXT = 200_000
 _MAX_VALUES = 20_000
@@ -128,14 +131,6 @@ def list_project_passes(files: ProjectFiles, known_states: tuple[str, ...] = ())
             yield ReadPass(name, file, file_text.text, None, (problem,))
         else:
             yield read_pass(name, file, file_text.text, known_states)
-
-
-def find_wrong_passes(files: ProjectFiles, sources: SourceTexts, known_states: tuple[str, ...]) -> Iterator[Diagnostic]:
-    """Yield what is wrong with the passes of a project."""
-    for each in list_project_passes(files, known_states):
-        if each.has_rules:
-            sources.add_text(each.file, each.text)
-            yield from each.diagnostics
 
 
 def list_pass_files(files: ProjectFiles) -> list[str]:

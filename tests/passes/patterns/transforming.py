@@ -34,7 +34,7 @@ def tree_of(project: str, folder: Path) -> ProjectTree:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "archgen.yaml").write_text(textwrap.dedent(project), encoding="utf-8")
     tree = ProjectTree(check_project(folder).merged_table)
-    tree.pass_name = "tried"
+    tree.maker = "tried"
     return tree
 
 
