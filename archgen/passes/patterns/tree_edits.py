@@ -32,6 +32,7 @@ from archgen.syntax.yaml_tree import ScalarNode, SequenceNode, YamlNode
 
 _ID = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _MAX_ID_LENGTH = 64
+_TYPE_KEYS = frozenset({"is", "same_as"})
 _PORT_SECTIONS = frozenset({"inputs", "outputs"})
 _ID_SECTIONS = frozenset({"inputs", "outputs", "operations"})
 
@@ -78,7 +79,10 @@ class TreeEditor:
         is_known = key in self._view.elements
         if kind == "drop":
             if is_known and value is None:
-                self._tree.drop(self._view.elements[key].path)
+                path = self._view.elements[key].path
+                self._tree.drop(path)
+                if not self._tree.get_mapping(path[:-1]):
+                    self._tree.drop(path[:-1])
                 self._view.remove_element(key)
                 self.has_new_names = True
             elif is_known and isinstance(value, dict):
@@ -156,7 +160,9 @@ class TreeEditor:
             for name, each in value.items():
                 self._drop(key, (*path, name), each)
             return
-        for layer in self._view.list_layers(key):
+        layers = self._view.list_layers(key)
+        # What a type is made from is the type's own.
+        for layer in layers[:1] if path[0] in _TYPE_KEYS else layers:
             count = self._tree.edit_count
             drop_data(self._view, (*layer.path, *path), value)
             if self._tree.edit_count != count:

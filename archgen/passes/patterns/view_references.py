@@ -62,18 +62,15 @@ class ViewReferences:
             return None
         words = component.id if target.port is None else f"{component.id}.{target.port}"
         shell = writer if is_output else self._elements[writer].parent
-        candidates = [words, str(target)] if component.kind == "component" else [str(target)]
-        for text in candidates:
-            # A complete path of what everybody sees is never taken for anything else.
-            is_complete = text == str(target) and self._is_open(component) and not is_output
-            is_inside = component.parent in tuple(self._list_shells(shell))
-            if is_complete and self._elements[writer].type_name is None:
-                return text
-            if is_inside and self.resolve(text, writer, is_output=is_output) == target:
-                return text
-            if text == str(target) and component.type_name is None and self._elements[writer].type_name is None:
-                return None if is_output else text
-        return None
+        is_in_type = self._elements[writer].type_name is not None
+        if component.parent in tuple(self._list_shells(shell)):
+            if self.resolve(words, writer, is_output=is_output) == target:
+                return words
+        elif component.parent is not None and component.parent == self._elements[writer].parent and not is_output:
+            # In a group two words may be a component of another group.
+            return str(target) if target.port is None or words in self._elements else words
+        # A complete path is never taken for anything else, but nothing outside of a type is seen in it.
+        return None if is_output or is_in_type or component.type_name is not None else str(target)
 
     def _list_shells(self, shell: str | None) -> Iterator[str]:
         """Yield the composed components around, from the inside to the outside: groups are none."""
