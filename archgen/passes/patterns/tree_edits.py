@@ -78,16 +78,8 @@ class TreeEditor:
         key, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
         is_known = key in self._view.elements
         if kind == "drop":
-            if is_known and value is None:
-                path = self._view.elements[key].path
-                self._tree.drop(path)
-                if not self._tree.get_mapping(path[:-1]):
-                    self._tree.drop(path[:-1])
-                self._view.remove_element(key)
-                self.has_new_names = True
-            elif is_known and isinstance(value, dict):
-                for name, each in value.items():
-                    self._drop(key, (name,), each)
+            if is_known:
+                self._drop_component(key, value)
             return
         if value is not None and not isinstance(value, dict):
             message = f"`{key}` is to be a component, and what is written of it is no mapping"
@@ -106,6 +98,19 @@ class TreeEditor:
                 self._add_component(f"{key}.{name}", _copy_inner(each, key), origin)
         for name, each in expanded.items() if isinstance(expanded, dict) else ():
             self._write(kind, key, (name,), each)
+
+    def _drop_component(self, key: str, value: ViewValue) -> None:
+        """Take a component out, or something of it."""
+        if isinstance(value, dict):
+            for name, each in value.items():
+                self._drop(key, (name,), each)
+        elif value is None:
+            path = self._view.elements[key].path
+            self._tree.drop(path)
+            if not self._tree.get_mapping(path[:-1]):
+                self._tree.drop(path[:-1])
+            self._view.remove_element(key)
+            self.has_new_names = True
 
     def _add_component(self, key: str, value: Mapping[str, ViewValue], origin: TreePath) -> None:
         parent, dot, name = key.rpartition(".")

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from archgen.passes.patterns.matching import IndexToken, list_tokens, match_view
-from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ViewValue, parse_text_pattern
+from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, TextPattern, ViewValue, parse_text_pattern
 from archgen.passes.patterns.rule_reading import RuleReader
 from archgen.passes.patterns.text_matching import match_text
 from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget
@@ -74,20 +74,35 @@ def found(pattern: str, budget: int = 10_000, **bound: ViewValue) -> list[dict[s
     ("pattern", "bindings"),
     [
         ("{components: {$c: {autoconnect: ports}}}", [{"c": "g"}]),
-        ("{components: {$c: {in: $g, inputs: {$p: {from: [$s.$q]}}}}}", [{"c": "g.viewer", "g": "g", "p": "image", "s": "g.camera", "q": "image"}]),
+        (
+            "{components: {$c: {in: $g, inputs: {$p: {from: [$s.$q]}}}}}",
+            [{"c": "g.viewer", "g": "g", "p": "image", "s": "g.camera", "q": "image"}],
+        ),
         ("{components: {$c: {tags: [$t]}}}", [{"c": "g.camera", "t": "a"}, {"c": "g.camera", "t": "b"}]),
         ("{components: {$c: {tags: [b, a]}}}", [{"c": "g.camera"}]),
         ("{components: {$c: {tags: [a, a]}}}", []),
         ("{components: {$c: {tags: []}}}", [{"c": "g.recorder"}]),
         ("{components: {$c: {tags: $all, id: camera}}}", [{"c": "g.camera", "all": ["a", "b"]}]),
-        ("{components: {$c: {outputs: {$p: {type: {Envelope: $t}}}}}}", [{"c": "g.camera", "p": "state", "t": "State"}]),
-        ("{components: {$c: {inputs: {$p: {type: {Pair: [$a, {Envelope: $b}]}}}}}}", [{"c": "g.recorder", "p": "log", "a": "Image", "b": "State"}]),
+        (
+            "{components: {$c: {outputs: {$p: {type: {Envelope: $t}}}}}}",
+            [{"c": "g.camera", "p": "state", "t": "State"}],
+        ),
+        (
+            "{components: {$c: {inputs: {$p: {type: {Pair: [$a, {Envelope: $b}]}}}}}}",
+            [{"c": "g.recorder", "p": "log", "a": "Image", "b": "State"}],
+        ),
         ("{components: {$c: {inputs: {$p: {type: {$generic: $a}}}}}}", []),
-        ("{components: {$c: {id: camera, outputs: {state: {type: {$generic: $a}}}}}}", [{"c": "g.camera", "generic": "Envelope", "a": "State"}]),
+        (
+            "{components: {$c: {id: camera, outputs: {state: {type: {$generic: $a}}}}}}",
+            [{"c": "g.camera", "generic": "Envelope", "a": "State"}],
+        ),
         ("{components: {g.camera: {outputs: {$p: }}}}", [{"p": "image"}, {"p": "state"}]),
         ("{components: {$c: {id: '${start}corder'}}}", [{"c": "g.recorder", "start": "re"}]),
         ("{types: {$t: {generic: [$n]}}}", [{"t": "Envelope", "n": "T"}]),
-        ("{components: {$c: {inputs: {image: {type: $t}}, tags: $tags}}, types: {$t: {message: $m}}}", [{"c": "g.recorder", "t": "Image", "tags": [], "m": "sensor_msgs/msg/Image"}]),
+        (
+            "{components: {$c: {inputs: {image: {type: $t}}, tags: $tags}}, types: {$t: {message: $m}}}",
+            [{"c": "g.recorder", "t": "Image", "tags": [], "m": "sensor_msgs/msg/Image"}],
+        ),
         ("{components: {$c: {nothing: }}}".replace("nothing", "timing"), []),
     ],
 )
@@ -97,8 +112,13 @@ def test_a_pattern_binds_what_it_finds(pattern: str, bindings: list[dict[str, Vi
 
 def test_different_variables_bind_different_components() -> None:
     pattern = "{components: {$a: {in: g, inputs: {image: }}, $b: {in: g, inputs: {image: }}}}"
-    assert [(each["a"], each["b"]) for each in found(pattern)] == [("g.viewer", "g.recorder"), ("g.recorder", "g.viewer")]
-    assert found("{components: {$a: {in: g, inputs: {image: }}, $_: {in: g, inputs: {image: }}}}", a="g.viewer")[0] == {"a": "g.viewer"}
+    assert [(each["a"], each["b"]) for each in found(pattern)] == [
+        ("g.viewer", "g.recorder"),
+        ("g.recorder", "g.viewer"),
+    ]
+    assert found("{components: {$a: {in: g, inputs: {image: }}, $_: {in: g, inputs: {image: }}}}", a="g.viewer")[0] == {
+        "a": "g.viewer"
+    }
 
 
 def test_a_variable_is_bound_by_its_first_place_and_agrees_in_all_others() -> None:
@@ -137,7 +157,7 @@ def test_matching_ends_when_its_steps_are_used_up() -> None:
 )
 def test_texts_are_taken_apart_in_one_way(pattern: str, text: str, bound: dict[str, str] | None) -> None:
     parsed = parse_text_pattern(pattern, pattern, None)
-    if hasattr(parsed, "parts"):
+    if isinstance(parsed, TextPattern):
         assert match_text(parsed, text, {}) == bound
     else:
         assert (str(getattr(parsed, "text", "")) == text) == (bound is not None)
@@ -145,8 +165,9 @@ def test_texts_are_taken_apart_in_one_way(pattern: str, text: str, bound: dict[s
 
 def test_a_whole_component_is_no_port_of_what_is_around_it() -> None:
     parsed = parse_text_pattern("$a.$b", "$a.$b", None)
-    assert match_text(parsed, PortReference("g.camera", None), {}) is None  # type: ignore[arg-type]
-    assert match_text(parsed, PortReference("g.camera", "image"), {}) == {"a": "g.camera", "b": "image"}  # type: ignore[arg-type]
+    assert isinstance(parsed, TextPattern)
+    assert match_text(parsed, PortReference("g.camera", None), {}) is None
+    assert match_text(parsed, PortReference("g.camera", "image"), {}) == {"a": "g.camera", "b": "image"}
 
 
 def test_a_component_keeps_where_it_is_read_from() -> None:
