@@ -278,9 +278,11 @@ def _judge_in_variants(
     from archgen.findings import variant_findings
 
     judge = _VariantJudge(merged_project, checked_project, analysis_memory)
+    judged_names = variant_order.list_judged(checked_project.architecture.variants)
+    analysis_memory.make_room(len(judged_names) + 1)
     variants = {
         name: judge.judge_steps(judge.list_steps([name]))
-        for name in variant_order.list_judged(checked_project.architecture.variants)
+        for name in judged_names
         if variant_names is None or name in variant_names
     }
     judged_projects = {BASE_NAME: checked_project, **variants}

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
+from archgen.model.counted_outputs import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
@@ -98,6 +99,7 @@ _COMPONENT_KEYS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
 _ORIGIN_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str]]] = {
     "is": lambda architecture, component: architecture.list_types_of(component),
     "library": lambda architecture, component: architecture.list_libraries_of(component),
+    "deprecated": list_deprecated_kinds,
 }
 _NODE_KEYS: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
     "owner": lambda node: node.owners,

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
+from archgen.model.counted_outputs import list_deprecated_kinds
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
@@ -48,6 +49,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("parameter", name) for name in component.parameters),
                     *_list_properties(find_component_properties(architecture, component)),
                     *(("variant", name) for name, hit in variants.items() if component.id in hit.components),
+                    *(("deprecated", kind) for kind in list_deprecated_kinds(architecture, component)),
                 )
             )
         )

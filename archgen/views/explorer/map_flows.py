@@ -11,6 +11,7 @@ from archgen.model.port_media import label_of_medium
 from archgen.views.explorer.map_shapes import Row
 from archgen.views.graphs.component_flows import flow_style, list_flows
 from archgen.views.lookup import Lookup
+from archgen.views.port_warnings import warn_of_outputs
 from archgen.views.search.search_entry import join_words
 
 _OPTIONAL, _MADE = 1, 2
@@ -34,7 +35,7 @@ def make_flow_tables(
     topics: dict[str, int] = {}
     links = tuple(_list_link_rows(architecture, nodes, topics))
     return {
-        "outputs": tuple(_port_row(port, components, types) for port in outputs),
+        "outputs": tuple((*_port_row(port, components, types), warn_of_outputs(lookup, (port,))) for port in outputs),
         "inputs": tuple((*_port_row(port, components, types), _mark_input(port)) for port in inputs),
         "rims": tuple(_list_rim_rows(architecture, shells, types, {"input": input_numbers, "output": output_numbers})),
         "flows": flows,

@@ -14,7 +14,7 @@ const archgenExplorer = (function () {
       "place", "hostPlace", "written"],
     topics: ["address", "name", "flow"],
     types: ["name", "message"],
-    outputs: ["component", "name", "type", "note"],
+    outputs: ["component", "name", "type", "note", "warning"],
     inputs: ["component", "name", "type", "note", "marks"],
     rims: ["shell", "isOutput", "name", "type", "note", "marks", "ports", "sources"],
     chains: ["address", "id", "title", "status", "words", "components", "nodes"],
@@ -109,7 +109,8 @@ const archgenExplorer = (function () {
       if (isCall) addStep(steps, input.component, writer);
       const names = outputs.map((at) => model.outputs[at].name).join(", ");
       const types = [...new Set(outputs.map((at) => model.types[model.outputs[at].type]?.name).filter(Boolean))];
-      return { number, style: STYLES[style], tail: isCall ? input.component : writer, head: isCall ? writer : input.component,
+      const warning = [...new Set(outputs.map((at) => model.outputs[at].warning).filter(Boolean))].join(", ");
+      return { number, warning, style: STYLES[style], tail: isCall ? input.component : writer, head: isCall ? writer : input.component,
         optional: input.optional, made: input.made, label: types.join(", ") || names, from: names, to: input.name, types, input, outputs,
         writers: outputs.map((at) => model.outputs[at]) };
     });

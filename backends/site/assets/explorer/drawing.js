@@ -164,7 +164,9 @@ archgenExplorer.makeDrawing = function (map, layers) {
 
   function nameFlows(flows) {
     const names = [...new Set(flows.flatMap((flow) => (flow.types.length ? flow.types : [flow.label])))];
-    return names.length <= 2 ? names.map((name, at) => (at < names.length - 1 ? name + "," : name)) : [archgenExplorer.count(flows.length, "flow")];
+    const warnings = [...new Set(flows.map((flow) => flow.warning).filter(Boolean))].map((warning) => `(${warning})`);
+    const lines = names.length <= 2 ? names.map((name, at) => (at < names.length - 1 ? name + "," : name)) : [archgenExplorer.count(flows.length, "flow")];
+    return [...lines, ...warnings];
   }
 
   function mark(box, name, isOn) {
