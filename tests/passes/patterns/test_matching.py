@@ -8,7 +8,13 @@ import pytest
 import yaml
 
 from archgen.passes.patterns.matching import IndexToken, list_tokens, match_view
-from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, TextPattern, ViewValue, parse_text_pattern
+from archgen.passes.patterns.pattern_shapes import (
+    ComponentBody,
+    PortReference,
+    TextPattern,
+    ViewValue,
+    parse_text_pattern,
+)
 from archgen.passes.patterns.rule_reading import RuleReader
 from archgen.passes.patterns.text_matching import match_text
 from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget
