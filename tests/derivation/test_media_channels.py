@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from archgen.derivation.inner_memory import mark_inner_memory
+from archgen.derivation.media_channels import derive_channels
+from archgen.derivation.writing_endpoints import find_node_parts
 from archgen.model.architecture import Architecture
 from archgen.model.node import Topic
-from archgen.transform.inner_memory import mark_inner_memory
-from archgen.transform.media_channels import derive_channels
-from archgen.transform.writing_endpoints import find_node_parts
 
 Derived = Callable[[str], Architecture]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from archgen.derivation.writing_endpoints import NodePart, filter_uses
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Input, Output
 from archgen.model.node import Endpoint, FlowKind, Topic
 from archgen.model.port_media import make_channel_key, nature_of
 from archgen.model.quantity import Quantity
-from archgen.transform.writing_endpoints import NodePart, filter_uses
 
 
 @dataclass(slots=True)
