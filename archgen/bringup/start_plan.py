@@ -15,10 +15,10 @@ from archgen.bringup.start_commands import (
 )
 from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
 from archgen.bringup.wait_circles import keep_acyclic
+from archgen.derivation.ros_names import resolve_ros_name
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
-from archgen.transform.ros_names import resolve_ros_name
 
 
 def describes_start(architecture: Architecture) -> bool:

@@ -151,7 +151,7 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
             predicate = f"lacks the key `{kind.property}`"
         case "Enum":
             predicate = f"must be one of {', '.join(f'`{option}`' for option in kind.options)}"
-        case "AnyOf":
+        case "AnyOf" if error.instance_path[:1] == ["view"]:
             predicate = f"must be one of {_list_view_names()}, or a list of these"
         case "PropertyNames":
             predicate = _describe_wrong_key(kind.error.instance, is_filter=error.instance_path == ["escapes"])
