@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import zipfile
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -100,21 +101,33 @@ def test_the_page_stands_by_itself(made: PartnerAgreement) -> None:
     assert "This picture could not be drawn" not in html
 
 
-def test_the_nu_checker_finds_nothing(tmp_path: Path) -> None:
-    """All at once: Java takes longer to begin than to read a page."""
+def judge_pages(pages: Sequence[Path]) -> list[str]:
+    """Return what the Nu checker says against pages, of all at once: Java takes longer to begin than to read one."""
     java = shutil.which("java")
     assert java, "this test needs a Java (Debian: `default-jre-headless`)"
     assert NU.exists(), "this test needs the Nu checker (`npm ci` in tests/judges)"
-    pages = [tmp_path / f"{kind}.html" for kind in KINDS]
-    for page in pages:
-        agreement = make_agreement(page.stem, tmp_path / page.stem)
-        page.write_bytes(agreement_documents.render_agreement_html(agreement, OutputOptions()))
     command = [java, *QUICK_START, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", *map(str, pages)]
     done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
     messages = [
         m for m in json.loads(done.stderr)["messages"] if m["type"] == "error"
     ]  # texts need not be in Unicode's NFC
-    assert [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in messages] == []
+    return [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in messages]
+
+
+def test_the_nu_checker_finds_nothing(tmp_path: Path) -> None:
+    pages = [tmp_path / f"{kind}.html" for kind in KINDS]
+    for page in pages:
+        agreement = make_agreement(page.stem, tmp_path / page.stem)
+        page.write_bytes(agreement_documents.render_agreement_html(agreement, OutputOptions()))
+    assert judge_pages(pages) == []
+
+
+def test_the_nu_checker_finds_a_fault_on_any_page(tmp_path: Path) -> None:
+    for name, body in (("sound", "<p>a</p>"), ("faulty", "<p id=a>a</p><p id=a>b</p>")):
+        page = f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>T</title></head><body>{body}</body></html>'
+        (tmp_path / f"{name}.html").write_text(page, encoding="utf-8")
+    (said,) = judge_pages([tmp_path / "sound.html", tmp_path / "faulty.html"])
+    assert "faulty.html:1: Duplicate ID" in said
 
 
 def test_word_opens_it(made: PartnerAgreement, tmp_path: Path) -> None:
