@@ -49,7 +49,7 @@ def test_ros_2_reads_values_of_the_project_and_the_component_then_files_then_tho
     assert shlex.join(steps["camera"].command) == (
         "ros2 run p camera --ros-args -r __node:=camera -r __ns:=/front -p use_sim_time:=true -p rate:=15.0 "
         "-p 'gains:=[1.0, 2.5]' -p frame:=map --params-file config/camera.yaml --params-file 'config/more files.yaml' "
-        "-p rate:=30.0 -p filter.size:=3 -p 'filter.names:=[a, b c, \"1\"]'"
+        '-p rate:=30.0 -p filter.size:=3 -p \'filter.names:=[a, "b c", "1"]\''
     )
     assert shlex.join(steps["lidar"].command) == (
         "ros2 component load /box p p::Lidar --node-name lidar -p use_sim_time:=true -p rate:=10 "
@@ -71,7 +71,7 @@ def test_ros_1_has_its_own_words_and_a_server_for_what_words_cannot_say(derived:
         "rosparam set /front/camera/frame map",
         "rosparam load config/camera.yaml /front/camera",
         "rosparam load 'config/more files.yaml' /front/camera",
-        "rosparam set /front/camera/filter/names '[a, b c, \"1\"]'",
+        'rosparam set /front/camera/filter/names \'[a, "b c", "1"]\'',
     ]
     assert camera.command == (
         *("rosrun", "p", "camera", "__name:=camera", "__ns:=/front", "_rate:=30.0", "_filter/size:=3"),
@@ -103,6 +103,8 @@ def test_ros_1_has_its_own_words_and_a_server_for_what_words_cannot_say(derived:
         ('"{a: 1}"', '"{a: 1}"'),
         ("/dev/video0", "/dev/video0"),
         ("[]", "[]"),
+        ('"\\u0085\\u2028\\n"', '"\\u0085\\u2028\\n"'),
+        ("[{a: 1}]", "[{a: 1}]"),
         ("[[1, 2], [3]]", "[[1, 2], [3]]"),
     ],
 )
