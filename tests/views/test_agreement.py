@@ -80,6 +80,20 @@ def test_the_steps_of_use_cases_that_cross_from_one_to_the_other(tmp_path: Path)
     ]
 
 
+def test_what_of_one_waits_for_what_of_the_other_at_the_start(tmp_path: Path) -> None:
+    source = DUO.replace(
+        "planner_node: {implements: planner,", "planner_node: {implements: planner, start: {ready: 2 s},"
+    )
+    table = section(made(tmp_path, source=source).outline, "Start-up").blocks[1]
+    assert isinstance(table, Table)
+    assert [[text(cell) for cell in row][:5] for row in table.rows] == [
+        ["finder_node", "South Vision", "planner_node", "North Robotics", "2 s have passed"],
+        ["calibration", "North Robotics", "camera_driver", "South Vision", "it is started"],
+    ]
+    assert [text(row[5]) for row in table.rows] == ["calls moving.planner.plan", "reads seeing.camera.image"]
+    assert "Start-up" not in {each.title for each in made(tmp_path / "plain").outline.sections}
+
+
 def test_the_partner_of_a_node_answers_too(tmp_path: Path) -> None:
     """West's node implements north's arm: what runs between arm and planner is between west and north."""
     assert keys(tmp_path, "west", "north") == [

@@ -101,7 +101,7 @@ def link_step(step: StartStep) -> Text:
 def _list_ways(step: StartStep) -> Iterator[Inlines]:
     for words in step.preparations:
         yield (Text(shlex.join(words), code=True),)
-    yield (Text(shlex.join(step.command), code=True),) if step.command else _muted("not known yet")
+    yield (Text(shlex.join(step.command), code=True),) if step.command else _muted(start_phrases.describe_unknown(step))
     for words in step.transitions:
         yield (Text(shlex.join(words), code=True),)
     for name, words in step.ros.value_commands.items() if step.ros else ():
