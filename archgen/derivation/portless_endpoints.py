@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from archgen.derivation import ros_names
+from archgen.derivation.reading_endpoints import WriterIndex
+from archgen.derivation.writing_endpoints import DEFAULT_QOS, flow_of_use
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, UseKind
-from archgen.transform import ros_names
-from archgen.transform.reading_endpoints import WriterIndex
-from archgen.transform.writing_endpoints import DEFAULT_QOS, flow_of_use
 
 SharedKeyCounts = Mapping[tuple[str, str], int]
 """The number of nodes with an internal entry, by component id and the entry's key."""
@@ -60,6 +60,7 @@ def _endpoints_of_use(node: Node, use: PortUse, shared_keys: SharedKeyCounts) ->
             component=component,
             message=use.message,
             qos=use.qos or DEFAULT_QOS,
+            own_name=use.own_name,
             internal=use.internal,
             written=True,
             name_written=bool(use.topics),

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import field
 
+from archgen.derivation import ros_names
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Output
 from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, Qos, UseKind
 from archgen.model.port_media import uses_ros
-from archgen.transform import ros_names
 
 UNWRITTEN_USE = PortUse("publishes", "", None)
 """The entry of a port that its node does not list. Compared by identity: a written entry may look the same."""
@@ -110,6 +110,7 @@ def _endpoints_of_output(
             message=message,
             type=output.type,
             qos=use.qos or DEFAULT_QOS,
+            own_name=use.own_name,
             written=use is not UNWRITTEN_USE,
             name_written=bool(use.topics),
             at=use.at,
