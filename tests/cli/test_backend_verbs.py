@@ -138,7 +138,7 @@ def test_a_name_that_is_no_backend(
 
 def test_a_name_that_no_backend_of_a_workspace_has(run: Run, first: Path) -> None:
     ran = run("generate", "zzz", "-C", first, "-o", first.parent / "workspace")
-    assert ran.err == ("Error: there is no text backend `zzz`; there are ros_interfaces\n")
+    assert ran.err == ("Error: there is no text backend `zzz`; there are orca, ros_interfaces\n")
 
 
 def test_a_backend_cannot_be_called_as_an_output(run: Run, robot: Path, tmp_path: Path) -> None:
@@ -187,6 +187,7 @@ def test_a_template_that_fails_leaves_the_file_as_it_was(run: Run, robot: Path, 
 
 TABLE = """\
 id              title                      makes      emitter  view                      origin
+orca            Configurations of Orca     workspace  text     components                shipped
 report          Word report                documents  docx     outline                   shipped
 reqif           Requirements as ReqIF      file       reqif    record                    shipped
 ros_interfaces  Interface packages of ROS  workspace  text     interfaces                shipped

@@ -17,7 +17,14 @@ def _make_interfaces(context: GenerationContext) -> GeneratedView:
     return interface_packages.make_view(context)
 
 
+def _make_components(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import component_records
+
+    return component_records.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
+    "components": _make_components,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
