@@ -110,9 +110,7 @@ def _record_component(context: GenerationContext, component: Component) -> dict[
         **_record_program(node),
         "inputs": [_record_input(context, port) for port in component.inputs.values()],
         "outputs": [_record_output(context, port) for port in component.outputs.values()],
-        "parameters": [
-            _record_parameter(each, backend) for each in list_set_parameters(architecture, component, node)
-        ],
+        "parameters": [_record_parameter(each, backend) for each in list_set_parameters(architecture, component, node)],
         "hints": to_plain(read_own_hints(component.annotations.hints, backend)),
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule
 from archgen.diagnostics.source_span import Span, first_written_span
@@ -17,6 +17,7 @@ from archgen.views.generation.component_records import (
     name_tag,
 )
 from archgen.views.generation.generation_context import GenerationContext
+from archgen.views.record_values import to_plain
 
 _TAG = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
 _LINE_BREAKING = frozenset(("Cc", "Cs", "Zl", "Zp"))
@@ -75,7 +76,7 @@ def find_unfit_values(context: GenerationContext, rule: Rule) -> Iterator[Diagno
     for component_id in context.wanted_components:
         component = context.architecture.components[component_id]
         for each in _list_parameters(context, component):
-            fault = _find_value_fault(each.value)
+            fault = _find_value_fault(to_plain(each.value))
             if fault:
                 yield Diagnostic(
                     rule.name,
@@ -94,17 +95,18 @@ def _list_parameters(context: GenerationContext, component: Component) -> Iterat
 
 def _find_value_fault(value: object) -> tuple[str, str] | None:
     """Return what is wrong with a value, and what to do about it; None where nothing is."""
-    if isinstance(value, str):
-        if any(unicodedata.category(character) in _LINE_BREAKING for character in value):
-            return "has a line break or a control character, and stands on one line of a file", "write it without"
-        if _SUBSTITUTION_MARK in value:
-            return "is filled in by a launch file, and nothing fills it in here", "give a value"
-    elif isinstance(value, Mapping):
-        return ("is a mapping inside of a list, which has no line of its own", "make sets of parameters of it")
-    elif isinstance(value, Sequence):
-        if any(isinstance(each, str) and '"' in each for each in value):
-            return "has a double quote in a list, where texts stand in double quotes", "write it without"
-        if any(not isinstance(each, Mapping) and isinstance(each, Sequence) and not isinstance(each, str) for each in value):
-            return "is a list of lists, which has no line of its own", "make sets of parameters of it"
-        return next(filter(None, map(_find_value_fault, value)), None)
+    if not isinstance(value, list):
+        return _find_text_fault(value) if isinstance(value, str) else None
+    if any(isinstance(each, str) and '"' in each for each in value):
+        return "has a double quote in a list, where texts stand in double quotes", "write it without"
+    if any(isinstance(each, list | dict) for each in value):
+        return "is a list of more than texts and numbers, which has no line of its own", "make sets of parameters of it"
+    return next(filter(None, map(_find_value_fault, value)), None)
+
+
+def _find_text_fault(text: str) -> tuple[str, str] | None:
+    if any(unicodedata.category(character) in _LINE_BREAKING for character in text):
+        return "has a line break or a control character, and stands on one line of a file", "write it without"
+    if _SUBSTITUTION_MARK in text:
+        return "is filled in by a launch file, and nothing fills it in here", "give a value"
     return None
