@@ -22,7 +22,6 @@ from archgen.passes.patterns.text_matching import resolve_text
 from archgen.schema.short_forms import ElementForm
 
 
-
 class EditError(Exception):
     """What a rule writes cannot be written. Carries what is wrong, and what to do."""
 

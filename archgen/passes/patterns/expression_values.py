@@ -89,7 +89,9 @@ def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewV
         name = values[0]
         body = (view.get_component(name) or view.get_type(name)) if isinstance(name, str) else name
         if not isinstance(body, dict):
-            message = "`specialise` takes a type by its name, or all that it has: `$body` in `components: {$name: $body}`"
+            message = (
+                "`specialise` takes a type by its name, or all that it has: `$body` in `components: {$name: $body}`"
+            )
             raise WrongValueError(message)
         return specialise(body, stands_for)
     if operand.function == "without":
