@@ -12,7 +12,7 @@ from archgen.products.project_passes import list_pass_names, list_pass_rows
 from tests.repositories import repository
 from tests.running import ROOT, archgen
 
-OWN_PASS = """title: Tags what sends poses
+TAG_POSES = """title: Tags what sends poses
 rules:
   - find: {components: {$c: {outputs: {$port: {type: Pose}}}}}
     unless: {components: {$c: {tags: [poses]}}}
@@ -25,7 +25,7 @@ def robot(tmp_path: Path) -> Path:
     """Return a cleaning robot with a pass of its own."""
     folder = shutil.copytree(ROOT / "examples" / "cleaning_robot", tmp_path / "robot")
     (folder / "passes").mkdir()
-    (folder / "passes" / "tag_poses.yaml").write_text(OWN_PASS)
+    (folder / "passes" / "tag_poses.yaml").write_text(TAG_POSES)
     return folder
 
 
@@ -64,7 +64,7 @@ def test_what_cannot_be_done_is_said_and_nothing_is_written(robot: Path) -> None
         in archgen("transform", "tag_poses", "-o", "passes/tag_poses.yaml", cwd=robot, status=2).stderr
     )
     (robot / "passes" / "tag_poses.yaml").write_text(
-        OWN_PASS.replace("unless: {components: {$c: {tags: [poses]}}}", "where: $c != x")
+        TAG_POSES.replace("unless: {components: {$c: {tags: [poses]}}}", "where: $c != x")
     )
     done = archgen("transform", "tag_poses", cwd=robot, status=1)
     assert b"this rule changes nothing that it finds" in done.stderr
@@ -75,8 +75,8 @@ def test_what_cannot_be_done_is_said_and_nothing_is_written(robot: Path) -> None
 
 
 def test_a_pass_is_called_as_no_other(robot: Path) -> None:
-    (robot / "passes" / "connect_ports.yaml").write_text(OWN_PASS)
-    (robot / "passes" / "Loud.yaml").write_text(OWN_PASS)
+    (robot / "passes" / "connect_ports.yaml").write_text(TAG_POSES)
+    (robot / "passes" / "Loud.yaml").write_text(TAG_POSES)
     said = archgen("check", cwd=robot, status=1).stdout.decode()
     assert "there is a pass `connect_ports` already" in said
     assert "`Loud` is no name for a pass" in said
@@ -85,7 +85,7 @@ def test_a_pass_is_called_as_no_other(robot: Path) -> None:
 def test_own_passes_run_in_a_review_only_if_the_main_line_allows_them(tmp_path: Path) -> None:
     files = {
         "archgen.yaml": "archgen: 1\ngroups: {g: {components: {a: {outputs: {p: Pose}}}}}\ntypes: {Pose: std_msgs/msg/String}\n",
-        "passes/tag_poses.yaml": OWN_PASS,
+        "passes/tag_poses.yaml": TAG_POSES,
     }
     unnamed = tmp_path / "unnamed"
     repository(unnamed, files)
@@ -95,6 +95,6 @@ def test_own_passes_run_in_a_review_only_if_the_main_line_allows_them(tmp_path: 
     named = tmp_path / "named"
     repository(named, {**files, "archgen.yaml": files["archgen.yaml"] + "review: {passes: [tag_poses]}\n"})
     archgen("transform", "tag_poses", "--trust", "HEAD", cwd=named)
-    (named / "passes" / "tag_poses.yaml").write_text(OWN_PASS.replace("[poses]", "[other]"))
+    (named / "passes" / "tag_poses.yaml").write_text(TAG_POSES.replace("[poses]", "[other]"))
     said = archgen("transform", "tag_poses", "--trust", "HEAD", cwd=named, status=2).stderr
     assert b"`passes/tag_poses.yaml` is not as it is in `HEAD`" in said

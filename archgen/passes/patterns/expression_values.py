@@ -72,7 +72,7 @@ def _has(holder: ViewValue, value: ViewValue) -> bool:
     return isinstance(holder, (dict, str)) and isinstance(value, str) and value in holder
 
 
-def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: PLR0911 - one for each function
+def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: C901, PLR0911 - one for each function
     """Return what an operand stands for. Raise WrongValueError."""
     if isinstance(operand, TextOperand):
         if isinstance(operand.pattern, Variable):
