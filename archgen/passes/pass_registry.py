@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.passes.connection_passes import CONNECT_COMPONENTS, CONNECT_PORTS, CONNECT_TYPES
+from archgen.passes.flattening import FLATTEN
 from archgen.passes.generic_removal import REMOVE_GENERICS
 from archgen.passes.instance_resolution import RESOLVE_INSTANCES
 from archgen.passes.pass_shape import Pass
@@ -16,6 +17,7 @@ _ALL_PASSES = (
     CONNECT_TYPES,
     RESOLVE_INSTANCES,
     REMOVE_GENERICS,
+    FLATTEN,
 )
 PASSES: dict[str, Pass] = {each.name: each for each in _ALL_PASSES}
 """The passes by name."""
