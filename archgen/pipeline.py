@@ -190,7 +190,7 @@ def _add_origin_comments(packed_project: PackedProject, checked_project: Checked
     from archgen.passes import origin_comments
 
     comments = (
-        origin_comments.list_origin_comments(transformed.root, transformed.provenance)
+        origin_comments.list_origin_comments(transformed.root, transformed.provenance, architecture.made_elements)
         if transformed
         else origin_comments.keep_origin_comments(checked_project.merged_table, architecture.made_elements)
     )
@@ -389,6 +389,7 @@ def transform_project(
         pass_names,
         checked_project.architecture.interfaces,
         known_passes,
+        checked_project.transformed,
     )
     diagnostics = (*_merge_project(checked_project.loaded_project).diagnostics, *transformed.findings)
     reading_errors = tuple(_list_structural_errors(checked_project.loaded_project.diagnostics))
@@ -399,7 +400,10 @@ def transform_project(
     judged_project = _judge_in_variants(merged_project, analysis_memory or AnalysisMemory(), None)
     from archgen.passes import origin_comments
 
-    made_elements = origin_comments.index_origins(transformed.root, transformed.provenance)
+    made_elements = {
+        **checked_project.architecture.made_elements,
+        **origin_comments.index_origins(transformed.root, transformed.provenance),
+    }
     made_places = origin_comments.list_made_places(transformed.root, transformed.provenance)
     return replace(
         judged_project,

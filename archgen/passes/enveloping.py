@@ -34,9 +34,14 @@ def _envelope(work: PassWork) -> None:
         if place in wrapped_places:
             for path in paths:
                 text = work.tree.get_text(path)
-                if text is not None and read_generic_name(text).base != wrapper:
+                if text is not None and read_generic_name(text).base != wrapper and not _is_wrapped(work, text):
                     work.tree.set(path, f"{wrapper}<{text.strip()}>", path)
-    if work.tree.get(("types", wrapper)) is None:
+    uses_wrapper = any(
+        read_generic_name(work.tree.get_text(path) or "").base == wrapper
+        for paths in type_paths.values()
+        for path in paths
+    )
+    if uses_wrapper and work.tree.get(("types", wrapper)) is None:
         first_path = next(paths[0] for place, paths in type_paths.items() if place in wrapped_places)
         body: dict[str, PlainData] = {
             "generic": ["T"],
@@ -51,6 +56,14 @@ def _find_wrapper(work: PassWork) -> str:
     """Return the name of the wrapping type: the first that is free, or that wraps already."""
     further_names = (f"{_NAMES[-1]} {number}" for number in count(2))
     return next(name for name in chain(_NAMES, further_names) if _is_usable(work.tree.get(("types", name))))
+
+
+def _is_wrapped(work: PassWork, text: str) -> bool:
+    """Whether a type is what wrapping made of another, which has a name of its own by now."""
+    body = work.tree.get(("types", text.strip()))
+    return isinstance(body, MappingNode) and {"sender", "payload"} <= set(
+        mapping_values.get_mapping(body, "fields").entries
+    )
 
 
 def _is_usable(body: YamlNode | None) -> bool:

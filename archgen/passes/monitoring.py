@@ -18,6 +18,7 @@ MONITOR_TAG = "state_monitor"
 """The tag of monitors that the pass made: by it they are known again."""
 STATE_MESSAGE = "diagnostic_msgs/msg/DiagnosticStatus"
 _STATE_NAMES = ("state", "own_state", "reported_state")
+_HOLDER_SECTIONS = frozenset({"groups", "component_types", "libraries"})
 _MONITOR_NAMES = ("monitor", "state_monitor")
 
 
@@ -32,15 +33,36 @@ class _MonitorWriter:
         self._work = work
         self._tree = work.tree
         self._state_ports: dict[TreePath, str | None] = {}
+        self._watched_paths: set[TreePath] = set()
 
     def write_all(self) -> None:
-        holders = [each for each in list_holders(self._tree) if not self._is_foreign(each.path)]
+        holders = [each for each in list_holders(self._tree) if self._is_declared(each.path)]
         for holder in holders:
-            if len(holder.path) > 2 or holder.path[0] == "component_types" or _is_library_type(holder.path):  # noqa: PLR2004
+            if len(holder.path) > 2 or self._is_type(holder.path):  # noqa: PLR2004 - a group is no component
                 self._find_state_port(holder.path)
         # Inner ones first: what is around asks whether they have a state.
         for holder in reversed(holders):
             self._write_monitor(holder)
+
+    def _is_declared(self, path: TreePath) -> bool:
+        """Whether a component is declared where it stands: what changes something inside of an instance declares nothing."""
+        if self._is_foreign(path):
+            return False
+        around = path[:-2]
+        while around and around[-1] not in _HOLDER_SECTIONS:
+            is_type = self._is_type(around)
+            name = str(path[len(around) + 1])
+            if self._has_inherited(around, name) or (find_type_of(self._tree, around) is not None and not is_type):
+                return False
+            if is_type or around[-2] != "components":
+                break
+            around = around[:-2]
+        return True
+
+    def _is_type(self, path: TreePath) -> bool:
+        """Whether a path is that of a component type."""
+        own_length = {"component_types": 2, "libraries": 4}
+        return len(path) == own_length.get(str(path[0]), 0)
 
     def _is_foreign(self, path: TreePath) -> bool:
         return path[0] == "libraries" and path[1] == SHIPPED_ID
@@ -100,6 +122,13 @@ class _MonitorWriter:
 
     def _write_monitor(self, holder: Holder) -> None:
         """Write the monitor of what holds components, with an input for each state inside."""
+        if holder.path in self._watched_paths:
+            return
+        self._watched_paths.add(holder.path)
+        base = find_type_of(self._tree, holder.path) if self._is_type(holder.path) else None
+        if base is not None and not self._is_foreign(base):
+            # What it is made from may bring a monitor, which then watches what it adds.
+            self._write_monitor(Holder(base, self._tree.get_mapping(base[:-1])[str(base[-1])]))
         watched = dict(self._list_watched(holder.path))
         if not watched:
             return
@@ -132,7 +161,7 @@ class _MonitorWriter:
     def _list_watched(self, path: TreePath) -> Iterator[tuple[str, str]]:
         """Yield what stands directly inside and is not had from a type, with the output that says how it is."""
         type_path = None if path[0] == "groups" and len(path) == 2 else find_type_of(self._tree, path)  # noqa: PLR2004
-        if type_path is not None and not _is_own_type(path) and not _is_library_type(path):
+        if type_path is not None and not self._is_type(path):
             return
         for name in list(self._tree.get_mapping((*path, "components"))):
             inner_path = (*path, "components", name)
@@ -182,14 +211,6 @@ class _MonitorWriter:
         type_name = self._tree.get_text((*output_path, "type"))
         self._tree.set((*monitor_path, "outputs", "state"), {"type": type_name}, path)
         self._tree.set((*output_path, "from"), [f"{monitor_path[-1]}.state"], path)
-
-
-def _is_own_type(path: TreePath) -> bool:
-    return path[0] == "component_types" and len(path) == 2  # noqa: PLR2004 - its own path
-
-
-def _is_library_type(path: TreePath) -> bool:
-    return path[0] == "libraries" and len(path) == 4  # noqa: PLR2004 - its own path
 
 
 MONITOR = Pass(

@@ -36,15 +36,32 @@ _SECTIONS_OF_ELEMENTS = frozenset(
     | {"requirements", "use_cases", "partners", "resources"}
 )
 _MAX_OUTER_LINES = 100_000
+MadePlace = tuple[Span, str]
+"""The place that a made value carries, and its key where something else has this place, too; else nothing."""
 
 
-def list_origin_comments(root: MappingNode, provenance: Mapping[TreePath, Origin]) -> dict[TreePath, str]:
-    """Return the comments of a transformed project by the path of what each is about: what was made, and all elements."""
-    comments = {path: write_comment(MadeElement(each.passes, str(each.at))) for path, each in provenance.items()}
+def list_origin_comments(
+    root: MappingNode, provenance: Mapping[TreePath, Origin], earlier: Mapping[ElementPlace, MadeElement]
+) -> dict[TreePath, str]:
+    """Return the comments of a transformed project by the path of what each is about: what was made, and all elements.
+
+    `earlier` are those of passes that made the project's own files: what they say is further back.
+    """
+    made = {path: MadeElement(each.passes, str(each.at)) for path, each in provenance.items()}
+    places = {path: each.at for path, each in provenance.items()}
     for path, key_span in _list_elements(root):
-        if path not in comments:
-            made = _find_around(provenance, path)
-            comments[path] = write_comment(MadeElement(made.passes if made else (), str(key_span)))
+        if path not in made:
+            around = _find_around(provenance, path)
+            made[path] = MadeElement(around.passes if around else (), str(key_span))
+            places[path] = key_span
+    comments = keep_origin_comments(root, earlier)
+    for path, each in made.items():
+        before = earlier.get((places[path].file, places[path].line, 0))
+        comments[path] = write_comment(
+            MadeElement((*before.passes, *(n for n in each.passes if n not in before.passes)), before.place)
+            if before
+            else each
+        )
     return comments
 
 
@@ -130,7 +147,7 @@ def label_findings(
     findings: Iterable[Diagnostic],
     sources: SourceTexts,
     made_elements: Mapping[ElementPlace, MadeElement],
-    made_places: Mapping[Span, Origin],
+    made_places: Mapping[MadePlace, Origin],
 ) -> tuple[Diagnostic, ...]:
     """Return findings that say of what a pass made which one it was, and from what."""
     return tuple(_label_finding(each, sources, made_elements, made_places) for each in findings)
@@ -140,9 +157,10 @@ def _label_finding(
     finding: Diagnostic,
     sources: SourceTexts,
     made_elements: Mapping[ElementPlace, MadeElement],
-    made_places: Mapping[Span, Origin],
+    made_places: Mapping[MadePlace, Origin],
 ) -> Diagnostic:
-    origin = made_places.get(finding.span)
+    name = (finding.element or "").rpartition(".")[2]
+    origin = made_places.get((finding.span, "")) or made_places.get((finding.span, name))
     if origin is not None:
         text = f"{MadeElement(origin.passes, '').sentence} this"
         return replace(finding, labels=(*finding.labels, Label(origin.at, text)))
@@ -173,7 +191,7 @@ def _find_commented_line(
     return None
 
 
-def list_made_places(root: MappingNode, provenance: Mapping[TreePath, Origin]) -> dict[Span, Origin]:
+def list_made_places(root: MappingNode, provenance: Mapping[TreePath, Origin]) -> dict[MadePlace, Origin]:
     """Return the places that made values carry, each with its origin; what only moved is where it was written."""
     places: dict[Span, Origin] = {}
     kept_places: set[Span] = set()
@@ -187,7 +205,10 @@ def list_made_places(root: MappingNode, provenance: Mapping[TreePath, Origin]) -
                 places.setdefault(span, origin)
             else:
                 kept_places.add(span)
-    return {span: origin for span, origin in places.items() if span not in kept_places}
+    named_places: dict[MadePlace, Origin] = {
+        (origin.at, str(path[-1])): origin for path, origin in provenance.items() if not origin.is_moved
+    }
+    return named_places | {(span, ""): origin for span, origin in places.items() if span not in kept_places}
 
 
 def _list_spans(node: YamlNode) -> Iterator[Span]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from archgen.diagnostics.element_origins import Origin, TreePath
 from archgen.diagnostics.source_span import Span
-from archgen.passes.project_tree import ProjectTree
+from archgen.passes.project_tree import ProjectTree, have_same_content
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, copy_node
 
 
@@ -50,6 +50,11 @@ class _OldPlaces:
         """Return the origin of a value as it was before."""
         return self._tree.trace(old_path)
 
+    def is_rewritten(self, old_path: TreePath, value: YamlNode) -> bool:
+        """Whether a leaf holds something else than before."""
+        old_value = self._tree.get(old_path)
+        return not isinstance(value, MappingNode) and old_value is not None and not have_same_content(old_value, value)
+
     def find_origin(self, old_path: TreePath) -> Origin | None:
         """Return the origin that is written down of a value itself."""
         return self._tree.provenance.get(old_path)
@@ -82,6 +87,8 @@ def _trace_mapping(
         if found_path is not None and found_path != expected_path:
             is_unmoved = found_path == inner_path
             origins[inner_path] = places.trace(found_path) if is_unmoved else places.make_origin(found_path)
+        elif found_path is not None and places.is_rewritten(found_path, entry.value):
+            origins[inner_path] = places.make_origin(found_path)._replace(is_moved=False)
         elif found_path is not None and (own_origin := places.find_origin(found_path)) is not None:
             origins[inner_path] = own_origin
         now_expected = found_path or expected_path
