@@ -32,6 +32,7 @@ from archgen.frozen import dataclass, replace
 from archgen.link import (
     chapter_pictures,
     element_outline,
+    hint_checks,
     interface_sources,
     library_merging,
     mapping_values,
@@ -317,9 +318,11 @@ def _judge_in_variants(
     from archgen.findings import variant_findings
 
     judge = _VariantJudge(merged_project, checked_project, analysis_memory)
+    judged_names = variant_order.list_judged(checked_project.architecture.variants)
+    analysis_memory.make_room(len(judged_names) + 1)
     variants = {
         name: judge.judge_steps(judge.list_steps([name]))
-        for name in variant_order.list_judged(checked_project.architecture.variants)
+        for name in judged_names
         if variant_names is None or name in variant_names
     }
     judged_projects = {BASE_NAME: checked_project, **variants}
@@ -523,8 +526,19 @@ def _merge_project(loaded_project: LoadedProject) -> _MergedProject:
         if "variants" in merged_table.entries
         else ()
     )
-    all_findings = (*merge_findings, *library_findings, *variant_findings)
+    pass_findings = _find_wrong_passes(loaded_project)
+    all_findings = (*merge_findings, *library_findings, *variant_findings, *pass_findings)
     return _MergedProject(loaded_project, merged_table, all_findings, reading_errors, damaged_elements)
+
+
+def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
+    is_folder = loaded_project.first_file == project.PROJECT_FILE
+    if not is_folder or not loaded_project.files.has_path(project.PASS_FOLDER.rstrip("/")):
+        return ()
+    # Imported here: hardly any project has passes of its own.
+    from archgen.passes.patterns.pattern_registry import find_wrong_passes
+
+    return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
 
 
 def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:
@@ -574,6 +588,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     missing_verifications = verification_files.find_missing_verifications(
         linked_architecture, loaded_project.files if is_folder else None
     )
+    wrong_hints = tuple(hint_checks.find_wrong_hints(linked_architecture, loaded_project.files)) if is_folder else ()
     linking_errors = _list_structural_errors((*merge_findings, *interface_findings, *link_findings))
     waiting_rules = error_aftermath.list_waiting_rules(
         (*reading_errors, *linking_errors), loaded_project.lost_keys, is_partial=loaded_project.partial
@@ -590,6 +605,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
         *missing_files,
         *named_file_findings,
         *missing_verifications,
+        *wrong_hints,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules

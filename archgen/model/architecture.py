@@ -324,10 +324,6 @@ class Architecture:
         yield from self.topics.items()
         yield from self.channels.items()
 
-    def find_carrier(self, name: str) -> Topic | None:
-        """Return the topic, service, action or channel of a name."""
-        return self.topics.get(name) or self.channels.get(name)
-
     def list_endpoints(self) -> Iterator[Endpoint]:
         """Yield the endpoints of nodes over ROS, then those over other media."""
         yield from self.endpoints

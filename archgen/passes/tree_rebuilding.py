@@ -29,16 +29,19 @@ class _OldPlaces:
         self._tree = tree
         self._by_identity: dict[int, TreePath] = {}
         self._by_place: dict[tuple[Span, str], TreePath] = {}
+        self._components_by_place: dict[Span, TreePath] = {}
         for path, entry in _list_entries(tree.root, ()):
             self._by_identity[id(entry)] = path
             self._by_identity.setdefault(id(entry.value), path)
             self._by_place.setdefault((entry.key_span, str(path[-1])), path)
+            if len(path) > 1 and path[-2] == "components":
+                self._components_by_place.setdefault(entry.key_span, path)
 
-    def find(self, entry: MappingEntry) -> TreePath | None:
-        """Return where an entry, or one made from it, stood."""
+    def find(self, entry: MappingEntry, *, is_component: bool) -> TreePath | None:
+        """Return where an entry, or one made from it, stood. A component may be called otherwise now."""
         found = self._by_identity.get(id(entry)) or self._by_identity.get(id(entry.value))
-        # A leaf that is called otherwise now has the place of what it was made from.
-        return found or self._by_place.get((entry.key_span, entry.key.rpartition(".")[2]))
+        found = found or self._by_place.get((entry.key_span, entry.key))
+        return found or (self._components_by_place.get(entry.key_span) if is_component else None)
 
     def make_origin(self, old_path: TreePath) -> Origin:
         """Return the origin of what was moved by the pass that edits at present."""
@@ -83,7 +86,7 @@ def _trace_mapping(
     """Write down the origins of what stands in a mapping; `old_path` is where the mapping is taken to have stood."""
     for entry in node:
         inner_path, expected_path = (*path, entry.key), (*old_path, entry.key)
-        found_path = places.find(entry)
+        found_path = places.find(entry, is_component=path[-1:] == ("components",))
         if found_path is not None and found_path != expected_path:
             is_unmoved = found_path == inner_path
             origins[inner_path] = places.trace(found_path) if is_unmoved else places.make_origin(found_path)

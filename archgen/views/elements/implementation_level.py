@@ -6,6 +6,7 @@ import shlex
 
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
+from archgen.model.port_media import ROS
 from archgen.views import element_references, inline_text
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
@@ -16,6 +17,7 @@ from archgen.views.timing import element_timing
 
 _USE_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
 """Endpoints are listed in the direction of the data: inputs, outputs, then services and actions."""
+_LANGUAGE_TITLES = {"python": "Python", "cpp": "C++"}
 _USE_LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "serves", "calls": "calls"}
 
 
@@ -70,6 +72,9 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
         ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
         ("Command", inline_text.to_inlines(Text(shlex.join(node.command), code=True)) if node.command else ()),
+        ("Arguments", inline_text.to_inlines(Text(shlex.join(node.arguments), code=True)) if node.arguments else ()),
+        ("Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
+        ("Remaps", _remap_facts(lookup, node)),
         ("Start", _start_facts(node)),
         ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         ("Runs on", _location_cell(lookup, node)),
@@ -86,6 +91,15 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         rows.append((name, inline_text.to_inlines(sentence) if sentence else ()))
     rows += element_timing.make_node_facts(lookup, node)
     return [(name, value) for name, value in rows if value]
+
+
+def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
+    """Return the names that become others when the node starts, those of its ports first."""
+    port_names = {each.own_name: each.name for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
+    return inline_text.join_inlines(
+        (Text(own_name, code=True), Text(" is "), Text(name, code=True))
+        for own_name, name in (port_names | dict(node.remaps)).items()
+    )
 
 
 def _start_facts(node: Node) -> Inlines:
@@ -126,17 +140,22 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
     rows = tuple(
         (
             inline_text.to_inlines(_USE_LABELS[endpoint.use]),
-            inline_text.to_inlines(inline_text.topic_link(endpoint.name), *_internal_mark(endpoint)),
-            inline_text.to_inlines(element_references.message_link(endpoint.message))
-            if endpoint.message
-            else inline_text.UNKNOWN_INLINES,
+            (*inline_text.name_carrier(endpoint), *_internal_mark(endpoint)),
+            _name_content(endpoint),
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            inline_text.format_qos_cell(endpoint.qos) if endpoint.flow == "topic" else (),
+            inline_text.format_qos_cell(endpoint.qos) if endpoint.flow == "topic" and endpoint.medium == ROS else (),
         )
         for endpoint in sorted(endpoints, key=lambda e: _USE_ORDER[e.use])
     )
     columns = (Column("Use", 0.7), Column("Name", 1.9), Column("Message", 2.0), Column("Port", 0.8), Column("QoS", 1.3))
     return Table(f"table:endpoints/{node.id}", f"{node.id}: topics, services and actions", columns, rows)
+
+
+def _name_content(endpoint: Endpoint) -> Inlines:
+    """Return the message of an endpoint; over another medium than ROS, the type."""
+    if endpoint.medium != ROS and endpoint.type:
+        return inline_text.type_link(endpoint.type)
+    return (element_references.message_link(endpoint.message),) if endpoint.message else inline_text.UNKNOWN_INLINES
 
 
 def _internal_mark(endpoint: Endpoint) -> Inlines:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import time
 import tracemalloc
 import zipfile
 from pathlib import Path
@@ -16,6 +15,7 @@ from archgen.importers.reqif.attribute_meanings import fold_attribute_name
 from archgen.importers.reqif.reqif_parsing import ReqifError
 from archgen.importers.reqif.requirement_ids import is_requirement_id, make_distinct_id, make_requirement_id
 from archgen.importers.reqif.xhtml_text import XhtmlText
+from tests.quiet_seconds import measure_quiet_seconds
 
 DOORS = Path(__file__).parent / "doors.reqif"
 
@@ -26,16 +26,23 @@ def take(path: Path) -> ImportedRequirements:
 
 def test_a_file_of_doors_becomes_requirements_in_the_order_of_its_specifications() -> None:
     assert take(DOORS).requirements == {
-        "R-2": {"title": "The robot stops in time.", "priority": "Must_have", "source": "System, Driving"},
+        "R-2": {
+            "title": "The robot stops in time.",
+            "priority": "Must_have",
+            "hints": {"reqif": {"identifier": "_2", "id": "2"}},
+            "source": "System, Driving",
+        },
         "Bremse-4": {
             "title": "It brakes hard.",
             "description": "It brakes **hard**.\n\n- on tiles\n- on carpet <b> & mats",
+            "hints": {"reqif": {"identifier": "_4", "id": "Bremse 4"}},
             "parent": ["Hoehe-3", "R-2"],
             "source": "System, Driving",
         },
         "Hoehe-3": {
             "title": "Door sills",
             "description": "It drives over sills.\n\nSee (picture sill.png)",
+            "hints": {"reqif": {"identifier": "_3", "id": "Höhe 3"}},
             "source": "Mechanics",
         },
     }
@@ -196,9 +203,9 @@ def write_large(path: Path, size: int) -> int:
 
 def test_a_large_file_is_read_in_time_and_memory_in_proportion(tmp_path: Path) -> None:
     count = write_large(tmp_path / "large.reqif", 5_000_000)
-    start = time.process_time()
-    assert len(take(tmp_path / "large.reqif").requirements) == count + 3
-    assert time.process_time() - start < 3
+    taken: list[int] = []
+    assert measure_quiet_seconds(lambda: taken.append(len(take(tmp_path / "large.reqif").requirements))) < 3
+    assert taken == [count + 3]
     tracemalloc.start()
     read_reqif_file(tmp_path / "large.reqif")
     assert tracemalloc.get_traced_memory()[1] < 25_000_000
@@ -220,4 +227,4 @@ def test_a_tree_of_ten_thousand_levels_is_read(tmp_path: Path) -> None:
         f"<REQ-IF>{named}{objects}<SPECIFICATION>{opened}{closed}</SPECIFICATION></REQ-IF>", encoding="utf-8"
     )
     taken = take(tmp_path / "deep.reqif").requirements
-    assert taken["o9999"] == {"title": "T9999", "parent": ["o9998"]}
+    assert taken["o9999"] == {"title": "T9999", "hints": {"reqif": {"identifier": "o9999"}}, "parent": ["o9998"]}
