@@ -1,13 +1,20 @@
-"""`archgen transform`: rewrite a project by passes, and write what they make as a project."""
+"""`archgen transform`: write the project that passes make of a project."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, shared_options
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
+    from archgen.products.trusted_backends import TrustedRevision
+
+_YAML_SUFFIXES = frozenset({".yaml", ".yml"})
 
 
 def _complete_passes(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -23,77 +30,108 @@ def _complete_passes(_context: click.Context, _parameter: click.Parameter, incom
 
 
 @click.command("transform")
-@click.argument("names", nargs=-1, metavar="PASS...", shell_complete=_complete_passes)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="The file, or the folder for an archgen.yaml.  [default: archgen-out/transformed.yaml]",
-)
-@click.option("--list", "is_listing", is_flag=True, help="List the passes: what they do, need, and leave true.")
-@shared_options.keep_going_option
-@shared_options.trust_option
+@click.argument("names", metavar="PASS...", nargs=-1, shell_complete=_complete_passes)
 @shared_options.project_option
 @shared_options.variant_option
+@click.option("--list", "lists_passes", is_flag=True, help="Show all passes: what they do, need and leave true.")
+@shared_options.output_option("The file, or the folder (its archgen.yaml)", "transformed.yaml")
+@shared_options.keep_going_option
+@shared_options.trust_option
 def command(  # noqa: PLR0913 - one for each option
-    *,
     names: tuple[str, ...],
-    output: Path | None,
-    is_listing: bool,
-    keep_going: bool,
-    trust: str | None,
     project: Path | None,
+    output: Path | None,
+    trust: str | None,
+    *,
+    lists_passes: bool,
+    keep_going: bool,
 ) -> None:
-    """Rewrite a project by passes, in this order, and write what they make: again a project, in one file.
+    """Write what each PASS, one after the other, makes of a project: again a project, of one file.
 
-    Each PASS runs behind those that it needs. A project's own are files of rules in its folder `passes`.
+    A pass that needs others runs behind them. `--list` shows all, and those of the project: files of rules in its folder
+    `passes`. The project itself stays as it is.
     """
-    from archgen.products import project_outputs, project_passes
-
-    if is_listing:
-        _print_list(project)
+    if lists_passes:
+        _print_passes(project)
         return
     if not names:
-        msg = "name a pass; `archgen transform --list` shows all"
+        msg = "name one pass or several; `archgen transform --list` shows all"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    target = _find_target(output) if output else checked_project.output_folder / "transformed.yaml"
+    transformed_project = _transform_or_exit(
+        checked_project, names, command_support.find_trusted_revision(project, trust)
+    )
+    _report_further_passes(names, transformed_project)
+    command_support.print_findings_above(transformed_project)
+    if _is_stopped(transformed_project):
+        click.echo("Nothing was written.", err=True)
+        sys.exit(1)
+    if command_support.exit_status(transformed_project.findings) and not keep_going:
+        click.echo("Nothing was written. With --keep-going it is written with its errors.", err=True)
+        sys.exit(1)
+    target = output or checked_project.output_folder / "transformed.yaml"
+    if target.is_dir() or target.suffix not in _YAML_SUFFIXES:
+        target /= "archgen.yaml"
+    from archgen.products import project_outputs
+
     with command_support.explain_write_errors():
-        trusted_revision = command_support.find_trusted_revision(project, trust)
-        transformed = project_passes.transform_by_name(checked_project, names, trusted_revision)
-        problems = transformed.transformed.findings if transformed.transformed else ()
-        errors = [each for each in transformed.findings if each.rule in {problem.rule for problem in problems}]
-        if command_support.exit_status(errors):
-            command_support.print_findings(errors, transformed, sys.stderr)
-            click.echo("Nothing was written.", err=True)
-            sys.exit(1)
-        project_outputs.write_packed(transformed, target)
-    command_support.print_findings_above(transformed)
+        project_outputs.write_packed(transformed_project, target)
     command_support.print_written(target)
-    command_support.exit_by_findings(transformed)
+    command_support.exit_by_findings(transformed_project)
 
 
-def _find_target(output: Path) -> Path:
-    is_file = output.suffix in {".yaml", ".yml"} and not output.is_dir()
-    return output if is_file else output / "archgen.yaml"
-
-
-def _print_list(project: Path | None) -> None:
+def _transform_or_exit(
+    checked_project: CheckedProject, names: tuple[str, ...], trusted_revision: TrustedRevision | None
+) -> CheckedProject:
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.text_columns import find_width, format_table
-    from archgen.pipeline import check_project
+    from archgen.passes import UnknownPassError
     from archgen.products import project_passes
-    from archgen.project import ProjectNotFoundError
+
+    with command_support.explain_write_errors():
+        try:
+            passes = project_passes.choose_passes(checked_project, names, trusted_revision)
+        except UnknownPassError as error:
+            raise click.UsageError(make_visible(str(error))) from None
+    dropping = [each.name for each in passes.ordered if not each.keeps_variants]
+    if checked_project.variants and dropping:
+        variant_names = ", ".join(checked_project.variants)
+        click.echo(
+            f"`{dropping[0]}` takes the project as it stands: without its variants ({variant_names}), or in the one that"
+            " `--variant` names.",
+            err=True,
+        )
+    return project_passes.transform_by_name(checked_project, passes)
+
+
+def _is_stopped(transformed_project: CheckedProject) -> bool:
+    """Whether a pass of rules came to no end, or could not be read: what it makes is nothing."""
+    findings = transformed_project.transformed.findings if transformed_project.transformed else ()
+    return any(each.rule == "wrong-pass" for each in findings)
+
+
+def _report_further_passes(names: tuple[str, ...], transformed_project: CheckedProject) -> None:
+    """Say which passes ran that others needed."""
+    ran = transformed_project.transformed.passes if transformed_project.transformed else ()
+    further = [name for name in dict.fromkeys(ran) if name not in names]
+    if further:
+        click.echo(f"Ran before, since they are needed: {', '.join(further)}.", err=True)
+
+
+def _print_passes(project: Path | None) -> None:
+    """Print every pass with what it does, needs and leaves true."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.passes.pass_shape import STATES
+    from archgen.passes.patterns.pattern_registry import find_known_passes
+    from archgen.project import ProjectNotFoundError, load_project
 
     try:
-        checked_project = check_project(project)
+        loaded_project = load_project(project)
     except ProjectNotFoundError as error:
         if project is not None:
             raise click.UsageError(str(error)) from None
-        checked_project = None
-    rows = [
-        [make_visible(each.name), each.origin, make_visible(each.title), ", ".join(each.needs), ", ".join(each.leaves)]
-        for each in project_passes.list_pass_rows(checked_project)
-    ]
-    for line in format_table(["pass", "from", "does", "needs", "leaves"], rows, width=find_width(sys.stdout)):
-        click.echo(line)
+        loaded_project = None
+    for each in find_known_passes(loaded_project).passes.values():
+        click.echo(make_visible(f"{each.name}: {each.title}"))
+        for words, states in (("needs", each.needs), ("leaves", each.leaves), ("ends", each.ends)):
+            for state in states:
+                click.echo(f"    {words} {state}: {STATES[state]}")

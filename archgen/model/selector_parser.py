@@ -36,6 +36,7 @@ SELECTOR_KEYS = (
     "property",
     "variant",
     "deprecated",
+    "use_case",
 )
 ALL_STEPS = -1
 """Any number of steps."""

@@ -1,100 +1,94 @@
-"""`archgen transform`: passes by name, a project's own among them, and what is refused."""
+"""`archgen transform`: what it writes, says and refuses."""
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 import yaml
 
-from archgen.products.project_passes import list_pass_names, list_pass_rows
-from tests.repositories import repository
-from tests.running import ROOT, archgen
+from archgen.passes import PASSES
+from archgen.passes.pass_shape import STATES
+from tests.cli.conftest import Run
+from tests.passes.same_meaning import EXAMPLES
 
-TAG_POSES = """title: Tags what sends poses
-rules:
-  - find: {components: {$c: {outputs: {$port: {type: Pose}}}}}
-    unless: {components: {$c: {tags: [poses]}}}
-    add: {components: {$c: {tags: [poses]}}}
-"""
+ROBOT = EXAMPLES / "cleaning_robot"
 
 
-@pytest.fixture
-def robot(tmp_path: Path) -> Path:
-    """Return a cleaning robot with a pass of its own."""
-    folder = shutil.copytree(ROOT / "examples" / "cleaning_robot", tmp_path / "robot")
-    (folder / "passes").mkdir()
-    (folder / "passes" / "tag_poses.yaml").write_text(TAG_POSES)
-    return folder
-
-
-def test_what_passes_make_is_a_project(robot: Path) -> None:
-    done = archgen("transform", "connect_ports", "rules.envelope", "tag_poses", cwd=robot)
-    assert done.stdout.decode() == "wrote archgen-out/transformed.yaml\n"
-    made = yaml.safe_load((robot / "archgen-out" / "transformed.yaml").read_text())
-    assert made["component_types"]["pose_fusion"]["outputs"]["p"]["type"] == "Envelope<Pose>"
-    assert archgen("check", "archgen-out/transformed.yaml", cwd=robot).stdout.decode() == "no findings\n"
-    archgen("transform", "tag_poses", "-o", "made", cwd=robot)
-    assert yaml.safe_load((robot / "made" / "archgen.yaml").read_text())["component_types"]["pose_fusion"]["tags"] == [
-        "poses"
+def test_what_passes_make_is_written_and_those_that_were_needed_are_told(run: Run, tmp_path: Path) -> None:
+    ran = run("transform", "-C", ROBOT, "flatten", "-o", tmp_path / "flat.yaml")
+    assert ran.status == 0
+    assert "Ran before, since they are needed: complete_names," in ran.err
+    assert "resolve_instances." in ran.err
+    components = yaml.safe_load((tmp_path / "flat.yaml").read_text(encoding="utf-8"))["groups"]["cleaning"][
+        "components"
     ]
+    assert "left_arm_shoulder" in components
+    card = run("show", "-C", tmp_path / "flat.yaml", "left_arm_shoulder").out
+    assert "origin:" in card
+    assert "archgen.yaml:78:7" in card
+    assert run("check", tmp_path / "flat.yaml").status == 0
+    # A folder gets an archgen.yaml, which is a project, too.
+    assert run("transform", "-C", tmp_path / "flat.yaml", "envelope", "-o", tmp_path / "folder").status == 0
+    assert run("check", tmp_path / "folder").status == 0
 
 
-def test_the_list_says_what_passes_do(robot: Path) -> None:
-    lines = archgen("transform", "--list", cwd=robot).stdout.decode().splitlines()
-    assert any(line.startswith("rules.envelope") and "enveloped" in line for line in lines)
-    assert any(line.split()[:2] == ["tag_poses", "passes/tag_poses.yaml"] for line in lines)
-    shipped = {row.name for row in list_pass_rows(None)}
-    assert set(list_pass_names()) < shipped
-    assert "tag_poses" not in shipped
-    assert b"tag_poses" not in archgen("transform", "--list", cwd=robot.parent).stdout
+def test_the_list_says_what_each_pass_does_needs_and_leaves(run: Run) -> None:
+    listed = run("transform", "--list").out
+    for each in PASSES.values():
+        assert f"{each.name}: {each.title}\n" in listed
+        assert all(STATES[state] for state in (*each.needs, *each.leaves, *each.ends))
+    assert "    needs no_instances: every component says all that it has\n" in listed
 
 
-def test_what_cannot_be_done_is_said_and_nothing_is_written(robot: Path) -> None:
-    before = (robot / "archgen.yaml").read_bytes()
-    assert b"no pass named `flaten`" in archgen("transform", "flaten", cwd=robot, status=2).stderr
-    assert b"name a pass" in archgen("transform", cwd=robot, status=2).stderr
-    assert (
-        b"archgen.yaml is a file of the project itself"
-        in archgen("transform", "tag_poses", "-o", "archgen.yaml", cwd=robot, status=2).stderr
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ((), "name one pass or several; `archgen transform --list` shows all"),
+        (("flaten",), "no pass named `flaten`: did you mean `flatten`?"),
+        (("flatten", "\x1b[31m"), "no pass named"),
+    ],
+)
+def test_wrong_words(run: Run, words: tuple[str, ...], message: str) -> None:
+    ran = run("transform", "-C", ROBOT, *words)
+    assert ran.status == 2
+    assert message in ran.err
+    assert "\x1b[31m" not in ran.err
+
+
+def test_the_project_itself_is_never_overwritten(run: Run, tmp_path: Path) -> None:
+    robot = tmp_path / "archgen.yaml"
+    robot.write_text((ROBOT / "archgen.yaml").read_text(encoding="utf-8"), encoding="utf-8")
+    for target in (robot, tmp_path):
+        ran = run("transform", "-C", tmp_path, "flatten", "-o", target)
+        assert ran.status != 0
+        assert "is a file of the project itself" in ran.err
+    assert robot.read_text(encoding="utf-8") == (ROBOT / "archgen.yaml").read_text(encoding="utf-8")
+
+
+def test_with_errors_nothing_is_written_unless_asked(run: Run, tmp_path: Path) -> None:
+    robot = tmp_path / "robot.yaml"
+    robot.write_text("groups: {g: {components: {a: {inputs: {x: nothing}}}}}\n", encoding="utf-8")
+    target = tmp_path / "out.yaml"
+    assert run("transform", "-C", robot, "flatten", "-o", target).status == 1
+    assert not target.exists()
+    assert run("transform", "-C", robot, "flatten", "-o", target, "--keep-going").status == 1
+    assert target.exists()
+
+
+def test_variants(run: Run, tmp_path: Path) -> None:
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(
+        "groups: {g: {components: {a: {outputs: {x: {type: T, external: the log}}, components: {b: B}}, c: {outputs: {y: {type: T, external: the log}}}}}}\n"
+        "types: {T: std_msgs/msg/Bool}\nvariants: {small: {without: c}}\n",
+        encoding="utf-8",
     )
-    assert (
-        b"is a file of the project itself"
-        in archgen("transform", "tag_poses", "-o", "passes/tag_poses.yaml", cwd=robot, status=2).stderr
-    )
-    (robot / "passes" / "tag_poses.yaml").write_text(
-        TAG_POSES.replace("unless: {components: {$c: {tags: [poses]}}}", "where: $c != x")
-    )
-    done = archgen("transform", "tag_poses", cwd=robot, status=1)
-    assert b"this rule changes nothing that it finds" in done.stderr
-    assert b"passes/tag_poses.yaml:3:5" in done.stderr
-    assert b"Nothing was written." in done.stderr
-    assert not (robot / "archgen-out").exists()
-    assert (robot / "archgen.yaml").read_bytes() == before
-
-
-def test_a_pass_is_called_as_no_other(robot: Path) -> None:
-    (robot / "passes" / "connect_ports.yaml").write_text(TAG_POSES)
-    (robot / "passes" / "Loud.yaml").write_text(TAG_POSES)
-    said = archgen("check", cwd=robot, status=1).stdout.decode()
-    assert "there is a pass `connect_ports` already" in said
-    assert "`Loud` is no name for a pass" in said
-
-
-def test_own_passes_run_in_a_review_only_if_the_main_line_allows_them(tmp_path: Path) -> None:
-    files = {
-        "archgen.yaml": "archgen: 1\ngroups: {g: {components: {a: {outputs: {p: Pose}}}}}\ntypes: {Pose: std_msgs/msg/String}\n",
-        "passes/tag_poses.yaml": TAG_POSES,
-    }
-    unnamed = tmp_path / "unnamed"
-    repository(unnamed, files)
-    said = archgen("transform", "tag_poses", "--trust", "HEAD", cwd=unnamed, status=2).stderr
-    assert b"the revision that is trusted does not name it; add it to `review.passes` there" in said
-    archgen("transform", "connect_ports", "rules.envelope", "--trust", "HEAD", cwd=unnamed)
-    named = tmp_path / "named"
-    repository(named, {**files, "archgen.yaml": files["archgen.yaml"] + "review: {passes: [tag_poses]}\n"})
-    archgen("transform", "tag_poses", "--trust", "HEAD", cwd=named)
-    (named / "passes" / "tag_poses.yaml").write_text(TAG_POSES.replace("[poses]", "[other]"))
-    said = archgen("transform", "tag_poses", "--trust", "HEAD", cwd=named, status=2).stderr
-    assert b"`passes/tag_poses.yaml` is not as it is in `HEAD`" in said
+    target = tmp_path / "out.yaml"
+    ran = run("transform", "-C", robot, "flatten", "-o", target)
+    assert "`connect_components` takes the project as it stands: without its variants (small)" in ran.err
+    assert "variants" not in yaml.safe_load(target.read_text(encoding="utf-8"))
+    assert run("transform", "-C", robot, "flatten", "-o", target, "--variant", "small").status == 0
+    assert "c" not in yaml.safe_load(target.read_text(encoding="utf-8"))["groups"]["g"]["components"]
+    # What only writes short forms out keeps them.
+    assert run("transform", "-C", robot, "normalise_connections", "-o", target).status == 0
+    assert "small" in yaml.safe_load(target.read_text(encoding="utf-8"))["variants"]

@@ -11,9 +11,10 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture, UseCase
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Container
-from archgen.model.node import Node, Topic
+from archgen.model.made_elements import find_made_element
+from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
-from archgen.model.port_media import uses_ros, word_of_medium
+from archgen.model.port_media import ROS, name_medium, name_on_medium, uses_ros, word_of_medium
 from archgen.views import inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_lines
@@ -135,6 +136,8 @@ def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     else:
         card = make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
     further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind not in {"topic", "variant"} else ()
+    if (made := find_made_element(lookup.architecture.made_elements, card.span)) is not None:
+        further_facts = (*further_facts, ("origin", str(made)))
     return replace(card, facts=(*card.facts, *further_facts)) if further_facts else card
 
 
@@ -351,7 +354,7 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         ),
     ]
     lines = tuple(
-        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {endpoint.name} ({endpoint.message or '?'})"
+        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}"
         for endpoint in lookup.endpoints_of.get(node.id, ())
     )
     lists = (
@@ -360,6 +363,13 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         ("findings", tuple(_format_findings(lookup, node.id))),
     )
     return ElementCard("node", node.id, node.title, node.at, _known_facts(facts), lists)
+
+
+def _describe_endpoint(endpoint: Endpoint) -> str:
+    """Return the name of what a node uses with its message; over another medium than ROS, with its type."""
+    if endpoint.medium == ROS:
+        return f"{endpoint.name} ({endpoint.message or '?'})"
+    return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
 
 
 def _topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
