@@ -1,0 +1,130 @@
+# shellcheck shell=bash disable=SC2154,SC2034 # engine.sh has the other variables
+# How the programs of steps are started, watched and ended. Each is a group of processes of its own, and carries a mark in
+# its environment, by which whatever it started is found, too.
+
+declare -A program=() watcher=() older_bytes=() stopped=()
+
+# Words in front of a command that is to run as the user of a step.
+find_user_words() { # ID
+  user_words=()
+  [[ -n ${user[$1]-} && ${user[$1]} != "$(id -un)" ]] || return 0
+  if ((EUID == 0)); then
+    user_words=(runuser -u "${user[$1]}" --)
+  else
+    user_words=(sudo -n -u "${user[$1]}" --)
+  fi
+}
+
+mark() { printf 'START_STEP=%s:%s' "$run" "$1"; } # ID
+
+launch() { # ID
+  local id=$1 variable
+  local -n its_words=words_${number[$1]} its_variables=variables_${number[$1]} its_before=before_${number[$1]}
+  local -n its_signs=signs_${number[$1]}
+  local output=$run/${log[$id]} options=(--in "${directory[$id]:-.}") user_words
+  : >>"$output"
+  older_bytes[$id]=$(stat -c %s -- "$output")
+  find_user_words "$id"
+  ((${#user_words[@]} == 0)) || [[ ! -f $settings ]] || options=(--settings "$settings" "${options[@]}")
+  for variable in "START_FOLDER=$START_FOLDER" PYTHONUNBUFFERED=1 ${its_variables[@]+"${its_variables[@]}"} "$(mark "$id")"; do
+    options+=(--set "$variable")
+  done
+  # Who waits for words of its output wants to see them at once.
+  [[ " ${its_signs[*]-} " != *' --log '* ]] || options+=(--by-line)
+  set -m
+  (
+    exec {never}>&- {guarded}>&-
+    exec -- ${user_words[@]+"${user_words[@]}"} bash "$library/run.sh" "${options[@]}" \
+      ${its_before[@]+"${its_before[@]}"} -- "${its_words[@]}"
+  ) </dev/null >>"$output" 2>&1 &
+  program[$id]=$!
+  set +m
+}
+
+start_watcher() { # ID WORD...
+  local id=$1
+  shift
+  set -m
+  (
+    exec {never}>&- {guarded}>&-
+    export "$(mark "$id")"
+    exec bash "$library/wait_until_up.sh" --missing "$run/$id.missing" "$@"
+  ) </dev/null >>"$run/${log[$id]}" 2>&1 &
+  watcher[$id]=$!
+  set +m
+}
+
+watch() { # ID
+  local -n its_signs=signs_${number[$1]} its_words=words_${number[$1]}
+  local loaded=()
+  ((${#its_signs[@]})) || return 0
+  [[ ${kind[$1]} != loaded ]] || loaded=(-- "${its_words[@]}")
+  start_watcher "$1" --output "$run/${log[$1]}" "${older_bytes[$1]:-0}" "${its_signs[@]}" ${loaded[@]+"${loaded[@]}"}
+}
+
+# A step of another computer, while no script above says how it goes: what can be seen from here is waited for.
+watch_from_afar() { # ID
+  local -n its_signs=signs_${number[$1]}
+  local i seen=()
+  for ((i = 0; i < ${#its_signs[@]}; i += 2)); do
+    [[ ! ${its_signs[i]} =~ ^--(port|topic|service)$ ]] || seen+=("${its_signs[@]:i:2}")
+  done
+  if ((${#seen[@]})); then
+    start_watcher "$1" --address "${address[${host_of[$1]}]}" "${seen[@]}"
+  else
+    say unseen "$1" "from here nobody sees whether it is up; start ${host_of[$1]} first"
+  fi
+}
+
+# The processes of a step that still run: those of its group, and those that carry its mark.
+find_processes() { # ID
+  local user_words
+  find_user_words "$1"
+  {
+    cat /proc/[0-9]*/stat 2>/dev/null | awk -v groups=" ${program[$1]-} ${watcher[$1]-} " \
+      '{ pid = $1; sub(/^.*\) /, ""); if ($1 != "Z" && $1 != "X" && index(groups, " " $3 " ")) print pid }'
+    ${user_words[@]+"${user_words[@]}"} grep -lszFx -e "$(mark "$1")" /proc/[0-9]*/environ | tr -cd '0-9\n'
+  } | sort -nu
+}
+
+send() { # SIGNAL ID PID...
+  local signal=$1 user_words
+  find_user_words "$2"
+  ${user_words[@]+"${user_words[@]}"} kill -s "$signal" -- "${@:3}" 2>/dev/null
+}
+
+end_watcher() { # ID
+  [[ -n ${watcher[$1]-} ]] || return 0
+  kill -s KILL -- "-${watcher[$1]}" 2>/dev/null
+  wait "${watcher[$1]}" 2>/dev/null
+  watcher[$1]=''
+}
+
+# Interrupts what still runs of a step; terminates and at last kills what does not end by itself.
+end_processes() { # ID
+  local signal until pids
+  for signal in INT TERM KILL; do
+    mapfile -t pids < <(find_processes "$1")
+    ((${#pids[@]})) || return 0
+    [[ $signal != KILL ]] || say killing "$1" 'it does not end by itself'
+    send "$signal" "$1" "${pids[@]}"
+    until=$((SECONDS + patience))
+    while ((SECONDS <= until)); do
+      mapfile -t pids < <(find_processes "$1")
+      ((${#pids[@]})) || return 0
+      read -r -t 0.1 -u "$never" || true
+    done
+  done
+  say left "$1" "these processes could not be ended: ${pids[*]}"
+  left_over=yes
+}
+
+stop_step() { # ID
+  local id=$1
+  [[ -z ${stopped[$id]-} && ${state[$id]} != planned && ${state[$id]} != skipped && ${kind[$id]} != elsewhere ]] || return 0
+  stopped[$id]=yes
+  end_watcher "$id"
+  end_processes "$id"
+  [[ -z ${program[$id]-} || ${state[$id]} == failed ]] || say stopped "$id"
+  wait "${program[$id]:-$$}" 2>/dev/null
+}

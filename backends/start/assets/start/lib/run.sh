@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Becomes a program, after what it needs has been made ready.
+#
+#   run.sh [--settings FILE] [--set NAME=VALUE]... [--in FOLDER] [--by-line] [--before N WORD...]... -- WORD...
+#
+# --settings is read first, --before are N words that run to their end before, --by-line has the output written line by line.
+set -u
+
+folder=. by_line=() befores=()
+while (($#)); do
+  case $1 in
+    --settings)
+      set +u
+      # shellcheck source=/dev/null
+      source "$2"
+      set -u
+      shift 2
+      ;;
+    --set) export "${2?}"; shift 2 ;;
+    --in) folder=$2; shift 2 ;;
+    --by-line) by_line=(stdbuf -oL); shift ;;
+    --before) befores+=("$2" "${@:3:$2}"); shift $(($2 + 2)) ;;
+    --) shift; break ;;
+    *) printf 'run.sh: what is %q?\n' "$1" >&2; exit 2 ;;
+  esac
+done
+[[ $folder == /* ]] || folder=./$folder
+[[ -z ${START_FOLDER-} ]] || cd -- "$START_FOLDER" || exit
+cd -- "$folder" || exit
+words=("$@")
+set -- ${befores[@]+"${befores[@]}"}
+while (($#)); do
+  env -- "${@:2:$1}" || exit
+  shift $(($1 + 1))
+done
+exec -- ${by_line[@]+"${by_line[@]}"} "${words[@]}"
