@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from archgen.bringup.start_commands import build_command
 from archgen.bringup.start_plan import describes_start, make_start_plan, resolve_conditions
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -305,9 +304,8 @@ def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
     if not describes_start(architecture):
         return
     for node in architecture.nodes.values():
-        is_known = (
-            node.status == "planned" or build_command(architecture, node) or (node.start or NO_START).ready.has_sign
-        )
+        has_command = bool(node.command or (node.package and node.executable))
+        is_known = has_command or node.status == "planned" or (node.start or NO_START).ready.has_sign
         if node.is_program and node.written and not is_known:
             yield Diagnostic(
                 "unstarted-program",

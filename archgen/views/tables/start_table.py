@@ -99,9 +99,13 @@ def link_step(step: StartStep) -> Text:
 
 
 def _list_ways(step: StartStep) -> Iterator[Inlines]:
+    for words in step.preparations:
+        yield (Text(shlex.join(words), code=True),)
     yield (Text(shlex.join(step.command), code=True),) if step.command else _muted("not known yet")
     for words in step.transitions:
         yield (Text(shlex.join(words), code=True),)
+    for name, words in step.ros.value_commands.items() if step.ros else ():
+        yield (Text(f"parameter {name}: the output of ", muted=True), Text(shlex.join(words), code=True))
     for phrase in start_phrases.describe_process(step):
         yield _muted(phrase)
     for right in step.needs_rights:
@@ -109,7 +113,7 @@ def _list_ways(step: StartStep) -> Iterator[Inlines]:
 
 
 def _list_waits(step: StartStep, steps: Mapping[str, StartStep]) -> Iterator[Inlines]:
-    for wait in start_phrases.name_waits(step, steps):
+    for wait in start_phrases.name_waits(step):
         end = {"ended": "its end; ", "started": "its start; "}.get(wait.until, "")
         yield (link_step(steps[wait.awaited]), Text(f" ({end}{'; '.join(wait.reasons)})", muted=True))
 
