@@ -4,10 +4,9 @@
 
 ids=() failure='' interrupt='' announced=no is_follower=no run=''
 phases=(network simulators core components)
-patience=${START_PATIENCE:-5}
 declare -A phase=() number=() kind=() host_of=() state=() log=() within=() user=() directory=() respawn=()
-declare -A deadline=() again_at=() reason=() told_at=() address=()
-guarded='' never='' left_over=no shown_host='' host=${host:-} open_phase=network
+declare -A deadline=() again_at=() reason=() told_at=() address=() is_told=()
+guarded='' never='' left_over=no shown_host='' host='' open_phase=network
 library=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 top=${library%/*/*}
 settings=$top/settings.sh
@@ -16,11 +15,17 @@ if [[ -f $settings ]]; then
   # shellcheck source=/dev/null
   source "$settings"
 fi
+patience=${START_PATIENCE:-5}
 set -u
-# shellcheck source=processes.sh
+# shellcheck source-path=SCRIPTDIR source=processes.sh
 source "$library/processes.sh"
-# shellcheck source=session.sh
+# shellcheck source-path=SCRIPTDIR source=session.sh
 source "$library/session.sh"
+
+this_computer() { host=$1; }
+
+# A computer that is another one, and the address under which it is found, unless settings.sh says another one.
+other_computer() { address[$1]=${address[$1]-$2}; } # ID ADDRESS
 
 # step ID [OPTION...] [-- WORD...]: what starts, after what, and how one sees that it is up.
 step() {
@@ -34,6 +39,7 @@ step() {
     case $1 in
       --phase) phase[$id]=$2; shift 2 ;;
       --on) host_of[$id]=$2 kind[$id]=elsewhere; shift 2 ;;
+      --by-others) is_told[$id]=no; shift ;;
       --after) its_awaited+=("$2" up); shift 2 ;;
       --after-start-of) its_awaited+=("$2" started); shift 2 ;;
       --port | --file | --topic | --service | --log | --time) its_signs+=("$1" "$2"); shift 2 ;;
@@ -144,7 +150,7 @@ begin() { # ID
   local -n signs=signs_${number[$1]}
   case ${kind[$id]} in
     elsewhere)
-      [[ $is_follower == yes ]] && return
+      [[ $is_follower == yes && -z ${is_told[$id]-} ]] && return
       become starting "$id"
       watch_from_afar "$id"
       ;;
@@ -243,7 +249,7 @@ look_at() { # ID
     planned) is_in_turn "$1" && is_free "$1" && begin "$1" ;;
     starting)
       look_at_program "$1"
-      [[ ${state[$1]} != starting || (${kind[$1]} == elsewhere && $is_follower == yes) ]] || look_at_signs "$1"
+      [[ ${state[$1]} != starting || (${kind[$1]} == elsewhere && $is_follower == yes && -z ${is_told[$1]-}) ]] || look_at_signs "$1"
       ;;
     up) look_at_program "$1" ;;
   esac
