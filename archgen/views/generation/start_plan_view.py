@@ -11,6 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
+from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_step_record import UNPLACED, read_hint, record_step
 
 
@@ -27,6 +28,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     wanted_hosts = dict.fromkeys(step.host for step in plan.steps if step.id in wanted_ids)
     steps = {step.id: step for step in plan.steps}
     folder = str(context.options.get("folder") or "") or f"/opt/{architecture.project.id}"
+    hosts = [_record_host(architecture, host, plan, records, wanted_ids) for host in wanted_hosts]
     return GeneratedView(
         {
             "project": {"id": architecture.project.id, "title": architecture.project.title},
@@ -34,7 +36,13 @@ def make_view(context: GenerationContext) -> GeneratedView:
             "folder": folder.rstrip("/"),
             "image": str(context.options.get("image") or ""),
             "phases": [phase for phase, _ in plan.phases],
-            "hosts": [_record_host(architecture, host, plan, records, wanted_ids) for host in wanted_hosts],
+            "hosts": hosts,
+            "jobs": [job for host in hosts for job in host["jobs"]],
+            "targets": [
+                {"host": host["name"], "phase": phase, "phase_before": before, "needs": needs}
+                for host in hosts
+                for (phase, needs), before in zip(host["ends"].items(), [None, *host["ends"]], strict=False)
+            ],
             "steps": [records[step.id] for step in plan.steps if step.id in wanted_ids],
             "given_up": [
                 start_phrases.describe_dropped(each, steps) for each in plan.dropped if each.wait.waiting in wanted_ids
@@ -77,7 +85,7 @@ def _record_host(
         if step.id in own_ids or step.id in awaited_ids or PHASES.index(step.phase) < last_phase
     ]
     element = architecture.hosts.get(host or "")
-    return {
+    record: dict[str, Any] = {
         "name": host or UNPLACED,
         "title": element.title if element else "Computer of what has no host",
         "address": (read_hint(element.annotations, "address") if element else "") or host or "localhost",
@@ -98,3 +106,6 @@ def _record_host(
             }.values()
         ],
     }
+    for step in record["steps"]:
+        step["seen_signs"] = list_seen_signs(step)
+    return {**record, "jobs": list_jobs(record), "ends": list_phase_needs(record)}

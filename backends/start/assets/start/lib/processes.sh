@@ -65,9 +65,10 @@ watch() { # ID
 # A step of another computer, while no script above says how it goes: what can be seen from here is waited for.
 watch_from_afar() { # ID
   local -n its_signs=signs_${number[$1]}
-  local i seen=()
+  local i seen=() kinds='^--(port|topic|service)$'
+  [[ ${host_of[$1]} != "$host" ]] || kinds='^--(port|topic|service|file)$'
   for ((i = 0; i < ${#its_signs[@]}; i += 2)); do
-    [[ ! ${its_signs[i]} =~ ^--(port|topic|service)$ ]] || seen+=("${its_signs[@]:i:2}")
+    [[ ! ${its_signs[i]} =~ $kinds ]] || seen+=("${its_signs[@]:i:2}")
   done
   if ((${#seen[@]})); then
     start_watcher "$1" --address "${address[${host_of[$1]}]}" "${seen[@]}"

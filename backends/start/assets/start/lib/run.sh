@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Becomes a program, after what it needs has been made ready.
 #
-#   run.sh [--settings FILE] [--set NAME=VALUE]... [--in FOLDER] [--by-line] [--before N WORD...]... -- WORD...
+#   run.sh [--settings FILE] [--set NAME=VALUE]... [--in FOLDER] [--by-line] [--copy FILE] [--before N WORD...]... -- WORD...
 #
-# --settings is read first, --before are N words that run to their end before, --by-line has the output written line by line.
+# --settings is read first, --before are N words that run to their end before, --by-line has the output written line by line, and
+# --copy copies it to a file.
 set -u
 
 folder=. by_line=() befores=()
@@ -19,6 +20,10 @@ while (($#)); do
     --set) export "${2?}"; shift 2 ;;
     --in) folder=$2; shift 2 ;;
     --by-line) by_line=(stdbuf -oL); shift ;;
+    --copy)
+      exec > >(exec tee -- "$2") 2>&1
+      shift 2
+      ;;
     --before) befores+=("$2" "${@:3:$2}"); shift $(($2 + 2)) ;;
     --) shift; break ;;
     *) printf 'run.sh: what is %q?\n' "$1" >&2; exit 2 ;;
