@@ -108,4 +108,5 @@ def _record_host(
     }
     for step in record["steps"]:
         step["seen_signs"] = list_seen_signs(step)
-    return {**record, "jobs": list_jobs(record), "ends": list_phase_needs(record)}
+    record["ends"] = list_phase_needs(record)
+    return {**record, "jobs": list_jobs(record)}

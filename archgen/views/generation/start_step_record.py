@@ -40,7 +40,7 @@ def record_step(
         "host": step.host or UNPLACED,
         "address": (read_hint(host.annotations, "address") if host else "") or step.host or "localhost",
         "runs": way,
-        "is_watched": bool(signs) or is_brought,
+        "is_watched": bool(signs) or lifecycle is not None,
         "command": list(step.command),
         "preparations": [list(words) for words in step.preparations],
         "awaited": [{"name": names[each.awaited], "until": each.until} for each in step.awaited],

@@ -30,7 +30,7 @@ while (($#)); do
   esac
 done
 [[ $folder == /* ]] || folder=./$folder
-[[ -z ${START_FOLDER-} ]] || cd -- "$START_FOLDER" || exit
+cd -- "${START_FOLDER:-$(dirname -- "${BASH_SOURCE[0]}")/../..}" || exit
 cd -- "$folder" || exit
 words=("$@")
 set -- ${befores[@]+"${befores[@]}"}

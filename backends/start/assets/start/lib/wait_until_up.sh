@@ -12,11 +12,11 @@
 # The status is 0 if all was seen, 1 if not, and 2 if it never will be.
 set -u
 
-only_look=no missing_file='' address=localhost output='' older_bytes=0
+only_look=no patience=30 missing_file='' address=localhost output='' older_bytes=0
 signs=() changes=() loads=()
 while (($#)); do
   case $1 in
-    --look) only_look=yes; shift ;;
+    --look) only_look=yes patience=10; shift ;;
     --missing) missing_file=$2; shift 2 ;;
     --address) address=$2; shift 2 ;;
     --output) output=$2 older_bytes=$3; shift 3 ;;
@@ -42,9 +42,9 @@ accepts_connections() { timeout 3 bash -c "exec 3<>\"/dev/tcp/\$1/\$2\"" look "$
 
 has_message() {
   if [[ ${ROS_VERSION:-2} == 1 ]]; then
-    timeout 30 rostopic echo -n 1 "$1" >/dev/null 2>&1
+    timeout "$patience" rostopic echo -n 1 "$1" >/dev/null 2>&1
   else
-    timeout 30 ros2 topic echo --once "$1" >/dev/null 2>&1
+    timeout "$patience" ros2 topic echo --once "$1" >/dev/null 2>&1
   fi
 }
 
