@@ -26,6 +26,7 @@ def main() -> None:
     if missing:
         print("needs", *missing, flush=True)
         sys.exit(9)
+    listen_to_signals(folder, name, settings["manners"].get(name, ""))
     note(folder, f"start {name}")
     (folder / f"{name}.runs").write_text(str(os.getpid()))
     print(f"{name} says hello", flush=True)
@@ -54,16 +55,19 @@ def open_port(port: int | None) -> None:
         globals()["kept"] = server
 
 
-def run(folder: Path, name: str, manners: str) -> None:
+def listen_to_signals(folder: Path, name: str, manners: str) -> None:
     def end(number: int, frame: object) -> None:
         if manners == "stubborn" and number == signal.SIGINT:
             return
         note(folder, f"stop {name}")
-        (folder / f"{name}.runs").unlink()
+        (folder / f"{name}.runs").unlink(missing_ok=True)
         sys.exit(0)
 
     for each in (signal.SIGINT, signal.SIGTERM):
         signal.signal(each, signal.SIG_IGN if manners == "deaf" else end)
+
+
+def run(folder: Path, name: str, manners: str) -> None:
     if manners == "parent" and os.fork() == 0:
         # What leaves its parent's session and group, as daemons do.
         os.setsid()

@@ -84,7 +84,7 @@ class Stage:
     def environment(self) -> dict[str, str]:
         """The environment of a run."""
         path = f"{self.folder / 'bin'}{os.pathsep}{os.environ['PATH']}"
-        return {**os.environ, "PATH": path, "START_PATIENCE": "3"}
+        return {**os.environ, "PATH": path, "START_PATIENCE": "3", "START_LOGS": str(self.folder / "logs")}
 
     @property
     def journal(self) -> list[str]:
@@ -105,7 +105,7 @@ class Run:
 
     def __init__(self, script: Path, stage: Stage, *words: str) -> None:
         """Start it."""
-        self.workspace = script.parent if script.name == "start.sh" else script.parents[2]
+        self.logs = stage.folder / "logs"
         self.output_file = stage.folder / "output"
         with self.output_file.open("wb") as output:
             self.process = subprocess.Popen(  # noqa: S603 - the script that was just generated, with stand-ins only
@@ -143,26 +143,27 @@ class Run:
     def wait_for_end(self) -> int:
         """Wait until it has ended, and return its status; nothing that it started may be left."""
         status = self.process.wait(timeout=_PATIENCE)
-        assert list_marked(self.workspace) == [], self.output
+        assert list_marked(self.logs) == [], self.output
         return status
 
     def wait_for_nothing_left(self) -> None:
-        """Wait until nothing is left of what it started."""
+        """Wait until nothing is left of what it started, after its own end."""
+        self.process.wait(timeout=_PATIENCE)
         until = time.monotonic() + _PATIENCE
-        while list_marked(self.workspace):
-            assert time.monotonic() < until, list_marked(self.workspace)
+        while list_marked(self.logs):
+            assert time.monotonic() < until, list_marked(self.logs)
             time.sleep(0.1)
 
     @property
     def log_folder(self) -> Path:
         """The folder with the logs of this run."""
-        (folder,) = (self.workspace / "logs").iterdir()
+        (folder,) = self.logs.iterdir()
         return folder
 
 
-def list_marked(workspace: Path) -> list[str]:
-    """Return the processes that a script of a workspace started and that still run."""
-    mark = f"START_STEP={workspace}/logs/".encode()
+def list_marked(logs: Path) -> list[str]:
+    """Return the processes that scripts with this folder for logs started and that still run."""
+    mark = f"START_STEP={logs}/".encode()
     found = []
     for process in Path("/proc").iterdir():
         try:

@@ -10,164 +10,169 @@ from typing import Any
 
 import pytest
 
-from tests.bringup.started_workspaces import Run, Stage, copy_example, hold_ports, make_workspace
+from tests.bringup.started_workspaces import Run, Stage, hold_ports, make_workspace
 
-PLANNED = [
-    "multicast",
-    "stage",
-    "registry",
-    "event_cache",
-    "imu",
-    "faithlocaliser3d",
-    "gridmap",
-    "laser2d0",
-    "dgclocalnav",
-    "highlevelplanner",
-    "car",
-    "orcaview2d",
-]
-PROGRAMS = {"ip": "multicast", "player": "stage", "icegridregistry": "registry", "icebox": "event_cache"}
-SERVICES = ["stage", "registry", "event_cache"]
-NEEDS = {
-    "stage": ["multicast"],
-    "registry": ["stage"],
-    "event_cache": ["stage", "registry"],
-    "imu": SERVICES,
-    "faithlocaliser3d": [*SERVICES, "imu"],
-    "gridmap": SERVICES,
-    "laser2d0": SERVICES,
-    "dgclocalnav": [*SERVICES, "laser2d0", "faithlocaliser3d"],
-    "highlevelplanner": [*SERVICES, "dgclocalnav", "gridmap", "faithlocaliser3d"],
-    "car": [*SERVICES, "dgclocalnav"],
-    "orcaview2d": [*SERVICES, "gridmap", "faithlocaliser3d", "highlevelplanner", "laser2d0"],
-}
+PROJECT = """\
+archgen: 1
+project: {id: robot, title: Robot}
+groups:
+  g:
+    components:
+      a: {outputs: {o: std_msgs/msg/Bool}, node: {kind: program, command: [camera, --fast], start: {ready: {log: says hello}}}}
+      b: {inputs: {i: a.o}, node: {kind: program, command: [finder], start: {ready: {log: says hello}, RESPAWN}}}
+nodes:
+  clock: {kind: program, command: [set_clock], start: {phase: network, once: true}}
+  world: {kind: program, command: [simulator], start: {phase: simulators, ready: {port: PORT, file: /proc, within: WITHIN}}}
+"""
+SETTINGS: dict[str, Any] = {"names": {"set_clock": "clock", "simulator": "world", "camera": "a", "finder": "b"}}
+NEEDS = {"world": ["clock"], "a": ["world"], "b": ["a", "world"]}
 
 
-@pytest.fixture
-def ports() -> Iterator[list[int]]:
-    with hold_ports(3) as ports:
-        yield ports
+@pytest.fixture(scope="module")
+def port() -> Iterator[int]:
+    with hold_ports(1) as (port,):
+        yield port
 
 
-def start_vehicle(folder: Path, free: list[int], words: dict[str, str] | None = None, **settings: Any) -> tuple[Run, Stage]:
-    """Generate the vehicle's start-up, with free ports, and start it with stand-ins."""
-    written = {"6665": str(free[0]), "12000": str(free[1]), "12001": str(free[2]), "within: 10 s": "within: 60 s"}
-    project = copy_example("vehicle", folder / "project", {**written, **(words or {})})
-    stage = Stage(
-        folder / "stage",
-        PROGRAMS,
-        **{
-            "needs": NEEDS,
-            "ports": dict(zip(SERVICES, free, strict=True)),
-            "says": {"event_cache": "now IceStorm ready"},
-            "ends": {"multicast": 0},
-            **settings,
-        },
-    )
-    return Run(make_workspace(project / "scenario", folder / "ws") / "start.sh", stage), stage
+@pytest.fixture(scope="module")
+def script(tmp_path_factory: pytest.TempPathFactory, port: int) -> Path:
+    return make_script(tmp_path_factory.mktemp("robot"), port)
 
 
-def test_the_vehicle_comes_up_in_order_and_stops_in_reverse(tmp_path: Path, ports: list[int]) -> None:
-    run, stage = start_vehicle(tmp_path, ports)
-    run.wait_for("all of 12 steps")
-    events = run.events
-    for name, needs in NEEDS.items():
-        for need in needs:
-            seen = ("ended" if need == "multicast" else "up", need)
-            assert events.index(seen) < events.index(("starting", name)), (need, name)
+def make_script(folder: Path, port: int, *, within: str = "60 s", respawn: str = "", old: str = "", new: str = "") -> Path:
+    (folder / "project").mkdir()
+    text = PROJECT.replace("PORT", str(port)).replace("WITHIN", within).replace(", RESPAWN", respawn)
+    (folder / "project" / "archgen.yaml").write_text(text.replace(old, new) if old else text, encoding="utf-8")
+    return make_workspace(folder / "project", folder / "ws") / "start.sh"
+
+
+def start(script: Path, folder: Path, port: int, **settings: Any) -> tuple[Run, Stage]:
+    wanted = {"needs": NEEDS, "ports": {"world": port}, "ends": {"clock": 0}, **settings}
+    stage = Stage(folder / "stage", {"set_clock": "clock", "simulator": "world", "camera": "a", "finder": "b"}, **wanted)
+    return Run(script, stage), stage
+
+
+def test_it_starts_in_order_and_stops_in_reverse(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port)
+    run.wait_for("all of 4 steps")
     run.send(signal.SIGINT)
     assert run.wait_for_end() == 0
-    assert [line for line in stage.journal if line.startswith("stop")] == [f"stop {name}" for name in PLANNED[:0:-1]]
-    assert {f"{name}.log" for name in PLANNED} | {"start.log"} == {file.name for file in run.log_folder.iterdir()}
-    assert (run.log_folder / "imu.log").read_text(encoding="utf-8").startswith("imu says hello\n")
-    assert "up        imu" in (run.log_folder / "start.log").read_text(encoding="utf-8")
+    assert stage.journal == ["start clock", "end clock", "start world", "start a", "start b", "stop b", "stop a", "stop world"]
+    assert {file.name for file in run.log_folder.iterdir()} == {"clock.log", "world.log", "a.log", "b.log", "start.log"}
+    assert (run.log_folder / "a.log").read_text(encoding="utf-8") == "a says hello\n\n"
+    assert (run.log_folder / "start.log").read_text(encoding="utf-8") == run.output.replace("logs      ", "logs      ")
+    assert stage.read_told("a")[0]["words"] == ["camera", "--fast"]
+    assert stage.read_told("a")[0]["folder"] == str(script.parent)
 
 
-def test_a_signal_in_the_middle_stops_what_was_started(tmp_path: Path, ports: list[int]) -> None:
-    run, stage = start_vehicle(tmp_path, ports, says={})
-    run.wait_for("starting  event_cache")
-    run.send(signal.SIGTERM)
-    assert run.wait_for_end() == 128 + signal.SIGTERM
-    assert [line for line in stage.journal if line.startswith("stop")][-2:] == ["stop registry", "stop stage"]
-    assert "not up    imu: not started, it was not its turn" in run.output
-    assert "not up    dgclocalnav: not started, it waits for laser2d0 faithlocaliser3d" in run.output
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
-def test_an_interrupt_while_nothing_is_up_tells_its_status(tmp_path: Path, ports: list[int], number: signal.Signals) -> None:
-    run, _ = start_vehicle(tmp_path, ports, ports={})
-    run.wait_for("starting  stage")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_in_the_middle_stops_what_was_started(
+    script: Path, port: int, tmp_path: Path, number: signal.Signals
+) -> None:
+    run, stage = start(script, tmp_path, port, ports={})
+    run.wait_for("starting  world")
+    (wait_for_start(run, stage, "world"))
     run.send(number)
     assert run.wait_for_end() == 128 + number
+    assert stage.journal == ["start clock", "end clock", "start world", "stop world"]
+    assert f"not up    world: the port {port} does not accept connections" in run.output
+    assert "not up    a: not started, it was not its turn" in run.output
+    assert "not up    b: not started, it waits for a" in run.output
 
 
-def test_the_end_of_one_program_stops_all_and_is_said(tmp_path: Path, ports: list[int]) -> None:
-    run, stage = start_vehicle(tmp_path, ports)
-    run.wait_for("all of 12 steps")
-    os.kill(stage.read_process("imu"), signal.SIGKILL)
+def wait_for_start(run: Run, stage: Stage, name: str) -> None:
+    import time
+
+    while f"start {name}" not in stage.journal:
+        assert run.process.poll() is None, run.output
+        time.sleep(0.05)
+
+
+def test_the_end_of_one_program_stops_all_and_is_said(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port)
+    run.wait_for("all of 4 steps")
+    os.kill(stage.read_process("a"), signal.SIGKILL)
     assert run.wait_for_end() == 1
-    assert "failed    imu: it was ended by SIGKILL" in run.output
-    assert [line for line in stage.journal if line.startswith("stop")] == [
-        f"stop {name}" for name in PLANNED[:0:-1] if name != "imu"
-    ]
+    assert "failed    a: it was ended by SIGKILL" in run.output
+    assert "not up    a: it was ended by SIGKILL" in run.output
+    assert stage.journal[-2:] == ["stop b", "stop world"]
 
 
-def test_what_is_not_up_in_time_is_said(tmp_path: Path, ports: list[int]) -> None:
-    words = {f"port: {ports[2]}, log: IceStorm ready, within: 60 s": f"port: {ports[2]}, log: IceStorm ready, within: 1 s"}
-    run, stage = start_vehicle(tmp_path, ports, words, says={})
+def test_a_program_that_fails_is_said_with_the_end_of_its_log(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port, needs={"a": ["what is not there"]})
     assert run.wait_for_end() == 1
-    assert 'failed    event_cache: not up within 1 s: its output does not hold "IceStorm ready"' in run.output
-    assert "start imu" not in stage.journal
+    assert "failed    a: it ended with status 9" in run.output
+    assert "            | needs what is not there" in run.output
+    assert "start b" not in stage.journal
+    assert stage.journal[-1] == "stop world"
 
 
-def test_a_program_that_fails_is_said_with_the_end_of_its_log(tmp_path: Path, ports: list[int]) -> None:
-    run, _ = start_vehicle(tmp_path, ports, needs={"registry": ["what is not there"]})
+def test_a_step_that_runs_once_and_fails_ends_the_start(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port, ends={"clock": 4})
     assert run.wait_for_end() == 1
-    assert "failed    registry: it ended with status 9" in run.output
-    assert "| needs what is not there" in run.output
+    assert "failed    clock: it ended with status 4" in run.output
+    assert stage.journal == ["start clock", "end clock"]
 
 
-def test_a_step_that_runs_once_and_fails_ends_the_start(tmp_path: Path, ports: list[int]) -> None:
-    run, stage = start_vehicle(tmp_path, ports, ends={"multicast": 4})
-    assert run.wait_for_end() == 1
-    assert "failed    multicast: it ended with status 4" in run.output
-    assert stage.journal == ["start multicast", "end multicast"]
-
-
-def test_what_does_not_listen_is_killed_with_all_that_it_started(tmp_path: Path, ports: list[int]) -> None:
-    manners = {"imu": "deaf", "car": "stubborn", "gridmap": "parent"}
-    run, stage = start_vehicle(tmp_path, ports, manners=manners)
-    run.wait_for("all of 12 steps")
-    assert (stage.folder / "gridmap.child").exists()
+def test_what_does_not_listen_is_killed_with_all_that_it_started(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port, manners={"world": "deaf", "a": "stubborn", "b": "parent"})
+    run.wait_for("all of 4 steps")
     run.send(signal.SIGTERM)
     assert run.wait_for_end() == 0
-    assert "killing   imu: it does not end by itself" in run.output
-    assert "killing   car" not in run.output
-    assert "stop car" in stage.journal
+    assert "killing   world: it does not end by itself" in run.output
+    assert "killing   a" not in run.output
+    assert "stop a" in stage.journal
 
 
-def test_what_respawns_starts_again(tmp_path: Path, ports: list[int]) -> None:
-    words = {"after: registry,": "after: registry, respawn: true, respawn_delay: 1 s,"}
-    run, stage = start_vehicle(tmp_path, ports, words, manners={"event_cache": "short"})
-    run.wait_for("all of 12 steps")
-    assert "ended     event_cache: it ended with status 3, and starts again in 1 s" in run.output
-    assert [line for line in stage.journal if "event_cache" in line] == ["start event_cache", "fall event_cache", "start event_cache"]
-    run.send(signal.SIGINT)
-    assert run.wait_for_end() == 0
-
-
-def test_when_the_script_itself_is_killed_nothing_is_left(tmp_path: Path, ports: list[int]) -> None:
-    run, _ = start_vehicle(tmp_path, ports)
-    run.wait_for("all of 12 steps")
+def test_when_the_script_itself_is_killed_nothing_is_left(script: Path, port: int, tmp_path: Path) -> None:
+    run, _ = start(script, tmp_path, port)
+    run.wait_for("all of 4 steps")
     run.send(signal.SIGKILL)
     run.wait_for_nothing_left()
 
 
-def test_a_missing_program_is_said_before_anything_starts(tmp_path: Path, ports: list[int]) -> None:
-    run, stage = start_vehicle(tmp_path, ports, {"command: [icebox,": "command: [no_such_icebox,"})
+def test_what_respawns_starts_again(port: int, tmp_path: Path) -> None:
+    script = make_script(tmp_path, port, respawn=", respawn: true, respawn_delay: 1 s")
+    run, stage = start(script, tmp_path, port, manners={"b": "short"})
+    run.wait_for("again     b")
+    run.wait_for("all of 4 steps")
+    assert "ended     b: it ended with status 3, and starts again in 1 s" in run.output
+    run.send(signal.SIGINT)
+    assert run.wait_for_end() == 0
+    assert [line for line in stage.journal if line.endswith(" b")] == ["start b", "fall b", "start b", "stop b"]
+
+
+def test_what_is_not_up_in_time_is_said(port: int, tmp_path: Path) -> None:
+    run, stage = start(make_script(tmp_path, port, within="500 ms"), tmp_path, port, ports={})
+    assert run.wait_for_end() == 1
+    assert f"failed    world: not up within 0.5 s: the port {port} does not accept connections" in run.output
+    assert "start a" not in stage.journal
+
+
+def test_what_runs_once_has_its_time(port: int, tmp_path: Path) -> None:
+    script = make_script(tmp_path, port, old="once: true", new="once: true, ready: {within: 1 s}")
+    run, _ = start(script, tmp_path, port, ends={})
+    assert run.wait_for_end() == 1
+    assert "failed    clock: not at its end within 1 s" in run.output
+
+
+def test_missing_programs_are_said_before_anything_starts(port: int, tmp_path: Path) -> None:
+    script = make_script(tmp_path, port, old="[finder]", new="[no_such_finder]")
+    run, stage = start(script, tmp_path, port)
     assert run.wait_for_end() == 2
-    assert run.output.splitlines() == [
-        "event_cache needs the program no_such_icebox, which is not on the path",
-        "Nothing was started.",
-    ]
+    assert run.output == "b needs the program no_such_finder, which is not on the path\nNothing was started.\n"
     assert stage.journal == []
+
+
+def test_settings_are_the_users_own(port: int, tmp_path: Path) -> None:
+    script = make_script(tmp_path, port, old="once: true", new="once: true, environment: {CLOCK: \"$(date) 'x'\"}, directory: bin")
+    settings = script.with_name("settings.sh")
+    settings.write_text(f"export OF_ROS=yes $UNSET\nSTART_FOLDER={tmp_path / 'stage'}\n", encoding="utf-8")
+    run, stage = start(script, tmp_path, port)
+    run.wait_for("ended     clock")
+    run.send(signal.SIGTERM)
+    run.wait_for_end()
+    (told,) = stage.read_told("clock")
+    assert told["folder"] == str(tmp_path / "stage" / "bin")
+    assert told["environment"]["CLOCK"] == "$(date) 'x'"
+    assert told["environment"]["OF_ROS"] == "yes"

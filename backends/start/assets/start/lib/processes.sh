@@ -77,15 +77,19 @@ watch_from_afar() { # ID
   fi
 }
 
-# The processes of a step that still run: those of its group, and those that carry its mark.
+# Finds the processes of a step that still run: those of its groups, and those that carry its mark.
 find_processes() { # ID
-  local user_words
+  local user_words marked
+  found=()
+  if kill -0 -- "-${program[$1]:-none}" 2>/dev/null; then
+    # What has ended and waits for its parent does not run any more.
+    mapfile -t found < <(cat /proc/[0-9]*/stat 2>/dev/null | awk -v group="${program[$1]}" \
+      '{ pid = $1; sub(/^.*\) /, ""); if ($1 != "Z" && $1 != "X" && $3 == group) print pid }')
+  fi
   find_user_words "$1"
-  {
-    cat /proc/[0-9]*/stat 2>/dev/null | awk -v groups=" ${program[$1]-} ${watcher[$1]-} " \
-      '{ pid = $1; sub(/^.*\) /, ""); if ($1 != "Z" && $1 != "X" && index(groups, " " $3 " ")) print pid }'
-    ${user_words[@]+"${user_words[@]}"} grep -lszFx -e "$(mark "$1")" /proc/[0-9]*/environ | tr -cd '0-9\n'
-  } | sort -nu
+  mapfile -t marked < <(${user_words[@]+"${user_words[@]}"} grep -lszFx -e "$(mark "$1")" /proc/[0-9]*/environ)
+  found+=("${marked[@]//[!0-9]/}")
+  ((${#found[@]}))
 }
 
 send() { # SIGNAL ID PID...
@@ -103,20 +107,18 @@ end_watcher() { # ID
 
 # Interrupts what still runs of a step; terminates and at last kills what does not end by itself.
 end_processes() { # ID
-  local signal until pids
+  local signal until found
+  find_processes "$1" || return 0
   for signal in INT TERM KILL; do
-    mapfile -t pids < <(find_processes "$1")
-    ((${#pids[@]})) || return 0
     [[ $signal != KILL ]] || say killing "$1" 'it does not end by itself'
-    send "$signal" "$1" "${pids[@]}"
+    send "$signal" "$1" "${found[@]}"
     until=$((SECONDS + patience))
     while ((SECONDS <= until)); do
-      mapfile -t pids < <(find_processes "$1")
-      ((${#pids[@]})) || return 0
+      find_processes "$1" || return 0
       read -r -t 0.1 -u "$never" || true
     done
   done
-  say left "$1" "these processes could not be ended: ${pids[*]}"
+  say left "$1" "these processes could not be ended: ${found[*]}"
   left_over=yes
 }
 
