@@ -126,8 +126,10 @@ def _print_result(result: WorkspaceResult, *, dry_run: bool) -> None:
             command_support.print_warning(f"{step.path}: {step.note}")
     if not dry_run:
         counts = [
-            f"{plan.count(verb)} {words}"
-            for verb, words in (("new", "new"), ("changed", "changed"), ("removed", "removed"), ("same", "as before"))
-            if plan.count(verb)
+            (plan.count("new"), "new"),
+            (plan.count("changed"), "changed"),
+            (plan.count("removed"), "removed"),
+            (plan.count("same"), "as before"),
         ]
-        command_support.print_written(result.folder, ", ".join(counts) or "no files")
+        detail = ", ".join(f"{count} {words}" for count, words in counts if count) or "no files"
+        command_support.print_written(result.folder, detail)

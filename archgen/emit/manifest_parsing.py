@@ -95,9 +95,7 @@ def _parse_manifest(text: str, name: str) -> tuple[Any, ManifestNode]:
         _check_yaml_events(yaml.parse(text, Loader=loader), name)
         reader = loader(text)
         root = reader.get_single_node()
-        data = reader.construct_document(root) if root else {}
-        _read_flags(data)
-        return data, root
+        return _read_flags(reader.construct_document(root) if root else {}), root
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
@@ -107,12 +105,13 @@ def _parse_manifest(text: str, name: str) -> tuple[Any, ManifestNode]:
         refuse_manifest(name, f"this is not YAML: {str(error).splitlines()[0]}")
 
 
-def _read_flags(data: Any) -> None:  # noqa: ANN401 - what the file holds
-    """Make booleans of the flags of files, which are the only values in a manifest that are no text."""
+def _read_flags(data: Any) -> Any:  # noqa: ANN401 - what the file holds
+    """Return data with booleans for the flags of files, which are the only values in a manifest that are no text."""
     files = data.get("files") if isinstance(data, dict) else None
     for file in files if isinstance(files, list) else ():
         for key in _FLAG_KEYS & file.keys() if isinstance(file, dict) else ():
             file[key] = {"true": True, "false": False}.get(file[key], file[key]) if isinstance(file[key], str) else None
+    return data
 
 
 def _check_yaml_events(events: Any, name: str) -> None:  # noqa: ANN401 - the library has no types

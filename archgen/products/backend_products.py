@@ -73,7 +73,7 @@ def _refuse_unusable(
     backend = backends_by_name.get(name)
     if backend is None or backend.emitter not in CALLED_EMITTERS:
         msg = f"there is no {'output' if other_outputs else 'text backend'} `{name}`"
-        listed_names = f"there are {', '.join(usable_names)}" if usable_names else _describe_none(makes)
+        listed_names = f"there are {', '.join(usable_names)}"
         raise file_tree.OutputError(msg, did_you_mean(name, usable_names) or listed_names)
     if backend.makes != makes:
         msg = f"the backend `{name}` makes {_TARGET_PHRASES[backend.makes]}, not {_TARGET_PHRASES[makes]}"
@@ -82,11 +82,6 @@ def _refuse_unusable(
     if backend.from_project and name in PRODUCTS:
         msg = f"the backend `{name}` is called as an output of archgen itself"
         raise file_tree.OutputError(msg, "give it another `id`, and its folder the same name")
-
-
-def _describe_none(makes: BackendTarget) -> str:
-    """Say that no backend makes this, and where one would stand."""
-    return f"no backend here says `makes: {makes}`; a project brings its own in backends/"
 
 
 def make_backend_product(backend: Backend) -> Product:

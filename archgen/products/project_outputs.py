@@ -103,6 +103,7 @@ def write_resolved(checked_project: CheckedProject, options: OutputOptions, targ
 
 def render_exported(checked_project: CheckedProject, options: OutputOptions, backend_name: str) -> bytes:
     """Return the single file of a text backend. Raise OutputError where none of this name makes
-    one, or where its template fails."""
+    one, or where its template fails.
+    """
     (backend,) = choose_backends(checked_project, (backend_name,), "file", options.trusted_revision)
     return render_single_file(ProductInputs(checked_project, options), backend)

@@ -91,9 +91,10 @@ def write_yaml_scalar(value: object) -> str:
         # YAML 1.1 takes `1e+16` for a text: a number of it has a point.
         text = repr(value) if "." in repr(value) else repr(value).replace("e", ".0e")
         return {"inf": ".inf", "-inf": "-.inf", "nan": ".nan"}.get(text, text)
-    # A string of JSON is one of YAML, where surrogates and C1 controls are escaped: JSON leaves U+007F as it is.
-    return json.dumps(_print_text(value).encode("utf-16", "replace").decode("utf-16", "replace")).replace(
-        "\x7f", "\\u007f"
+    text = _print_text(value).encode("utf-16", "replace").decode("utf-16", "replace")
+    # The escapes of Python are those of YAML as well.
+    return (
+        '"' + "".join(each if each.isprintable() and each not in '"\\' else _escape_python(each) for each in text) + '"'
     )
 
 
@@ -107,12 +108,12 @@ def write_shell_word(value: object) -> str:
 
 def write_line_comment(value: object) -> str:
     """Return text for a comment of one line in any language: it ends no comment, and continues on no next line."""
-    text = " ".join(_LINE_BREAKS.sub(" ", _print_text(value)).split())
+    # A backslash joins lines in C++ and starts the unicode escapes of Java, wherever they stand.
+    text = " ".join(_LINE_BREAKS.sub(" ", _print_text(value)).split()).replace("\\", "/")
     for _ in range(2):
         for mark, replacement in _COMMENT_ENDS:
             text = text.replace(mark, replacement)
-    # A backslash joins lines in C++ and starts the unicode escapes of Java, wherever they stand.
-    return text.replace("\\", "/")
+    return text
 
 
 CODE_FILTERS: Mapping[str, Callable[[object], str]] = {

@@ -113,9 +113,10 @@ class _Planner:
         elif found.digest in entry.digests:
             self.removals.append(path)
             self.steps.append(FileStep(path, "removed"))
-        elif found.exists or found.obstacle:
+        elif found.exists:
             self.steps.append(FileStep(path, "left", "it is no longer made, but was changed by hand: it is yours now"))
-        else:
+        # With a link, a folder or the like in its place it is gone as well, and folders behind a link are not archgen's.
+        elif not found.obstacle:
             self.vanished.append(path)
 
     def plan_wanted(self, file: GeneratedFile) -> None:
@@ -132,9 +133,9 @@ class _Planner:
             self._keep_own(file, entry, digest, f"it lacks {', '.join(words)}" if words else "")
         elif found.digest == digest:
             self._keep_same(file, entry, digest, found)
-        elif found.digest in self.known_digests[fold_path(file.path)]:
-            self._write(file, entry, digest, found, "changed")
-        elif entry and file.path in self.choices.overwritten:
+        elif found.digest in self.known_digests[fold_path(file.path)] or (
+            entry and file.path in self.choices.overwritten
+        ):
             self._write(file, entry, digest, found, "changed")
         elif file.path in self.choices.kept:
             self._keep_own(file, entry, digest, "")

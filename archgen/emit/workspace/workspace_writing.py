@@ -84,10 +84,18 @@ def _stage_files(plan: WorkspacePlan, staging: Path) -> None:
 def _move_in(plan: WorkspacePlan, workspace: Path, staging: Path) -> None:
     for number, path in enumerate(plan.writes):
         (workspace / path).parent.mkdir(parents=True, exist_ok=True)
+        _remove_empty_folders(workspace / path)
         os.replace(staging / str(number), workspace / path)  # noqa: PTH105 - says what it does on every system
     for path, mode in plan.modes.items():
         if path not in plan.writes:
             (workspace / path).chmod(mode)
+
+
+def _remove_empty_folders(path: Path) -> None:
+    """Remove a folder that stands where a file goes: the plan found no file in it, and one with a file does not go."""
+    if path.is_dir() and not path.is_symlink():
+        for folder, _, _ in os.walk(path, topdown=False):
+            Path(folder).rmdir()
 
 
 def _remove_files(paths: Iterable[str], workspace: Path) -> None:

@@ -39,17 +39,19 @@ def _find_composed(context: GenerationContext) -> Iterator[Diagnostic]:
 def _find_generics(context: GenerationContext) -> Iterator[Diagnostic]:
     """Yield the component types and types of data that stand for many."""
     architecture = context.architecture
-    for each in (*architecture.component_types.values(), *architecture.types.values()):
-        if each.generic:
-            name = each.name if hasattr(each, "name") else each.id
-            yield Diagnostic(
-                UNMET_NEED.name,
-                f"`{name}` stands for many types, and what is generated here knows no such types",
-                each.at,
-                UNMET_NEED.severity,
-                help="`archgen transform remove_generics -o plain.yaml` makes a project without; generate from that",
-                element=name,
-            )
+    generic_types = [
+        *((each.id, each.at) for each in architecture.component_types.values() if each.generic),
+        *((each.name, each.at) for each in architecture.types.values() if each.generic),
+    ]
+    for name, span in generic_types:
+        yield Diagnostic(
+            UNMET_NEED.name,
+            f"`{name}` stands for many types, and what is generated here knows no such types",
+            span,
+            UNMET_NEED.severity,
+            help="`archgen transform remove_generics -o plain.yaml` makes a project without; generate from that",
+            element=name,
+        )
 
 
 def _find_several_sources(context: GenerationContext) -> Iterator[Diagnostic]:

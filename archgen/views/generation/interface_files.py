@@ -10,6 +10,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.views.generation.generation_context import write_place
 
 _ROS_1_TIMES = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
+_ROS_2_TIMES = {ros_1_name: message for message, ros_1_name in _ROS_1_TIMES.items()}
 _BOUND = re.compile(r"<=(\d+)")
 _FIELD_TYPES = frozenset(
     (
@@ -28,6 +29,7 @@ _FIELD_TYPES = frozenset(
         "uint64",
     )
 )
+_KNOWN_WORDS = _FIELD_TYPES | {"string", "wstring"} | set(_ROS_2_TIMES)
 _QUOTES = ('"', "'")
 
 
@@ -61,18 +63,20 @@ def list_missing_words(definition: Interface, ros: int) -> Iterator[str]:
     for part in definition.parts:
         for field in part:
             base_type = field.type.partition("<=")[0]
-            if base_type in {"wstring"} and ros == 1:
+            if base_type == "wstring" and ros == 1:
                 yield f"ROS 1 has no `{base_type}`, which `{field.name}` is"
-            elif "/" not in field.type and base_type not in _FIELD_TYPES | {"string", "wstring"}:
+            elif "/" not in field.type and base_type not in _KNOWN_WORDS:
                 yield f"nobody says what `{field.type}` is, which `{field.name}` holds"
 
 
 def list_used_packages(definitions: Iterable[Interface], package: str, ros: int) -> list[str]:
     """Return the packages of the messages that definitions hold, but for their own; ROS 1 has times without a package."""
-    used_messages = {field.type for each in definitions for part in each.parts for field in part if "/" in field.type}
+    field_types = {field.type for each in definitions for part in each.parts for field in part}
     if ros == 1:
-        used_messages -= set(_ROS_1_TIMES)
-    return sorted({message.partition("/")[0] for message in used_messages} - {package})
+        field_types -= set(_ROS_1_TIMES)
+    else:
+        field_types = {_ROS_2_TIMES.get(each, each) for each in field_types}
+    return sorted({each.partition("/")[0] for each in field_types if "/" in each} - {package})
 
 
 def _record_field(field: InterfaceField, package: str, ros: int) -> dict[str, object]:
@@ -96,7 +100,7 @@ def _record_field(field: InterfaceField, package: str, ros: int) -> dict[str, ob
 
 
 def _spell_in_ros_2(field: InterfaceField, package: str) -> str:
-    return f"{_shorten_message(field.type, package)}{field.array}"
+    return f"{_shorten_message(_ROS_2_TIMES.get(field.type, field.type), package)}{field.array}"
 
 
 def _spell_in_ros_1(field: InterfaceField, package: str) -> str:

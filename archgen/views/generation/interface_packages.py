@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from graphlib import TopologicalSorter
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
+from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface
 from archgen.model.message_types import ConceptualType
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out
@@ -27,9 +29,13 @@ def make_view(context: GenerationContext) -> GeneratedView:
     names = [
         name for name in _list_definitions(architecture, definers) if name.partition("/")[0] not in existing_packages
     ]
-    sound_names, problems = _leave_out_unsound(architecture, names, definers, ros)
+    used_packages = _find_used_packages(architecture, names)
+    rings = find_rings(used_packages)
+    findings += (_tell_ring(ring, names, definers) for ring in rings)
+    ring_names = [name for name in names if any(name.partition("/")[0] in ring for ring in rings)]
+    sound_names, problems = _leave_out_unsound(architecture, names, ring_names, definers, ros)
     findings += problems
-    packages = _order_packages(architecture, sound_names)
+    packages = _order_packages(sound_names, used_packages)
     if not context.is_whole:
         wanted_packages = _find_wanted_packages(context, packages)
         packages = {name: files for name, files in packages.items() if name in wanted_packages}
@@ -116,11 +122,19 @@ def _find_untold_types(context: GenerationContext) -> Iterator[Diagnostic]:
 
 
 def _leave_out_unsound(
-    architecture: Architecture, names: Iterable[str], definers: Mapping[str, ConceptualType], ros: int
+    architecture: Architecture,
+    names: Iterable[str],
+    told_names: Iterable[str],
+    definers: Mapping[str, ConceptualType],
+    ros: int,
 ) -> tuple[list[str], list[Diagnostic]]:
-    """Return the messages that can be written, and what is wrong with the others: those that hold one of these go too."""
+    """Return the messages that can be written, and what is wrong with the others: those that hold one of these go too.
+
+    Of `told_names` somebody knows already that they are left out.
+    """
     findings = list[Diagnostic]()
-    sound_names, reasons = list(names), dict[str, str]()
+    reasons = dict.fromkeys(told_names, "")
+    sound_names = [name for name in names if name not in reasons]
     definitions = architecture.interfaces.definitions
     while True:
         for name in sound_names:
@@ -150,51 +164,57 @@ def _list_messages(definition: Interface) -> list[str]:
     return [field.type for part in definition.parts for field in part if "/" in field.type]
 
 
-def _order_packages(architecture: Architecture, names: Iterable[str]) -> dict[str, list[str]]:
+def _find_used_packages(architecture: Architecture, names: Iterable[str]) -> dict[str, list[str]]:
+    """Return the packages of these messages, in the order of their names, each with the others that it uses."""
+    definitions = architecture.interfaces.definitions
+    used_packages = defaultdict[str, set[str]](set)
+    for name in names:
+        used_packages[name.partition("/")[0]] |= {each.partition("/")[0] for each in _list_messages(definitions[name])}
+    return {
+        package: sorted((used & used_packages.keys()) - {package}) for package, used in sorted(used_packages.items())
+    }
+
+
+def _tell_ring(ring: Collection[str], names: Iterable[str], definers: Mapping[str, ConceptualType]) -> Diagnostic:
+    """Report packages that hold messages of each other: none can be built before the other."""
+    definer = next(definers[name] for name in names if name in definers and name.partition("/")[0] in ring)
+    packages = " and ".join(f"`{package}`" for package in sorted(ring))
+    return tell_left_out(
+        f"the packages {packages} hold messages of each other, so that none can be built first: they are not generated",
+        definer.at,
+        element=definer.name,
+        help_line="move types to one of them: `message: my_msgs/msg/Name`",
+    )
+
+
+def _order_packages(names: Iterable[str], used_packages: Mapping[str, list[str]]) -> dict[str, list[str]]:
     """Group messages by package; a package stands behind those that it uses, else in the order of their names."""
     names_by_package = defaultdict[str, list[str]](list)
     for name in names:
         names_by_package[name.partition("/")[0]].append(name)
-    definitions = architecture.interfaces.definitions
-    used_packages = {
-        package: [
-            other
-            for other in sorted({m.partition("/")[0] for name in names for m in _list_messages(definitions[name])})
-            if other != package and other in names_by_package
-        ]
-        for package, names in names_by_package.items()
-    }
-    ordered = dict[str, list[str]]()
-
-    def add(package: str, path: tuple[str, ...]) -> None:
-        if package in ordered or package in path:
-            return
-        for other in used_packages[package]:
-            add(other, (*path, package))
-        ordered.setdefault(package, names_by_package[package])
-
-    for package in names_by_package:
-        add(package, ())
-    return ordered
+    order = TopologicalSorter({package: used_packages[package] for package in names_by_package})
+    return {package: names_by_package[package] for package in order.static_order() if package in names_by_package}
 
 
 def _find_wanted_packages(context: GenerationContext, packages: Mapping[str, list[str]]) -> Collection[str]:
     """Return the packages that the wanted components use, with all that these hold: a package is made whole or not at all."""
     architecture = context.architecture
-    types = {
-        port.type: architecture.types[port.type]
+    port_types = dict.fromkeys(
+        port.type
         for component_id in context.wanted_components
         for port in architecture.components[component_id].ports
         if port.type in architecture.types
-    }
-    node_ids = set(context.wanted_nodes)
-    topics = {e.topic for e in architecture.endpoints if e.node in node_ids}
-    used_messages = collect_messages(
-        architecture, types.values(), [architecture.topics[name] for name in topics if name in architecture.topics]
     )
+    types = [architecture.types[name] for name in port_types if name]
+    topics = [
+        topic
+        for topic in architecture.topics.values()
+        if any(each.node in context.wanted_nodes for each in (*topic.writers, *topic.readers))
+    ]
+    used_messages = collect_messages(architecture, types, topics)
     wanted = {message.partition("/")[0] for message in used_messages}
     # Behind one another: those that a wanted package uses stand before it.
-    for package in reversed(packages):
+    for package in reversed(list(packages)):
         if package in wanted:
             definitions = [architecture.interfaces.definitions[name] for name in packages[package]]
             wanted |= {m.partition("/")[0] for each in definitions for m in _list_messages(each)}
