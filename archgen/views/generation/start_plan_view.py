@@ -10,7 +10,7 @@ from archgen.bringup.start_plan import make_start_plan
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
-from archgen.views.generation.generation_context import GeneratedView, GenerationContext
+from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_step_record import UNPLACED, read_hint, record_step
 
@@ -33,6 +33,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         {
             "project": {"id": architecture.project.id, "title": architecture.project.title},
             "ros": context.ros_generation,
+            "is_whole": context.is_whole,
             "folder": folder.rstrip("/"),
             "image": str(context.options.get("image") or ""),
             "phases": [phase for phase, _ in plan.phases],
@@ -87,6 +88,7 @@ def _record_host(
     element = architecture.hosts.get(host or "")
     record: dict[str, Any] = {
         "name": host or UNPLACED,
+        "place": write_place(element.at) if element else "",
         "title": element.title if element else "Computer of what has no host",
         "address": (read_hint(element.annotations, "address") if element else "") or host or "localhost",
         "phases": list(dict.fromkeys(step.phase for step in shown_steps)),

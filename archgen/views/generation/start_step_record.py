@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.bringup.plan_shapes import DEFAULT_SECONDS, StartStep, format_seconds
+from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.element_annotations import ElementAnnotations
 from archgen.views import start_phrases
+from archgen.views.generation.generation_context import write_place
 
 UNPLACED = "no-host"
 """What the computer of steps without a host is called: no id has a hyphen."""
@@ -43,7 +45,11 @@ def record_step(
         "is_watched": bool(signs) or lifecycle is not None,
         "command": list(step.command),
         "preparations": [list(words) for words in step.preparations],
-        "awaited": [{"name": names[each.awaited], "until": each.until} for each in step.awaited],
+        "values": _record_values(step, ros),
+        "awaited": [
+            {"name": names[each.awaited], "until": each.until, "reasons": list(each.reasons)}
+            for each in start_phrases.name_waits(step)
+        ],
         "signs": signs,
         "within": step.seconds_at_most or (str(DEFAULT_SECONDS) if is_brought else None),
         "lifecycle": lifecycle,
@@ -55,6 +61,7 @@ def record_step(
         "needs_rights": list(step.needs_rights),
         "image": _find_image(step, architecture),
         "up_when": start_phrases.describe_ready(step),
+        "place": write_place(_find_place(step, architecture)),
     }
 
 
@@ -76,6 +83,22 @@ def _record_lifecycle(step: StartStep) -> dict[str, Any] | None:
         "state": step.state,
         "transitions": [words[-1] for words in step.transitions],
     }
+
+
+def _record_values(step: StartStep, ros: int) -> list[dict[str, Any]]:
+    """Return the parameters whose values are the output of commands: ROS 1 has them on a server, by their complete names."""
+    if step.ros is None:
+        return []
+    return [
+        {"name": f"{step.ros.full_name}/{name.replace('.', '/')}" if ros == 1 else name, "words": list(words)}
+        for name, words in step.ros.value_commands.items()
+    ]
+
+
+def _find_place(step: StartStep, architecture: Architecture) -> Span:
+    if step.kind == "container":
+        return architecture.containers[step.container or ""].at
+    return architecture.nodes[step.id].at
 
 
 def _find_image(step: StartStep, architecture: Architecture) -> str:

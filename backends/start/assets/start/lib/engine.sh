@@ -51,7 +51,8 @@ step() {
       --set) its_variables+=("$2"); shift 2 ;;
       --in) directory[$id]=$2; shift 2 ;;
       --as) user[$id]=$2; shift 2 ;;
-      --before) its_before+=("$2" "${@:3:$2}"); shift $(($2 + 2)) ;;
+      --before) its_before+=("$1" "$2" "${@:3:$2}"); shift $(($2 + 2)) ;;
+      --value) its_before+=("$1" "$2" "$3" "${@:4:$3}"); shift $(($3 + 3)) ;;
       --) shift; break ;;
       *) printf '%s: what is %q?\n' "$id" "$1" >&2; exit 2 ;;
     esac

@@ -17,27 +17,35 @@ find_user_words() { # ID
 
 mark() { printf 'START_STEP=%s:%s' "$run" "$1"; } # ID
 
-launch() { # ID
-  local id=$1 variable
+# The words that become the program of a step, in its folder and with its variables.
+find_run_words() { # ID
+  local variable user_words
   local -n its_words=words_${number[$1]} its_variables=variables_${number[$1]} its_before=before_${number[$1]}
   local -n its_signs=signs_${number[$1]}
-  local output=$run/${log[$id]} options=(--in "${directory[$id]:-.}") user_words
-  : >>"$output"
-  older_bytes[$id]=$(stat -c %s -- "$output")
-  find_user_words "$id"
-  ((${#user_words[@]} == 0)) || [[ ! -f $settings ]] || options=(--settings "$settings" "${options[@]}")
-  for variable in "START_FOLDER=$START_FOLDER" PYTHONUNBUFFERED=1 ${its_variables[@]+"${its_variables[@]}"} "$(mark "$id")"; do
-    options+=(--set "$variable")
+  find_user_words "$1"
+  run_words=(${user_words[@]+"${user_words[@]}"} bash "$library/run.sh")
+  # Another user has none of the variables that were set here.
+  ((${#user_words[@]} == 0)) || [[ ! -f $settings ]] || run_words+=(--settings "$settings")
+  for variable in "START_FOLDER=$START_FOLDER" PYTHONUNBUFFERED=1 ${its_variables[@]+"${its_variables[@]}"} "$(mark "$1")"; do
+    run_words+=(--set "$variable")
   done
+  run_words+=(--in "${directory[$1]:-.}" ${its_before[@]+"${its_before[@]}"})
   # Who waits for words of its output wants to see them at once.
-  [[ " ${its_signs[*]-} " != *' --log '* ]] || options+=(--by-line)
+  [[ " ${its_signs[*]-} " != *' --log '* ]] || run_words+=(--by-line)
+  run_words+=(-- "${its_words[@]}")
+}
+
+launch() { # ID
+  local run_words output=$run/${log[$1]}
+  : >>"$output"
+  older_bytes[$1]=$(stat -c %s -- "$output")
+  find_run_words "$1"
   set -m
   (
     exec {never}>&- {guarded}>&-
-    exec -- ${user_words[@]+"${user_words[@]}"} bash "$library/run.sh" "${options[@]}" \
-      ${its_before[@]+"${its_before[@]}"} -- "${its_words[@]}"
+    exec -- "${run_words[@]}"
   ) </dev/null >>"$output" 2>&1 &
-  program[$id]=$!
+  program[$1]=$!
   set +m
 }
 
@@ -55,11 +63,12 @@ start_watcher() { # ID WORD...
 }
 
 watch() { # ID
-  local -n its_signs=signs_${number[$1]} its_words=words_${number[$1]}
-  local loaded=()
+  local -n its_signs=signs_${number[$1]}
+  local run_words=()
   ((${#its_signs[@]})) || return 0
-  [[ ${kind[$1]} != loaded ]] || loaded=(-- "${its_words[@]}")
-  start_watcher "$1" --output "$run/${log[$1]}" "${older_bytes[$1]:-0}" "${its_signs[@]}" ${loaded[@]+"${loaded[@]}"}
+  [[ ${kind[$1]} != loaded ]] || find_run_words "$1"
+  start_watcher "$1" --output "$run/${log[$1]}" "${older_bytes[$1]:-0}" "${its_signs[@]}" \
+    ${run_words[@]+-- "${run_words[@]}"}
 }
 
 # A step of another computer, while no script above says how it goes: what can be seen from here is waited for.

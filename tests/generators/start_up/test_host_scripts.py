@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tests.bringup.started_workspaces import Run, Stage, hold_ports, make_workspace
+from tests.generators.start_up.started_workspaces import Run, Stage, hold_ports, make_workspace
 
 PROJECT = """\
 archgen: 1
