@@ -11,21 +11,25 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from tests.running import ROOT, archgen
+from archgen.pipeline import check_project
+from archgen.products.output_options import OutputOptions
+from archgen.products.workspace_product import WorkspaceRequest, write_workspace
+from tests.running import ROOT
 
 _STAND_IN = Path(__file__).with_name("stand_in.py")
 _PATIENCE = 120
 """Seconds until a test gives up on what must come sooner or later."""
 
 
-def make_workspace(project: Path, folder: Path, *words: str) -> Path:
+def make_workspace(project: Path, folder: Path, **request: Any) -> Path:
     """Generate the start-up of a project, and return the folder with it."""
-    archgen("generate", "start", "-C", project, "-o", folder, *words, cwd=project if project.is_dir() else project.parent)
+    result = write_workspace(check_project(project), OutputOptions(), "start", folder, WorkspaceRequest(**request))
+    assert result.is_complete, result.findings
     return folder
 
 
@@ -130,10 +134,14 @@ class Run:
 
     def wait_for(self, words: str) -> None:
         """Wait until it says something."""
+        self.wait_until(lambda: words in self.output)
+
+    def wait_until(self, holds: Callable[[], bool]) -> None:
+        """Wait until something holds; it must do so before the end of the run."""
         until = time.monotonic() + _PATIENCE
-        while words not in self.output:
-            assert self.process.poll() is None, f"it ended before it said '{words}':\n{self.output}"
-            assert time.monotonic() < until, f"it never said '{words}':\n{self.output}"
+        while not holds():
+            assert self.process.poll() is None, self.output
+            assert time.monotonic() < until, self.output
             time.sleep(0.05)
 
     def send(self, number: signal.Signals) -> None:
