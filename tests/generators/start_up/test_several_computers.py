@@ -47,7 +47,12 @@ def script(tmp_path_factory: pytest.TempPathFactory, ports: list[int]) -> Path:
 
 
 def start(script: Path, folder: Path, ports: list[int], *words: str) -> tuple[Run, Stage]:
-    stage = Stage(
+    stage = make_stage(folder, ports)
+    return Run(script, stage, *words), stage
+
+
+def make_stage(folder: Path, ports: list[int]) -> Stage:
+    return Stage(
         folder / "stage",
         PROGRAMS,
         ports={"stage": ports[0], "parcel_registry": ports[1]},
@@ -56,7 +61,6 @@ def start(script: Path, folder: Path, ports: list[int], *words: str) -> tuple[Ru
         topics={"/map": "lifecycle_manager"},
         services={"/navigation/_container/load_node": "navigation", "/dispatcher/change_state": "dispatcher"},
     )
-    return Run(script, stage, *words), stage
 
 
 def test_each_computer_waits_for_the_other(script: Path, ports: list[int], tmp_path: Path) -> None:
@@ -116,7 +120,7 @@ def test_it_has_to_be_told_how_to_reach_the_computers(script: Path, ports: list[
 
 
 def test_it_reaches_others_by_ssh(script: Path, ports: list[int], tmp_path: Path) -> None:
-    stage = start(script, tmp_path / "first", ports)[1]
+    stage = make_stage(tmp_path, ports)
     stage.add_program("ssh", f'echo "$@" >> {tmp_path}/ssh; for line; do :; done; exec sh -c "$line"')
     run = Run(script, stage, "--here", "robot_pc")
     run.wait_for("starting  parcel_registry")

@@ -98,7 +98,9 @@ def test_it_comes_up_in_order_and_stops_in_reverse(script: Path, ports: list[int
 
 def test_killed_in_the_middle_it_stops_what_was_started(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports, says="")
-    run.wait_until(lambda: "start event_cache" in stage.journal)
+    run.wait_for("starting  event_cache")
+    missing = run.log_folder / "event_cache.missing"
+    run.wait_until(lambda: missing.exists() and "IceStorm" in missing.read_text(encoding="utf-8"))
     run.send(signal.SIGTERM)
     assert run.wait_for_end() == 128 + signal.SIGTERM
     assert [line for line in stage.journal if line.startswith("stop")] == [f"stop {name}" for name in reversed(SERVICES)]

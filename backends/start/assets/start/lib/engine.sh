@@ -148,6 +148,7 @@ is_in_turn() { # ID
 
 begin() { # ID
   local id=$1
+  told_at[$id]=$SECONDS
   local -n signs=signs_${number[$1]}
   case ${kind[$id]} in
     elsewhere)
@@ -224,7 +225,7 @@ look_at_signs() { # ID
       missing=$(cat -- "$run/$id.missing" 2>/dev/null)
       if [[ -n ${deadline[$id]-} ]] && ((SECONDS >= deadline[$id])); then
         fail "$id" "not up within ${within[$id]} s: $missing"
-      elif ((SECONDS >= ${told_at[$id]:=SECONDS} + 10)); then
+      elif ((SECONDS >= told_at[$id] + 10)); then
         told_at[$id]=$SECONDS
         say waiting "$id" "$missing"
       fi
