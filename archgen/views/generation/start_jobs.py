@@ -40,11 +40,24 @@ def _list_jobs_of_step(
     needs = [need for each in step["awaited"] for need in _list_needs(steps.get(each["name"]), each["until"])]
     wall = host["ends"][phase_before] if phase_before else []
     if _has_process(step):
-        yield {**common, "name": step["name"], "kind": step["runs"], "needs": needs, "depends_on": _merge_needs(needs + wall)}
+        yield {
+            **common,
+            "name": step["name"],
+            "kind": step["runs"],
+            "needs": needs,
+            "depends_on": _merge_needs(needs + wall),
+        }
         if step["is_watched"]:
             own_need = [_need(step, _end_of_process(step))]
             is_health = step["runs"] == "program" and not step["lifecycle"]
-            yield {**common, "name": f"{step['name']}-up", "kind": "up", "needs": own_need, "depends_on": own_need, "is_health": is_health}
+            yield {
+                **common,
+                "name": f"{step['name']}-up",
+                "kind": "up",
+                "needs": own_need,
+                "depends_on": own_need,
+                "is_health": is_health,
+            }
     elif list_seen_signs(step):
         own_needs = needs if step["is_own"] else []
         yield {
@@ -106,6 +119,4 @@ def list_seen_signs(step: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return the signs by which this computer sees that a step is up: all of its own, of others those that are open to it."""
     if step["is_own"]:
         return list(step["signs"])
-    return [
-        sign for sign in step["signs"] if sign["is_seen_from_afar"] or (step["is_here"] and sign["kind"] == "file")
-    ]
+    return [sign for sign in step["signs"] if sign["is_seen_from_afar"] or (step["is_here"] and sign["kind"] == "file")]

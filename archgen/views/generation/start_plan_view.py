@@ -60,8 +60,7 @@ def _find_wanted_steps(plan: StartPlan, context: GenerationContext) -> frozenset
         step.id
         for step in plan.steps
         if (
-            step.container in loading_containers
-            or (context.components is None and context.host in {None, step.host})
+            step.container in loading_containers or (context.components is None and context.host in {None, step.host})
             if step.kind == "container"
             else step.id in nodes
         )
@@ -102,7 +101,10 @@ def _record_host(
             for step in shown_steps
         ],
         "others": [
-            {"name": record["host"], "address": "localhost" if record["host"] == (host or UNPLACED) else record["address"]}
+            {
+                "name": record["host"],
+                "address": "localhost" if record["host"] == (host or UNPLACED) else record["address"],
+            }
             for record in {
                 records[step.id]["host"]: records[step.id] for step in shown_steps if step.id not in own_ids
             }.values()

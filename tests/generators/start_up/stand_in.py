@@ -21,7 +21,9 @@ def main() -> None:
     node = [word.partition(":=")[2] for word in words if word.startswith("__node:=")]
     name = node[0] if node else settings["names"].get(program, program)
     with (folder / f"{name}.told").open("a") as file:
-        file.write(json.dumps({"words": [program, *words], "folder": os.getcwd(), "environment": dict(os.environ)}) + "\n")  # noqa: PTH109
+        file.write(
+            json.dumps({"words": [program, *words], "folder": os.getcwd(), "environment": dict(os.environ)}) + "\n"
+        )  # noqa: PTH109
     missing = [each for each in settings["needs"].get(name, ()) if not (folder / f"{each}.runs").exists()]
     if missing:
         print("needs", *missing, flush=True)
@@ -85,7 +87,9 @@ def answer(folder: Path, settings: dict, words: list[str]) -> None:
         case ["topic", "echo", "--once", topic]:
             sys.exit(0 if (folder / f"{settings['topics'][topic]}.runs").exists() else 1)
         case ["service", "list"]:
-            print(*(each for each, node in settings["services"].items() if (folder / f"{node}.runs").exists()), sep="\n")
+            print(
+                *(each for each, node in settings["services"].items() if (folder / f"{node}.runs").exists()), sep="\n"
+            )
         case ["action", "list"]:
             pass
         case ["lifecycle", "set", node, transition]:

@@ -28,7 +28,9 @@ _PATIENCE = 120
 
 def make_workspace(project: Path, folder: Path, **request: Any) -> Path:
     """Generate the start-up of a project, and return the folder with it."""
-    result = write_workspace(check_project(project), OutputOptions(), "start", folder, WorkspaceRequest(**request))
+    checked_project = check_project(project)
+    assert not checked_project.has_errors, checked_project.findings
+    result = write_workspace(checked_project, OutputOptions(), "start", folder, WorkspaceRequest(**request))
     assert result.is_complete, result.findings
     return folder
 
@@ -69,7 +71,9 @@ class Stage:
         """Put stand-ins for programs on a path of their own: `programs` are the names of nodes by program."""
         self.folder = folder
         (folder / "bin").mkdir(parents=True)
-        defaults: dict[str, Any] = {key: {} for key in ("needs", "ports", "says", "manners", "ends", "topics", "services")}
+        defaults: dict[str, Any] = {
+            key: {} for key in ("needs", "ports", "says", "manners", "ends", "topics", "services")
+        }
         (folder / "settings.json").write_text(json.dumps({"names": programs, **defaults, **settings}), encoding="utf-8")
         (folder / "journal").touch()
         for program in {*programs, "ros2"}:

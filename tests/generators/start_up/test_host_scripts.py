@@ -39,7 +39,9 @@ def script(tmp_path_factory: pytest.TempPathFactory, port: int) -> Path:
     return make_script(tmp_path_factory.mktemp("robot"), port)
 
 
-def make_script(folder: Path, port: int, *, within: str = "60 s", respawn: str = "", old: str = "", new: str = "") -> Path:
+def make_script(
+    folder: Path, port: int, *, within: str = "60 s", respawn: str = "", old: str = "", new: str = ""
+) -> Path:
     (folder / "project").mkdir()
     text = PROJECT.replace("PORT", str(port)).replace("WITHIN", within).replace(", RESPAWN", respawn)
     (folder / "project" / "archgen.yaml").write_text(text.replace(old, new) if old else text, encoding="utf-8")
@@ -57,7 +59,16 @@ def test_it_starts_in_order_and_stops_in_reverse(script: Path, port: int, tmp_pa
     run.wait_for("all of 4 steps")
     run.send(signal.SIGINT)
     assert run.wait_for_end() == 0
-    assert stage.journal == ["start clock", "end clock", "start world", "start a", "start b", "stop b", "stop a", "stop world"]
+    assert stage.journal == [
+        "start clock",
+        "end clock",
+        "start world",
+        "start a",
+        "start b",
+        "stop b",
+        "stop a",
+        "stop world",
+    ]
     assert {file.name for file in run.log_folder.iterdir()} == {"clock.log", "world.log", "a.log", "b.log", "start.log"}
     assert (run.log_folder / "a.log").read_text(encoding="utf-8") == "a says hello\n\n"
     assert (run.log_folder / "start.log").read_text(encoding="utf-8") == run.output
@@ -157,7 +168,9 @@ def test_missing_programs_are_said_before_anything_starts(port: int, tmp_path: P
 
 
 def test_settings_are_the_users_own(port: int, tmp_path: Path) -> None:
-    script = make_script(tmp_path, port, old="once: true", new="once: true, environment: {CLOCK: \"$(date) 'x'\"}, directory: bin")
+    script = make_script(
+        tmp_path, port, old="once: true", new="once: true, environment: {CLOCK: \"$(date) 'x'\"}, directory: bin"
+    )
     settings = script.with_name("settings.sh")
     settings.write_text(f"export OF_ROS=yes $UNSET\nSTART_FOLDER={tmp_path / 'stage'}\n", encoding="utf-8")
     run, stage = start(script, tmp_path, port)

@@ -145,8 +145,12 @@ def test_the_units_have_the_plan(generated: Generated) -> None:
                 if {f"{name}.service", f"{name}-up.service"} & set(units)
             }
             assert awaited == seen
-            earlier = [phase for phase, _ in generated.plan.phases][: [p for p, _ in generated.plan.phases].index(step.phase)]
-            assert [each for each in needed if each.endswith(".target")] == [f"{phase}.target" for phase in earlier[-1:]]
+            earlier = [phase for phase, _ in generated.plan.phases][
+                : [p for p, _ in generated.plan.phases].index(step.phase)
+            ]
+            assert [each for each in needed if each.endswith(".target")] == [
+                f"{phase}.target" for phase in earlier[-1:]
+            ]
             words = [word.replace("%%", "%").replace("$$", "$") for word in shlex.split(unit["ExecStart"][0])]
             assert words[-len(step.command) :] == list(step.command)
             watching = units.get(f"{step.file_name}-up.service")
@@ -167,7 +171,10 @@ def test_the_compose_file_has_the_plan(generated: Generated) -> None:
             if (step.host or "no-host") != host or not step.command:
                 continue
             service = services[step.file_name]
-            depends_on = {read_awaited(f"{name}.", generated): each["condition"] for name, each in service.get("depends_on", {}).items()}
+            depends_on = {
+                read_awaited(f"{name}.", generated): each["condition"]
+                for name, each in service.get("depends_on", {}).items()
+            }
             phases = [phase for phase, _ in generated.plan.phases]
             before = phases[phases.index(step.phase) - 1] if step.phase != phases[0] else None
             of_phase = {each.file_name for each in generated.plan.steps if each.phase == before}
@@ -198,5 +205,7 @@ def test_shellcheck_finds_nothing(generated: Generated) -> None:
 def test_systemd_finds_nothing(generated: Generated) -> None:
     for host in generated.hosts:
         units = sorted((generated.workspace / "start" / "systemd" / host).iterdir())
-        done = subprocess.run(["systemd-analyze", "verify", "--man=no", *units], capture_output=True, text=True, check=False)  # noqa: S603, S607
+        done = subprocess.run(
+            ["systemd-analyze", "verify", "--man=no", *units], capture_output=True, text=True, check=False
+        )  # noqa: S603, S607
         assert (done.stdout + done.stderr, done.returncode) == ("", 0)

@@ -124,8 +124,10 @@ def test_it_reaches_others_by_ssh(script: Path, ports: list[int], tmp_path: Path
     stage.add_program("ssh", f'echo "$@" >> {tmp_path}/ssh; for line; do :; done; exec sh -c "$line"')
     run = Run(script, stage, "--here", "robot_pc")
     run.wait_for("starting  parcel_registry")
-    assert (tmp_path / "ssh").read_text(encoding="utf-8").startswith(
-        f"-T -o BatchMode=yes -- sim_pc cd {script.parent} && exec bash start/hosts/sim_pc.sh --follow "
+    assert (
+        (tmp_path / "ssh")
+        .read_text(encoding="utf-8")
+        .startswith(f"-T -o BatchMode=yes -- sim_pc cd {script.parent} && exec bash start/hosts/sim_pc.sh --follow ")
     )
     run.send(signal.SIGTERM)
     assert run.wait_for_end() == 128 + signal.SIGTERM

@@ -103,6 +103,8 @@ def test_killed_in_the_middle_it_stops_what_was_started(script: Path, ports: lis
     run.wait_until(lambda: missing.exists() and "IceStorm" in missing.read_text(encoding="utf-8"))
     run.send(signal.SIGTERM)
     assert run.wait_for_end() == 128 + signal.SIGTERM
-    assert [line for line in stage.journal if line.startswith("stop")] == [f"stop {name}" for name in reversed(SERVICES)]
+    assert [line for line in stage.journal if line.startswith("stop")] == [
+        f"stop {name}" for name in reversed(SERVICES)
+    ]
     assert 'not up    event_cache: its output does not hold "IceStorm ready"' in run.output
     assert "not up    dgclocalnav: not started, it waits for laser2d0 faithlocaliser3d" in run.output
