@@ -6,7 +6,7 @@ import time
 
 from playwright.sync_api import Page
 
-_SECONDS = 30.0
+_SECONDS = 120.0
 
 
 def wait_until(page: Page, expression: str) -> None:

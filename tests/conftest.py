@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import gc
+import os
 import shutil
+import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -78,7 +82,23 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # Images of containers often tell Python to keep no bytecode: each of the hundreds of processes started here would compile
+    # archgen anew, for more than half of its time. `-B` is another matter: who writes it means this run.
+    if "-B" not in sys.orig_argv:
+        sys.dont_write_bytecode = False
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    if not hasattr(config, "workerinput"):  # xdist's workers inherit it
+        # One cache for all tests of a run, beside those that try it out: a picture of the case study is drawn once, and neither
+        # does a test find what an earlier run left in a developer's own cache, nor leave anything there.
+        cache_folder = tempfile.mkdtemp(prefix="archgen-tests-cache-")
+        os.environ["XDG_CACHE_HOME"] = cache_folder
+        config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
+
+
+def pytest_collection_finish() -> None:
+    # Fourteen thousand tests stay until the end: nothing is found by looking through them for garbage again and again.
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")
@@ -88,8 +108,7 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
     place = base if worker_id == "master" else base.parent
 
     def make(folder: Path) -> None:
-        made = ("--backend", "wiki", "--revision", REVISION, "--no-history", "-o", folder)
-        archgen("build", RAMCIP, *made, cwd=place, env={"XDG_CACHE_HOME": str(place)})
+        archgen("build", RAMCIP, "--backend", "wiki", "--revision", REVISION, "--no-history", "-o", folder, cwd=place)
 
     return made_once(place / "ramcip", make)
 
@@ -98,11 +117,15 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
 def browser() -> Iterator[Browser]:
     """Start Chromium for the tests of one module: while it runs, no test of this process can have an event loop."""
     # Few tests need it, and importing it takes longer than most of them.
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        # Many others may run at the same time, which makes everything late and nothing wrong.
+        expect.set_options(timeout=120_000)
+        started = playwright.chromium.launch(
+            executable_path=chromium, args=["--no-sandbox", "--disable-gpu"], timeout=600_000
+        )
         yield started
         started.close()

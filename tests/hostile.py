@@ -114,6 +114,7 @@ def project(text: str) -> dict[str, Any]:
                 "kind": ["program"],
                 "host": "h",
                 "command": ["stage", text, f"-{text}"],
+                "arguments": [text, f"-{text}"],
                 "start": {
                     "after": ["n"],
                     "environment": {"WORLD": text},

@@ -24,7 +24,7 @@ def test_the_api_page_runs(tmp_path: Path) -> None:
     (code,) = _code_blocks("api.md", "python")
     code = code.replace('"example_ramcip"', repr(str(ROOT / "example_ramcip"))).replace(', since="v1.0"', "")
     done = subprocess.run(  # noqa: S603 - the project's own page
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=300
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=600
     )
     assert done.returncode == 0, done.stderr[-2000:]
     written = {path.name for path in tmp_path.iterdir()}

@@ -39,7 +39,7 @@ def unpacked(ramcip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build everything from the packed file alone."""
     place = tmp_path_factory.mktemp("packed")
     shutil.copy(ramcip / "packed.yaml", place / "ramcip.yaml")
-    archgen("build", "ramcip.yaml", *EVERYTHING, "-o", "out", cwd=place, env={"XDG_CACHE_HOME": str(ramcip.parent)})
+    archgen("build", "ramcip.yaml", *EVERYTHING, "-o", "out", cwd=place)
     return place
 
 

@@ -1,13 +1,16 @@
-"""How many examples a property tries, by the markers that were asked for."""
+"""How many examples a property tries, by the markers that were asked for; that it tries the same whatever else was imported."""
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from tests.property_sizes import choose_profile, count_examples
+from tests.property_sizes import QUICK_PROFILE, choose_profile, count_examples
 
 
 @pytest.fixture(autouse=True)
@@ -40,3 +43,38 @@ def test_one_example_at_least_is_tried(pytestconfig: pytest.Config, monkeypatch:
     monkeypatch.setattr(pytestconfig.option, "markexpr", "not slow")
     choose_profile(pytestconfig)
     assert count_examples(1) == 1
+
+
+def test_properties_without_a_number_of_their_own_try_a_quarter_too(pytestconfig: pytest.Config) -> None:
+    choose_profile(pytestconfig)
+    quick = settings.get_current_profile_name() == QUICK_PROFILE
+    assert settings.default is not None
+    assert settings.default.max_examples == (25 if quick else 100)
+
+
+def test_no_property_fails_for_the_time_that_it_takes(pytestconfig: pytest.Config) -> None:
+    choose_profile(pytestconfig)
+    assert settings.default is not None
+    assert settings.default.deadline is None
+    assert settings(max_examples=count_examples(400)).deadline is None
+
+
+def _draw() -> list[tuple[str, int]]:
+    drawn: list[tuple[str, int]] = []
+
+    @given(st.text(), st.integers())
+    @settings(settings.get_profile(QUICK_PROFILE), max_examples=200, derandomize=True, database=None)
+    def keep(text: str, number: int) -> None:
+        drawn.append((text, number))
+
+    keep()
+    return drawn
+
+
+def test_the_same_is_drawn_whatever_was_imported_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = _draw()
+    lines = [f"T{number} = ('drawn from here {number}', {number * 7 + 10**6})" for number in range(500)]
+    (tmp_path / "imported_between_draws.py").write_text("\n".join(lines), encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    importlib.import_module("imported_between_draws")
+    assert _draw() == before

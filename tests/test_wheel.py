@@ -32,7 +32,7 @@ def run(*words: str | Path, cwd: Path, status: int = 0) -> str:
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
     environment["XDG_CACHE_HOME"] = str(cwd / "cache")
     done = subprocess.run(  # noqa: S603 - our own program
-        [*map(str, words)], cwd=cwd, env=environment, capture_output=True, check=False, timeout=300
+        [*map(str, words)], cwd=cwd, env=environment, capture_output=True, check=False, timeout=600
     )
     assert done.returncode == status, done.stdout.decode()[-3000:] + done.stderr.decode()[-3000:]
     return done.stdout.decode()

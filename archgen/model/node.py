@@ -18,6 +18,7 @@ NodeKind = Literal["node", "lifecycle", "composable", "driver", "nodelet", "prog
 NodeStatus = Literal["existing", "adapted", "planned"]
 UseKind = Literal["publishes", "subscribes", "serves", "calls"]
 FlowKind = Literal["topic", "service", "action"]
+CodeLanguage = Literal["python", "cpp"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,8 @@ class PortUse:
     key: str
     port: str | None
     topics: tuple[str, ...] = ()
+    own_name: str | None = None
+    """What the program itself calls it, as written, where that is another name."""
     message: str | None = None
     qos: Qos | None = None
     internal: bool = False
@@ -83,8 +86,14 @@ class Node:
     package: str | None = None
     executable: str | None = None
     plugin: str | None = None
+    language: CodeLanguage | None = None
+    """The language in which code is generated for it, where it says so."""
     command: tuple[str, ...] = ()
     """The words of the command that starts it, where it is no executable of a package."""
+    arguments: tuple[str, ...] = ()
+    """What the program gets on its command line, before the arguments of ROS."""
+    remaps: Mapping[str, str] = field(default_factory=dict)
+    """New names by those that the program uses, for what is none of its ports."""
     container: str | None = None
     host: str | None = None
     """The node's own host, else its container's."""
@@ -162,6 +171,8 @@ class Endpoint:
     type: str | None = None
     qos: Qos = field(default_factory=Qos)
     internal: bool = False
+    own_name: str | None = None
+    """What the program itself calls it, as written; None where it calls it by its name."""
     written: bool = False
     name_written: bool = False
     sources: tuple[str, ...] = ()

@@ -60,6 +60,7 @@ def _endpoints_of_use(node: Node, use: PortUse, shared_keys: SharedKeyCounts) ->
             component=component,
             message=use.message,
             qos=use.qos or DEFAULT_QOS,
+            own_name=use.own_name,
             internal=use.internal,
             written=True,
             name_written=bool(use.topics),

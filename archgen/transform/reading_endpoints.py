@@ -149,6 +149,7 @@ class _InputReader:
             message=use.message or next((w.message for w in writers if w.message), None) or self._expected_message(),
             type=self.port.type or next((w.type for w in writers if w.type), None),
             qos=use.qos or DEFAULT_QOS,
+            own_name=use.own_name,
             written=use is not UNWRITTEN_USE,
             sources=self._arriving_outputs(name, flow_kind, writers),
             at=use.at,

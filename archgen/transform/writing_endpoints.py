@@ -110,6 +110,7 @@ def _endpoints_of_output(
             message=message,
             type=output.type,
             qos=use.qos or DEFAULT_QOS,
+            own_name=use.own_name,
             written=use is not UNWRITTEN_USE,
             name_written=bool(use.topics),
             at=use.at,

@@ -26,7 +26,7 @@ def _shell(script: str, project: Path, **environment: str) -> subprocess.Complet
         env={**known, **environment},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
         check=False,
     )
 

@@ -317,6 +317,9 @@ nodes:
     package: p
     executable: e
     plugin: p::P
+    language: cpp
+    arguments: [a]
+    remaps: {/tf: tf}
     container: box
     host: pc
     threads: 2
@@ -333,7 +336,7 @@ nodes:
     urls: {a: "https://a.eu"}
     properties: {q: 1}
     hints: {x: {a: 1}}
-    publishes: {o: /o}
+    publishes: {o: {topic: /o, own_name: w}}
   m: b
   r: [whole, copy]
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
@@ -512,7 +515,7 @@ def test_no_key_is_listed_twice() -> None:
             Effect.SYSTEM,
             (
                 "group owner, group co_owners, component owner, component co_owners, node co_owners, component role, component performance.p.accuracy, "
-                "component requirements, chain requirements, node package, node executable, node plugin, node status, "
+                "component requirements, chain requirements, node package, node executable, node plugin, node language, node arguments, node remaps.x, port own_name, node status, "
                 "node name, node namespace, node parameter_files, node parameters.x, node parameter_commands.x, node command, node start.after, node start.ready.port, node start.environment.x, project parameters.x, "
                 "component parameters.x, component parameters.x:unit, component open, component operations.x, type status, input optional, "
                 "project version, project rules.unread-output, project review.main, project shared_topics, "

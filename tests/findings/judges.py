@@ -55,7 +55,7 @@ def _multitool(text: str, folder: Path) -> list[str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=600,
     )
     verdict = folder / "verdict.sarif"
     assert verdict.exists(), f"the Multitool could not run: {done.stdout}{done.stderr}"

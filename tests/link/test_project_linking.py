@@ -210,6 +210,15 @@ def test_a_node_runs_on_the_host_of_its_container(told: Told) -> None:
     ]
 
 
+def test_one_name_in_the_program_becomes_one_topic(told: Told) -> None:
+    text = "nodes: {n: {%s: {a: {topic: %s, own_name: x, message: std_msgs/msg/Empty}}}}"
+    assert told(text % ("publishes", "/a")) == []
+    help_text = "leave `own_name` out, and write what becomes of each name of the program in `remaps`"
+    assert told(text % ("publishes", "[/a, /b]")) == [
+        f"1:56 conflicting-values: `a` of `n` has 2 topics, but one name in the program | {help_text}"
+    ]
+
+
 def test_views_and_policies_that_say_nothing_are_left_out(linked: Linked) -> None:
     architecture, _ = linked("views: {v: {title: V}}\npolicies: {p: , q: {forbid: {from: a}}}")
     assert (architecture.views, architecture.policies) == ({}, {})

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 _PROGRAM = Path(__file__).parents[1] / "judges/node_modules/yaml-language-server/bin/yaml-language-server"
-_TIMEOUT_SECONDS = 60
+_TIMEOUT_SECONDS = 300
 
 
 class LanguageServer:

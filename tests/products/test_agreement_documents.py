@@ -26,6 +26,7 @@ from tests import hostile
 from tests.agreeing import DUO, checked, written
 from tests.emit.docx import inspection, judges
 from tests.repositories import commit, git, repository
+from tests.running import QUICK_START
 
 NU = Path(__file__).parents[1] / "judges" / "node_modules" / "vnu-jar" / "build" / "dist" / "vnu.jar"
 
@@ -98,7 +99,7 @@ def test_the_nu_checker_finds_nothing(made: PartnerAgreement, tmp_path: Path) ->
     assert NU.exists(), "this test needs the Nu checker (`npm ci` in tests/judges)"
     page = tmp_path / "a.html"
     page.write_bytes(agreement_documents.render_agreement_html(made, OutputOptions()))
-    command = [java, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", str(page)]
+    command = [java, *QUICK_START, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", str(page)]
     done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
     messages = [
         m for m in json.loads(done.stderr)["messages"] if m["type"] == "error"

@@ -64,4 +64,4 @@ def server(live_site: LiveSite) -> Iterator[SiteServer]:
     yield started
     started.shutdown()
     started.server_close()
-    thread.join(10)
+    thread.join(120)

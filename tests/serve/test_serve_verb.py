@@ -31,7 +31,7 @@ def test_it_tells_its_address_opens_it_and_prints_errors_as_check_does(
         assert choose_places()
         (robot / "archgen.yaml").write_text(ROBOT.replace("inputs:", "imputs:"))
         on_change()
-        assert seen.wait(10)
+        assert seen.wait(120)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(webbrowser, "open", open_page)

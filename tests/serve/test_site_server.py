@@ -37,7 +37,7 @@ class Reply:
 
 
 def ask(server: SiteServer, path: str, method: str = "GET", body: bytes | None = None, **headers: str) -> Reply:
-    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=600)
     try:
         connection.request(method, path, body, {name.replace("_", "-"): text for name, text in headers.items()})
         return Reply(connection.getresponse())
@@ -206,7 +206,7 @@ def test_the_figures_of_a_host_are_those_of_all_that_runs_on_it(server: SiteServ
 
 
 def test_news_come_when_a_file_has_changed(server: SiteServer, live_site: LiveSite, robot: Path) -> None:
-    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=600)
     connection.request("GET", "/live/news")
     response = connection.getresponse()
     assert response.headers["Content-Type"] == "text/event-stream"
@@ -227,13 +227,18 @@ def test_news_come_when_a_file_has_changed(server: SiteServer, live_site: LiveSi
 
 
 def serve(project: Path, *words: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(  # noqa: S603 - our own command line
-        [sys.executable, "-m", "archgen", "serve", str(project), *words],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
-    )
+    # Where the tests run in the background, they ignore what Ctrl-C sends, and so would what they start.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return subprocess.Popen(  # noqa: S603 - our own command line
+            [sys.executable, "-m", "archgen", "serve", str(project), *words],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        )
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_the_verb_serves_and_ends_cleanly_when_it_is_interrupted(robot: Path) -> None:
@@ -243,24 +248,24 @@ def test_the_verb_serves_and_ends_cleanly_when_it_is_interrupted(robot: Path) ->
     address = re.fullmatch(r"serving Robot at http://127\.0\.0\.1:(\d+)/  \(Ctrl-C ends it\)\n", line)
     assert address, line
     taken = serve(robot, "--port", address[1])
-    _, words = taken.communicate(timeout=60)
+    _, words = taken.communicate(timeout=600)
     assert (taken.returncode, words) == (
         2,
         f"Error: port {address[1]} of 127.0.0.1 is taken; `--port 0` takes a free one\n",
     )
     # One page waits for news, and must not hold up the end.
-    with socket.create_connection(("127.0.0.1", int(address[1])), 10) as waiting:
+    with socket.create_connection(("127.0.0.1", int(address[1])), 120) as waiting:
         waiting.sendall(f"GET /live/news HTTP/1.1\r\nHost: localhost:{address[1]}\r\n\r\n".encode())
         assert b"200 OK" in waiting.recv(1000)
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=30)
+        out, err = process.communicate(timeout=600)
     assert (process.returncode, out, err.strip()) == (0, "", "stopped")
     assert not (robot / "archgen-out").exists()
 
 
 def test_a_project_that_is_not_there_is_wrong_usage(tmp_path: Path) -> None:
     process = serve(tmp_path / "nothing", "--port", "0")
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=600)
     assert process.returncode == 2
     assert "Traceback" not in err
     assert "nothing" in err
@@ -268,6 +273,6 @@ def test_a_project_that_is_not_there_is_wrong_usage(tmp_path: Path) -> None:
 
 def test_an_address_that_is_not_of_this_machine_is_told(robot: Path) -> None:
     process = serve(robot, "--host", "203.0.113.7", "--port", "0")
-    _, err = process.communicate(timeout=60)
+    _, err = process.communicate(timeout=600)
     assert process.returncode == 2
     assert err.startswith("Error: cannot listen at 203.0.113.7, port 0: ")

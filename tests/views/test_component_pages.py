@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -284,3 +285,18 @@ def test_a_program_has_no_ros_name(tmp_path: Path) -> None:
     components = lookup.architecture.components
     on_paper = {name: str(make_ros_blocks(lookup, components[name])) for name in ("g.a", "g.b")}
     assert ("ROS name" in on_paper["g.a"], "ROS name" in on_paper["g.b"]) == (False, True)
+
+
+def test_a_node_says_how_it_is_called_and_what_it_calls_otherwise(tmp_path: Path) -> None:
+    text = (
+        "groups: {g: {components: {a: {outputs: {x: X}}}}}\n"
+        "types: {X: std_msgs/msg/String}\n"
+        "nodes: {n: {implements: a, language: cpp, arguments: [--model, a b], remaps: {/tf: tf},\n"
+        "            publishes: {x: {topic: /x, own_name: out}}}}\n"
+    )
+    lookup = make_lookup(read_project(tmp_path, text))
+    on_paper = str(make_ros_blocks(lookup, lookup.architecture.components["g.a"]))
+    assert "--model 'a b'" in on_paper
+    assert "C++" in on_paper
+    words = re.findall(r"Text\(text='([^']*)'", on_paper)
+    assert words[words.index("out") : words.index("tf") + 1] == ["out", " is ", "/x", ", ", "/tf", " is ", "tf"]

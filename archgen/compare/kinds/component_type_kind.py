@@ -28,7 +28,9 @@ OWN_KEYS = frozenset({"title", "is", *_INSTANCE_KEYS})
 """Keys that neither an instance has from its type, nor a type from what it is made from."""
 _WRITTEN_KEYS = frozenset({"functionality", "description"})
 """Keys that are read off the type itself."""
-_NODE_KEYS = frozenset({"kind", "package", "executable", "plugin", "command", "start.", "parameters."})
+_NODE_KEYS = frozenset(
+    {"kind", "package", "executable", "plugin", "language", "command", "arguments", "remaps.", "start.", "parameters."}
+)
 """Keys of a node that a type says; the others depend on the instance."""
 _PART_KEYS = tuple(key for key in COMPONENT.keys if key.name not in _INSTANCE_KEYS)
 _RAN_KEYS = tuple(key for key in NODE.keys if key.name in _NODE_KEYS)

@@ -114,7 +114,10 @@ NODE = KindSpec(
         KeySpec("package", effect=Effect.SYSTEM),
         KeySpec("executable", effect=Effect.SYSTEM),
         KeySpec("plugin", effect=Effect.SYSTEM),
+        KeySpec("language", effect=Effect.SYSTEM),
         KeySpec("command", lambda node, _: " ".join(map(shlex.quote, node.command)) or None, Effect.SYSTEM),
+        KeySpec("arguments", lambda node, _: " ".join(map(shlex.quote, node.arguments)) or None, Effect.SYSTEM),
+        KeySpec("remaps.", lambda node, _: node.remaps, Effect.SYSTEM),
         KeySpec(
             "container",
             lambda node, context: context.common_id("container", node.container),
@@ -197,6 +200,7 @@ PORT = KindSpec(
     (
         KeySpec("carried", lambda port, _: port.is_stated or None),
         KeySpec("topic", _resolve_topics),
+        KeySpec("own_name", lambda port, _: port.use.own_name, Effect.SYSTEM, noun="name in the program"),
         KeySpec("message", lambda port, _: port.use.message, worsening=Worsening.ALWAYS, verb="is"),
         KeySpec("qos.", _read_qos, worsening=Worsening.ALWAYS, noun="QoS"),
     ),

@@ -20,7 +20,7 @@ from archgen.link.port_resolution import PortResolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import Component
 from archgen.model.deployment import Container
-from archgen.model.node import Node, NodeKind, NodeStatus, PortUse, Qos, UseKind
+from archgen.model.node import CodeLanguage, Node, NodeKind, NodeStatus, PortUse, Qos, UseKind
 from archgen.model.parameter import ParameterValue
 from archgen.model.qos_profiles import qos_profile
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -35,6 +35,7 @@ _PORT_KINDS: Mapping[UseKind, str] = {
 }
 _NODE_KINDS = frozenset(get_args(NodeKind))
 _NODE_STATUSES = frozenset(get_args(NodeStatus))
+_CODE_LANGUAGES = frozenset(get_args(CodeLanguage))
 _QOS_DURATIONS = ("deadline", "lifespan", "lease_duration")
 
 
@@ -85,6 +86,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         *(each for each in implements if not any(each.startswith(f"{whole}.") for whole in wholes)),
     )
     ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
+    resolver.diagnostics.extend(_find_shared_own_names(node_id, body))
     return Node(
         id=node_id,
         title=mapping_values.get_title(body, node_id),
@@ -99,7 +101,10 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         package=mapping_values.get_text(body, "package"),
         executable=mapping_values.get_text(body, "executable"),
         plugin=mapping_values.get_text(body, "plugin"),
+        language=_read_language(body),
         command=read_command(body, resolver, node_id),
+        arguments=mapping_values.get_texts(body, "arguments"),
+        remaps=mapping_values.get_text_mapping(body, "remaps"),
         container=container,
         host=host or (context.containers[container].host if container else None),
         threads=mapping_values.get_integer(body, "threads"),
@@ -146,6 +151,11 @@ def _read_status(body: MappingNode) -> NodeStatus | None:
     return status if status in _NODE_STATUSES else None  # type: ignore[return-value]
 
 
+def _read_language(body: MappingNode) -> CodeLanguage | None:
+    language = mapping_values.get_text(body, "language")
+    return language if language in _CODE_LANGUAGES else None  # type: ignore[return-value]
+
+
 def _read_commands(body: MappingNode) -> Mapping[str, tuple[str, ...]]:
     commands = mapping_values.get_mapping(body, "parameter_commands")
     return {entry.key: mapping_values.get_texts(commands, entry.key) for entry in commands}
@@ -163,6 +173,22 @@ def _make_port_resolver(
     # Not `not implements`: a node whose `implements` could not be resolved has no ports, one without it has free ones.
     is_free = body.get("implements") is None
     return PortResolver(context.resolver, node_id, implements, context.outline.port_names, is_free=is_free)
+
+
+def _find_shared_own_names(node_id: str, body: MappingNode) -> Iterator[Diagnostic]:
+    """Yield a finding for each port with several topics and one own name: remapping gives one name another one."""
+    for section in (body, mapping_values.get_mapping(body, "internal")):
+        for use in USE_KINDS:
+            for key, _, use_body in mapping_values.iterate_elements(section, use):
+                names = mapping_values.get_scalars(use_body, "topic")
+                if len(names) > 1 and mapping_values.get_text(use_body, "own_name"):
+                    yield Diagnostic(
+                        "conflicting-values",
+                        f"`{key}` of `{node_id}` has {len(names)} topics, but one name in the program",
+                        mapping_values.get_span(use_body, "own_name"),
+                        help="leave `own_name` out, and write what becomes of each name of the program in `remaps`",
+                        element=node_id,
+                    )
 
 
 def _declare_uses(body: MappingNode, ports: PortResolver, implemented: ImplementingNodes) -> Iterator[PortUse]:
@@ -186,6 +212,7 @@ def _declare_use(
         key=entry.key,
         port=port,
         topics=tuple(scalar.text for scalar in names),
+        own_name=mapping_values.get_text(use_body, "own_name"),
         message=mapping_values.get_message(use_body),
         qos=_read_qos(use, use_body),
         internal=is_internal,

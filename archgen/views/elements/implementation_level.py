@@ -16,6 +16,7 @@ from archgen.views.timing import element_timing
 
 _USE_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
 """Endpoints are listed in the direction of the data: inputs, outputs, then services and actions."""
+_LANGUAGE_TITLES = {"python": "Python", "cpp": "C++"}
 _USE_LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "serves", "calls": "calls"}
 
 
@@ -70,6 +71,9 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
         ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
         ("Command", inline_text.to_inlines(Text(shlex.join(node.command), code=True)) if node.command else ()),
+        ("Arguments", inline_text.to_inlines(Text(shlex.join(node.arguments), code=True)) if node.arguments else ()),
+        ("Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
+        ("Remaps", _remap_facts(lookup, node)),
         ("Start", _start_facts(node)),
         ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         ("Runs on", _location_cell(lookup, node)),
@@ -86,6 +90,15 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
         rows.append((name, inline_text.to_inlines(sentence) if sentence else ()))
     rows += element_timing.make_node_facts(lookup, node)
     return [(name, value) for name, value in rows if value]
+
+
+def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
+    """Return the names that become others when the node starts, those of its ports first."""
+    port_names = {each.own_name: each.name for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
+    return inline_text.join_inlines(
+        (Text(own_name, code=True), Text(" is "), Text(name, code=True))
+        for own_name, name in (port_names | dict(node.remaps)).items()
+    )
 
 
 def _start_facts(node: Node) -> Inlines:

@@ -17,7 +17,7 @@ def validated(path: Path) -> list[dict[str, Any]]:
         "Microsoft's validator is missing: run `npm install --prefix tests/judges --no-package-lock` (it needs Node.js)"
     )
     result = subprocess.run(  # noqa: S603 - a judge of our own choice
-        [_VALIDATOR, path], capture_output=True, text=True, check=False, timeout=120
+        [_VALIDATOR, path], capture_output=True, text=True, check=False, timeout=6000
     )
     assert result.returncode in {0, 1}, f"the validator could not run: {result.stdout}{result.stderr}"
     answer = json.loads(result.stdout)
@@ -30,11 +30,11 @@ def pages(path: Path) -> list[str]:
     soffice, pdftotext = _program("soffice", "libreoffice-writer-nogui"), _program("pdftotext", "poppler-utils")
     profile = f"-env:UserInstallation=file://{path.parent / 'libreoffice'}"
     command = [soffice, profile, "--headless", "--convert-to", "pdf", "--outdir", str(path.parent), str(path)]
-    subprocess.run(command, check=True, capture_output=True, timeout=180)  # noqa: S603 - a judge of our own choice
+    subprocess.run(command, check=True, capture_output=True, timeout=6000)  # noqa: S603 - a judge of our own choice
     pdf = path.with_suffix(".pdf")
     assert pdf.exists(), "LibreOffice made no PDF of the report"
     command = [pdftotext, "-layout", str(pdf), "-"]
-    shown = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60)  # noqa: S603 - the same
+    shown = subprocess.run(command, check=True, capture_output=True, text=True, timeout=600)  # noqa: S603 - the same
     return shown.stdout.split("\f")[:-1]
 
 

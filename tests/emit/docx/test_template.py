@@ -6,6 +6,7 @@ import io
 import re
 import zipfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import docx
@@ -128,22 +129,27 @@ def part(data: bytes, name: str = "word/document.xml") -> str:
     return zipfile.ZipFile(io.BytesIO(data)).read(name).decode()
 
 
-TEMPLATES = {
-    "letter": saved(),
-    "a5": saved(a5),
-    "own names": saved(own_names),
-    "missing styles": saved(without_styles),
-    "dotx": dotx(saved()),
-    "cover": saved(covered),
-    "numbered": saved(numbered),
-    "broken paper": saved(broken_paper),
-    "all at once": dotx(saved(a5, own_names, covered)),
+TEMPLATES: dict[str, Callable[[], bytes]] = {
+    "letter": saved,
+    "a5": lambda: saved(a5),
+    "own names": lambda: saved(own_names),
+    "missing styles": lambda: saved(without_styles),
+    "dotx": lambda: dotx(saved()),
+    "cover": lambda: saved(covered),
+    "numbered": lambda: saved(numbered),
+    "broken paper": lambda: saved(broken_paper),
+    "all at once": lambda: dotx(saved(a5, own_names, covered)),
 }
+
+
+@cache
+def template_named(name: str) -> bytes:
+    return TEMPLATES[name]()
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_no_judge_finds_a_fault(name: str, tmp_path: Path) -> None:
-    data, _ = report(TEMPLATES[name])
+    data, _ = report(template_named(name))
     assert inspection.faults(data) == []
     path = tmp_path / "report.docx"
     path.write_bytes(data)
@@ -155,7 +161,7 @@ def test_no_judge_finds_a_fault(name: str, tmp_path: Path) -> None:
     [("letter", (12240, 15840), 8640), ("a5", (8391, 11906), 6690), ("broken paper", (11906, 16838), 9072)],
 )
 def test_the_paper_decides_the_widths(name: str, size: tuple[int, int], width: int) -> None:
-    xml = part(report(TEMPLATES[name])[0])
+    xml = part(report(template_named(name))[0])
     assert f'<w:pgSz w:w="{size[0]}" w:h="{size[1]}"' in xml
     tables = [int(text) for text in re.findall(r'<w:tblW w:w="(\d+)" w:type="dxa"/>', xml)]
     assert tables
@@ -165,7 +171,7 @@ def test_the_paper_decides_the_widths(name: str, size: tuple[int, int], width: i
 
 
 def test_own_heading_and_caption_styles_are_used() -> None:
-    xml = part(report(TEMPLATES["own names"])[0])
+    xml = part(report(template_named("own names"))[0])
     assert '<w:pStyle w:val="Kapitel1"/>' in xml
     assert '<w:pStyle w:val="Kapitel2"/>' in xml
     assert '<w:pStyle w:val="PBeschriftung"/>' in xml
@@ -173,7 +179,7 @@ def test_own_heading_and_caption_styles_are_used() -> None:
 
 
 def test_missing_styles_are_added_and_named() -> None:
-    data, warnings = report(TEMPLATES["missing styles"])
+    data, warnings = report(template_named("missing styles"))
     said = next(warning for warning in warnings if "has no style" in warning)
     for name in (
         "Title",
@@ -191,7 +197,7 @@ def test_missing_styles_are_added_and_named() -> None:
 
 
 def test_cover_header_and_closing_words_stay_and_are_filled_in() -> None:
-    data, warnings = report(TEMPLATES["cover"])
+    data, warnings = report(template_named("cover"))
     xml = part(data)
     texts = re.findall(r"<w:t[ >][^<]*", xml)
     flat = "".join(text.partition(">")[2] for text in texts)
@@ -237,7 +243,7 @@ def test_a_name_that_word_cut_into_runs_is_filled_in() -> None:
 
 
 def test_own_numbers_of_headings_stay() -> None:
-    data, _ = report(TEMPLATES["numbered"], Outline("T", sections=(Section("a", "First"), Section("b", "Second"))))
+    data, _ = report(template_named("numbered"), Outline("T", sections=(Section("a", "First"), Section("b", "Second"))))
     assert re.findall(r"(Part \w+)  \w+</w:t>", part(data)) == ["Part I", "Part II"]
 
 
@@ -272,7 +278,7 @@ def test_relationships_that_lead_nowhere_do_no_harm() -> None:
     nowhere = f'<Relationship Id="gone" Type="{image}" Target="NULL"/>'
     header = "word/_rels/header1.xml.rels"
     template = rewritten(
-        TEMPLATES["cover"], "word/_rels/document.xml.rels", "</Relationships>", f"{nowhere}</Relationships>"
+        template_named("cover"), "word/_rels/document.xml.rels", "</Relationships>", f"{nowhere}</Relationships>"
     )
     source = zipfile.ZipFile(io.BytesIO(template))
     parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
@@ -285,7 +291,9 @@ def test_relationships_that_lead_nowhere_do_no_harm() -> None:
 
 
 def test_sizes_as_google_docs_writes_them_are_read() -> None:
-    template = rewritten(TEMPLATES["letter"], "word/document.xml", 'w:right="1800"', 'w:right="1440.0000000000002"')
+    template = rewritten(
+        template_named("letter"), "word/document.xml", 'w:right="1800"', 'w:right="1440.0000000000002"'
+    )
     tables = [int(text) for text in re.findall(r'<w:tblW w:w="(\d+)" w:type="dxa"/>', part(report(template)[0]))]
     assert min(abs(table - 9000) for table in tables) <= 4
 
@@ -296,13 +304,13 @@ def test_what_stands_twice_or_under_another_type_is_used_once() -> None:
     relation = 'Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/styles"'
     again = f'<Relationship Id="again" {relation} Target="styles.xml"/></Relationships>'
     template = rewritten(
-        TEMPLATES["letter"], "[Content_Types].xml", f'ContentType="{styles}"', 'ContentType="text/xml"'
+        template_named("letter"), "[Content_Types].xml", f'ContentType="{styles}"', 'ContentType="text/xml"'
     )
     template = rewritten(template, "word/_rels/document.xml.rels", "</Relationships>", again)
     data, warnings = report(template)
     assert inspection.faults(data) == []
     assert part(data, "word/_rels/document.xml.rels").count(relation) == 1
-    assert warnings == report(TEMPLATES["letter"])[1]
+    assert warnings == report(template_named("letter"))[1]
 
 
 def zipped(**parts: str) -> bytes:
@@ -331,30 +339,30 @@ MACROS = "application/vnd.ms-word.document.macroEnabled.main+xml"
 @pytest.mark.parametrize(
     ("template", "message"),
     [
-        (b"", "the template is no Word file: it cannot be opened as a package (File is not a zip file)"),
-        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"x" * 99, "protected with a password or is an old .doc"),
-        (zipped(a="b"), "it is a zip file without `[Content_Types].xml`"),
-        (saved()[:20_000], "the template is no Word file: it cannot be opened as a package"),
-        (bomb(), "unpacked it is larger than 200 MB"),
-        (zipped(**{f"p{n}": "" for n in range(4001)}), "it has 4001 parts"),
-        (rewritten(saved(), "[Content_Types].xml", WORD, MACROS), "it holds macros or controls"),
-        (rewritten(saved(), "[Content_Types].xml", WORD, "text/xml"), "its main part is not a Word document"),
-        (rewritten(saved(), "word/styles.xml", "<w:styles", "<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]><w:styles"), "declares a document type"),
-        (rewritten(saved(), "word/document.xml", "</w:body>", ""), "its part `word/document.xml` is not well-formed XML"),
-        (rewritten(saved(), "word/document.xml", "w:document", "w:documents"), "its part `word/document.xml` holds no document"),
-        (rewritten(saved(), "word/document.xml", "http://schemas.openxmlformats.org/wordprocessingml/2006/main", "http://purl.oclc.org/ooxml/wordprocessingml/main"), "Strict Open XML"),
+        (lambda: b"", "the template is no Word file: it cannot be opened as a package (File is not a zip file)"),
+        (lambda: b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + b"x" * 99, "protected with a password or is an old .doc"),
+        (lambda: zipped(a="b"), "it is a zip file without `[Content_Types].xml`"),
+        (lambda: saved()[:20_000], "the template is no Word file: it cannot be opened as a package"),
+        (bomb, "unpacked it is larger than 200 MB"),
+        (lambda: zipped(**{f"p{n}": "" for n in range(4001)}), "it has 4001 parts"),
+        (lambda: rewritten(saved(), "[Content_Types].xml", WORD, MACROS), "it holds macros or controls"),
+        (lambda: rewritten(saved(), "[Content_Types].xml", WORD, "text/xml"), "its main part is not a Word document"),
+        (lambda: rewritten(saved(), "word/styles.xml", "<w:styles", "<!DOCTYPE x [<!ENTITY e SYSTEM 'file:///etc/passwd'>]><w:styles"), "declares a document type"),
+        (lambda: rewritten(saved(), "word/document.xml", "</w:body>", ""), "its part `word/document.xml` is not well-formed XML"),
+        (lambda: rewritten(saved(), "word/document.xml", "w:document", "w:documents"), "its part `word/document.xml` holds no document"),
+        (lambda: rewritten(saved(), "word/document.xml", "http://schemas.openxmlformats.org/wordprocessingml/2006/main", "http://purl.oclc.org/ooxml/wordprocessingml/main"), "Strict Open XML"),
     ],
 )  # fmt: skip
-def test_what_is_no_template_is_refused(template: bytes, message: str) -> None:
+def test_what_is_no_template_is_refused(template: Callable[[], bytes], message: str) -> None:
     with pytest.raises(TemplateError) as error:
-        report(template, Outline("T", facts=(("Version", (Text("1"),)),)))
+        report(template(), Outline("T", facts=(("Version", (Text("1"),)),)))
     assert message in str(error.value)
 
 
 def test_a_long_chain_of_parts_is_refused() -> None:
     """python-docx walks from part to part by recursion."""
     namespace = "http://schemas.openxmlformats.org/package/2006/relationships"
-    source = zipfile.ZipFile(io.BytesIO(TEMPLATES["letter"]))
+    source = zipfile.ZipFile(io.BytesIO(template_named("letter")))
     parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
     for number in range(1500):
         relation = f'<Relationship Id="next" Type="x/chain" Target="link{number + 1}.xml"/>'
@@ -369,7 +377,7 @@ def test_a_long_chain_of_parts_is_refused() -> None:
 
 def test_a_damaged_template_is_refused_or_used_but_never_a_traceback() -> None:
     outline = Outline("T", facts=(("Version", (Text("1"),)),), sections=(Section("a", "A"),))
-    source = zipfile.ZipFile(io.BytesIO(TEMPLATES["cover"]))
+    source = zipfile.ZipFile(io.BytesIO(template_named("cover")))
     parts = {name: source.read(name).decode("latin-1") for name in source.namelist()}
     used = 0
     for name, content in parts.items():

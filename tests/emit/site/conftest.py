@@ -17,7 +17,7 @@ from archgen.products.product_inputs import ProductInputs
 from archgen.views.explorer import make_explorer_map
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Bullets, Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text
-from tests.running import RAMCIP
+from tests.running import RAMCIP, made_once
 
 HOME = ("Overview", "page:index")
 GROUPS = (
@@ -287,11 +287,14 @@ def site(made: Callable[[], FileTree]) -> FileTree:
 
 
 @pytest.fixture(scope="session")
-def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write the case study's site, with its real pictures."""
-    folder = tmp_path_factory.mktemp("out") / "example"
-    project_outputs.write_site(pipeline.check_project(RAMCIP), OutputOptions(revision="test"), folder)
-    return folder
+def example(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
+    """Write the case study's site, with its real pictures, once for all workers."""
+    base = tmp_path_factory.getbasetemp()
+
+    def write(folder: Path) -> None:
+        project_outputs.write_site(pipeline.check_project(RAMCIP), OutputOptions(revision="test"), folder)
+
+    return made_once((base if worker_id == "master" else base.parent) / "example-site", write)
 
 
 def write_bare_site(project: Path, folder: Path) -> Path:

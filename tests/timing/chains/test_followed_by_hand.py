@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -22,14 +25,20 @@ from tests.timing.random_systems import architecture, random_text
 from tests.timing.random_threads import random_threads_text
 from tests.timing.test_unpinned_case_study import copy_without_cores
 
-Results = tuple[Analysis, dict[str, ChainResult]]
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """What was found about a project; one is like no other, so that what is printed of it can be kept."""
+
+    analysis: Analysis
+    chains: dict[str, ChainResult]
 
 
 def analyse(project: Path) -> Results:
     """Analyse a project, with its chains."""
     checked = pipeline.check_project(project).architecture
     analysis = analyse_architecture(checked)
-    return analysis, bound_all_chains(analysis, checked)
+    return Results(analysis, bound_all_chains(analysis, checked))
 
 
 @pytest.fixture(scope="module")
@@ -42,12 +51,13 @@ def unpinned_case_study(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return analyse(copy_without_cores(tmp_path_factory.mktemp("unpinned")))
 
 
-def print_reasons(results: Results, word: str) -> list[str]:
+@cache
+def print_reasons(results: Results, word: str) -> Sequence[str]:
     """Return the lines of `--why`."""
-    return [line.text for line in explain_word(*results, word)]
+    return [line.text for line in explain_word(results.analysis, results.chains, word)]
 
 
-def recompute_response(lines: list[str], name: str) -> Fraction | None:
+def recompute_response(lines: Sequence[str], name: str) -> Fraction | None:
     """Add up the work below a response, and take off what does not count; None where no work is listed."""
     start = next(at for at, line in enumerate(lines) if line.startswith(f"{name}: response"))
     total = Fraction(0)
@@ -62,7 +72,7 @@ def recompute_response(lines: list[str], name: str) -> Fraction | None:
     return total or None
 
 
-def recompute_storing_wait(lines: list[str], name: str) -> Fraction | None:
+def recompute_storing_wait(lines: Sequence[str], name: str) -> Fraction | None:
     """Add up the work that may hold up what is only to be stored; None where nothing waits, 0 where no work is listed."""
     start = next((at for at, line in enumerate(lines) if line.startswith(f"{name}: what it only reads may wait")), None)
     if start is None:
@@ -81,7 +91,7 @@ def is_close(computed: Fraction, exact: Fraction) -> bool:
 
 
 def test_every_equation_that_is_printed_about_the_case_study_holds(case_study: Results) -> None:
-    analysis, chains = case_study
+    analysis, chains = case_study.analysis, case_study.chains
     words = [*analysis.system.activities, *analysis.hosts, *analysis.links, *analysis.topics, *chains]
     wrong = [
         (line, equation)
@@ -95,7 +105,7 @@ def test_every_equation_that_is_printed_about_the_case_study_holds(case_study: R
 
 
 def test_the_responses_of_all_tiers_follow_from_the_work_that_is_listed(case_study: Results) -> None:
-    analysis, _ = case_study
+    analysis = case_study.analysis
     tiers: set[str] = set()
     count = 0
     for name, response in analysis.responses.items():
@@ -110,7 +120,7 @@ def test_the_responses_of_all_tiers_follow_from_the_work_that_is_listed(case_stu
 
 
 def test_the_largest_gaps_follow_from_the_last_formula_that_is_printed(case_study: Results) -> None:
-    analysis, _ = case_study
+    analysis = case_study.analysis
     count = 0
     for name, pace in analysis.paces.items():
         lines = print_reasons(case_study, name)
@@ -123,7 +133,7 @@ def test_the_largest_gaps_follow_from_the_last_formula_that_is_printed(case_stud
 
 
 def test_loads_of_hosts_are_the_sums_of_rate_times_execution_time(case_study: Results) -> None:
-    analysis, _ = case_study
+    analysis = case_study.analysis
     for name in ("onboard_pc", "vision_pc", "arm_pc", "interaction_pc"):
         added = [line for line in print_reasons(case_study, name) if " adds " in line]
         total = sum((next(read_equations(line)).computed for line in added), Fraction(0))
@@ -132,7 +142,7 @@ def test_loads_of_hosts_are_the_sums_of_rate_times_execution_time(case_study: Re
 
 
 def test_the_traffic_the_queueing_and_the_burst_of_a_link_follow_from_its_messages(case_study: Results) -> None:
-    analysis, _ = case_study
+    analysis = case_study.analysis
     lines, load = print_reasons(case_study, "robot_lan"), analysis.links["robot_lan"]
     traffic = sum((next(read_equations(line)).computed for line in lines if " adds " in line), Fraction(0))
     assert is_close(traffic * 10**9, load.traffic.value or Fraction(0))
@@ -147,7 +157,7 @@ def test_the_traffic_the_queueing_and_the_burst_of_a_link_follow_from_its_messag
 
 
 def test_chains_are_the_sums_of_their_terms(case_study: Results) -> None:
-    _, chains = case_study
+    chains = case_study.chains
     for name, chain in chains.items():
         total = next(line for line in print_reasons(case_study, name) if re.match(r"~?\d\S* m?s \+ ", line))
         assert is_close(next(read_equations(total)).computed, chain.bound.value or Fraction(0)), name
@@ -157,7 +167,7 @@ def test_chains_are_the_sums_of_their_terms(case_study: Results) -> None:
 def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_busy_add_up(
     unpinned_case_study: Results,
 ) -> None:
-    analysis, _ = unpinned_case_study
+    analysis = unpinned_case_study.analysis
     blocked = added = 0
     for name, response in analysis.responses.items():
         lines = print_reasons(unpinned_case_study, name)
@@ -178,8 +188,8 @@ def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_liste
 ) -> None:
     counts: list[int] = []
     for results in (case_study, unpinned_case_study):
-        waits = {name: wait.value or Fraction(0) for name, wait in results[0].storing_waits.items()}
-        for name in results[0].system.activities:
+        waits = {name: wait.value or Fraction(0) for name, wait in results.analysis.storing_waits.items()}
+        for name in results.analysis.system.activities:
             computed = recompute_storing_wait(print_reasons(results, name), name)
             assert (computed is None) == (not waits.get(name)), name
             assert computed is None or is_close(computed, waits[name]), (name, computed, waits[name])
@@ -213,8 +223,8 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> Non
 @pytest.mark.parametrize("seed", range(24))
 def test_responses_of_threads_and_queues_follow_from_the_work_that_is_listed(seed: int) -> None:
     model = architecture(random_threads_text(seed))
-    results = analyse_architecture(model), dict[str, ChainResult]()
-    for name, response in results[0].responses.items():
+    results = Results(analyse_architecture(model), {})
+    for name, response in results.analysis.responses.items():
         lines = print_reasons(results, name)
         assert [(line, each) for line in lines for each in read_equations(line) if not each.holds] == [], name
         if response.tier in QUEUE_TIERS | {"host", "priorities"} and response.worst.value:
