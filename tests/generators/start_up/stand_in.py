@@ -3,6 +3,7 @@
 Run as `stand_in.py FOLDER PROGRAM WORD...`; FOLDER holds settings.json and what the stand-ins tell of themselves.
 """
 
+# ruff: noqa: T201
 import json
 import os
 import signal
@@ -22,8 +23,8 @@ def main() -> None:
     name = node[0] if node else settings["names"].get(program, program)
     with (folder / f"{name}.told").open("a") as file:
         file.write(
-            json.dumps({"words": [program, *words], "folder": os.getcwd(), "environment": dict(os.environ)}) + "\n"
-        )  # noqa: PTH109
+            json.dumps({"words": [program, *words], "folder": str(Path.cwd()), "environment": dict(os.environ)}) + "\n"
+        )
     missing = [each for each in settings["needs"].get(name, ()) if not (folder / f"{each}.runs").exists()]
     if missing:
         print("needs", *missing, flush=True)
@@ -58,7 +59,7 @@ def open_port(port: int | None) -> None:
 
 
 def listen_to_signals(folder: Path, name: str, manners: str) -> None:
-    def end(number: int, frame: object) -> None:
+    def end(number: int, _frame: object) -> None:
         if manners == "stubborn" and number == signal.SIGINT:
             return
         note(folder, f"stop {name}")
@@ -81,7 +82,7 @@ def run(folder: Path, name: str, manners: str) -> None:
         signal.pause()
 
 
-def answer(folder: Path, settings: dict, words: list[str]) -> None:
+def answer(folder: Path, settings: dict[str, dict[str, str]], words: list[str]) -> None:
     """Answers as the tool `ros2` does."""
     match words:
         case ["topic", "echo", "--once", topic]:

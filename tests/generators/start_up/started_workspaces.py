@@ -26,7 +26,7 @@ _PATIENCE = 120
 """Seconds until a test gives up on what must come sooner or later."""
 
 
-def make_workspace(project: Path, folder: Path, **request: Any) -> Path:
+def make_workspace(project: Path, folder: Path, **request: Any) -> Path:  # noqa: ANN401 - of the request
     """Generate the start-up of a project, and return the folder with it."""
     checked_project = check_project(project)
     assert not checked_project.has_errors, checked_project.findings
@@ -67,7 +67,7 @@ def hold_ports(count: int) -> Iterator[list[int]]:
 class Stage:
     """A folder in which stand-ins play the programs of a robot."""
 
-    def __init__(self, folder: Path, programs: Mapping[str, str], **settings: Any) -> None:
+    def __init__(self, folder: Path, programs: Mapping[str, str], **settings: Any) -> None:  # noqa: ANN401 - any data
         """Put stand-ins for programs on a path of their own: `programs` are the names of nodes by program."""
         self.folder = folder
         (folder / "bin").mkdir(parents=True)
@@ -184,3 +184,9 @@ def list_marked(logs: Path) -> list[str]:
         except OSError:
             continue
     return found
+
+
+def judge(*words: str | Path) -> tuple[str, int]:
+    """Run a judge, and return all that it says, and its status."""
+    done = subprocess.run(["/usr/bin/env", *words], capture_output=True, text=True, check=False, timeout=300)  # noqa: S603 - a judge
+    return done.stdout + done.stderr, done.returncode

@@ -19,7 +19,7 @@ groups:
   g:
     components:
       a: {outputs: {o: std_msgs/msg/Bool}, node: {kind: program, command: [camera, --fast], start: {ready: {log: says hello}}}}
-      b: {inputs: {i: a.o}, node: {kind: program, command: [finder], start: {ready: {log: says hello}, RESPAWN}}}
+      b: {inputs: {i: a.o}, node: {kind: program, command: [finder], start: {ready: {log: says hello}}}}
 nodes:
   clock: {kind: program, command: [set_clock], start: {phase: network, once: true}}
   world: {kind: program, command: [simulator], start: {phase: simulators, ready: {port: PORT, file: /proc, within: WITHIN}}}
@@ -39,16 +39,14 @@ def script(tmp_path_factory: pytest.TempPathFactory, port: int) -> Path:
     return make_script(tmp_path_factory.mktemp("robot"), port)
 
 
-def make_script(
-    folder: Path, port: int, *, within: str = "60 s", respawn: str = "", old: str = "", new: str = ""
-) -> Path:
+def make_script(folder: Path, port: int, *, within: str = "60 s", old: str = "", new: str = "") -> Path:
     (folder / "project").mkdir()
-    text = PROJECT.replace("PORT", str(port)).replace("WITHIN", within).replace(", RESPAWN", respawn)
-    (folder / "project" / "archgen.yaml").write_text(text.replace(old, new) if old else text, encoding="utf-8")
+    text = PROJECT.replace("PORT", str(port)).replace("WITHIN", within).replace(old or " ", new or " ")
+    (folder / "project" / "archgen.yaml").write_text(text, encoding="utf-8")
     return make_workspace(folder / "project", folder / "ws") / "start.sh"
 
 
-def start(script: Path, folder: Path, port: int, **settings: Any) -> tuple[Run, Stage]:
+def start(script: Path, folder: Path, port: int, **settings: Any) -> tuple[Run, Stage]:  # noqa: ANN401 - any data
     wanted = {"needs": NEEDS, "ports": {"world": port}, "ends": {"clock": 0}, **settings}
     stage = Stage(folder / "stage", PROGRAMS, **wanted)
     return Run(script, stage), stage
@@ -135,7 +133,9 @@ def test_when_the_script_itself_is_killed_nothing_is_left(script: Path, port: in
 
 
 def test_what_respawns_starts_again(port: int, tmp_path: Path) -> None:
-    script = make_script(tmp_path, port, respawn=", respawn: true, respawn_delay: 1 s")
+    script = make_script(
+        tmp_path, port, old="[finder], start: {", new="[finder], start: {respawn: true, respawn_delay: 1 s, "
+    )
     run, stage = start(script, tmp_path, port, manners={"b": "short"})
     run.wait_for("again     b")
     run.wait_for("all of 4 steps")

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
 import yaml
 
-from tests.generators.start_up.started_workspaces import Run, Stage, make_workspace
+from tests.generators.start_up.started_workspaces import Run, Stage, judge, make_workspace
 
 WORDS = [
     "$(touch trace)",
@@ -122,10 +121,7 @@ def test_systemd_reads_nothing_of_them(workspace: Path) -> None:
     (line,) = [line for line in watching.split("\n") if line.startswith("ExecStart=")]
     assert "$(touch trace)\\ %n 'x' \"y\"" in read_unit_words(line.partition("=")[2])
     units = sorted((workspace / "start" / "systemd" / "box").iterdir())
-    done = subprocess.run(
-        ["systemd-analyze", "verify", "--man=no", *units], capture_output=True, text=True, check=False
-    )  # noqa: S603, S607
-    assert (done.stdout + done.stderr, done.returncode) == ("", 0)
+    assert judge("systemd-analyze", "verify", "--man=no", *units) == ("", 0)
 
 
 def test_compose_reads_nothing_of_them(workspace: Path) -> None:
@@ -149,5 +145,4 @@ def test_compose_reads_nothing_of_them(workspace: Path) -> None:
 
 def test_shellcheck_finds_nothing(workspace: Path) -> None:
     scripts = sorted(workspace.rglob("*.sh"))
-    done = subprocess.run(["shellcheck", "-x", *scripts], capture_output=True, text=True, check=False)  # noqa: S603, S607
-    assert (done.stdout, done.returncode) == ("", 0)
+    assert judge("shellcheck", "-x", *scripts) == ("", 0)

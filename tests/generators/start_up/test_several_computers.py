@@ -105,7 +105,7 @@ def test_what_fails_on_one_computer_stops_both(script: Path, ports: list[int], t
 
 
 def test_when_the_script_above_is_killed_the_others_stop(script: Path, ports: list[int], tmp_path: Path) -> None:
-    run, stage = start(script, tmp_path, ports, "--all-here")
+    run, _ = start(script, tmp_path, ports, "--all-here")
     run.wait_for("up        parcel_registry")
     run.send(signal.SIGKILL)
     run.wait_for_nothing_left()

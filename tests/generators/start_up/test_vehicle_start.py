@@ -78,7 +78,7 @@ def start(script: Path, folder: Path, ports: list[int], says: str = "now IceStor
 def test_it_has_the_size_of_the_papers_script(script: Path) -> None:
     lines = (script.parent / "start" / "hosts" / "desk_pc.sh").read_text(encoding="utf-8").splitlines()
     assert sum(line.startswith("step ") for line in lines) == len(PLANNED)
-    assert 50 < len(lines) < 90  # noqa: PLR2004 - the paper's has 70
+    assert 50 < len(lines) < 90
 
 
 def test_it_comes_up_in_order_and_stops_in_reverse(script: Path, ports: list[int], tmp_path: Path) -> None:
