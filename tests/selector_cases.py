@@ -6,6 +6,10 @@ ROBOT = """
 partners: {certh: , tum: }
 requirements: {R-1: {title: Safe, tags: [law]}, R-2: , R-0: All, R-1a: {parent: R-0}, R-1b: {parent: [R-1a, R-1]}}
 hosts: {pc: , board: {tags: [gpu], properties: {ram: 8 GB}}}
+use_cases:
+  UC-1: {actors: {user: }, steps: [{from: camera.image, to: detector}, {from: detector, to: planning.fusion, say: what it saw}]}
+  UC-2: {steps: [{from: base, to: base}]}
+  UC-3: Without steps
 groups:
   sensing:
     owner: certh
@@ -106,6 +110,10 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ('property:"vendor=Acme Ltd"', "d.base"),
     ("property:vendor=*", "d.base"),
     ('property:"ram>=8 GB"', "camera"),  # of a host
+    ("use_case:UC-1", "camera detector fusion"),
+    ("use_case:UC-*", "camera detector fusion d.base"),
+    ("use_case:UC-1 -detector", "camera fusion"),
+    ("use_case:UC-2", "d.base"),
     ("-property:sil sensing planning", "fusion solver executor"),
     ("+role:sink -sensing", "detector fusion solver executor d.base"),
     ("host:pc..base", "detector fusion solver executor d.base"),
@@ -153,6 +161,7 @@ WRONG: tuple[tuple[str, str], ...] = (
 FOUND_NOTHING: tuple[tuple[str, str], ...] = (
     ("lidar tag:nothing", "6-17 nothing has `tag:nothing`"),
     ("lidar *_x", "6-9 nothing fits `*_x`"),
+    ("lidar use_case:UC-3", "6-19 nothing has `use_case:UC-3`"),
     ("lidar property:sil=>2", "6-21 nothing has `property:sil=>2`"),
     ("lidar property:mass>=1", "6-22 nothing has `property:mass>=1`"),
     ("lidar property:vendor>=1", "6-24 nothing has `property:vendor>=1`"),

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from archgen.bringup.plan_shapes import RosLaunch
-from archgen.syntax.yaml_writer import format_flow
 
-_NUMBER_WORD = re.compile(r"[-+]?(?:nan|inf|infinity)\Z", re.IGNORECASE)
-"""Texts that ROS takes for numbers, and YAML does not."""
 _SIMPLE_WORD = re.compile(r"[A-Za-z_/][A-Za-z0-9_./-]*\Z")
 _GLOBAL_IN_ROS_1 = "use_sim_time"
 """In ROS 1 it is one parameter of all nodes."""
-_YAML_WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf", "infinity"})
+_SPECIAL_WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf", "infinity"})
+"""Texts that YAML or ROS takes for something else."""
+_ESCAPES = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF, 0xFFFE, 0xFFFF)}
+"""What YAML wants escaped in quotes, and JSON does not."""
 
 
 def list_ros_2_options(launch: RosLaunch) -> Iterator[str]:
@@ -66,20 +68,30 @@ def _name_in_ros_1(name: str) -> str:
 def _is_word_in_ros_1(name: str, value: object) -> bool:
     """Whether a value is a number, a boolean, or a text that nothing takes for something else."""
     if isinstance(value, str):
-        return _SIMPLE_WORD.match(value) is not None and value.lower() not in _YAML_WORDS
+        return _is_simple(value)
     return isinstance(value, (int, float)) and name != _GLOBAL_IN_ROS_1
+
+
+def _is_simple(text: str) -> bool:
+    return _SIMPLE_WORD.match(text) is not None and text.lower() not in _SPECIAL_WORDS
 
 
 def _format_value(value: object) -> str:
     """Format a value on one line as YAML that ROS 1 and 2 read alike."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_format_value(key)}: {_format_value(item)}' for key, item in value.items())}}}"
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(_format_number(item) or format_flow([item])[1:-1] for item in value)}]"
-    return _format_number(value) or format_flow(value)
-
-
-def _format_number(value: object) -> str:
-    """Format what ROS and YAML do not read alike: texts like numbers, and floats without a point (1e+20); else nothing."""
+        return f"[{', '.join(_format_value(item) for item in value)}]"
+    if isinstance(value, float):
+        return _format_float(value)
     if isinstance(value, str):
-        return f'"{value}"' if _NUMBER_WORD.match(value) else ""
-    text = repr(value) if isinstance(value, float) else ""
-    return text.replace("e", ".0e") if "e" in text and "." not in text else ""
+        return value if _is_simple(value) else json.dumps(value, ensure_ascii=False).translate(_ESCAPES)
+    return json.dumps(value)
+
+
+def _format_float(value: float) -> str:
+    if not math.isfinite(value):
+        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
+    text = repr(value)
+    # Without a point, YAML 1.1 reads a text.
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text

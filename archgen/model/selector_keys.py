@@ -162,6 +162,35 @@ def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
     return SelectorHit(frozenset(components), frozenset(nodes))
 
 
+def _find_by_use_case(architecture: Architecture, pattern: str) -> SelectorHit:
+    """Find the components that take part in a use case, of composed ones all that is inside."""
+    components = (
+        leaf
+        for use_case_id, participants in list_participants(architecture).items()
+        if matches_wildcard(pattern, use_case_id)
+        for leaf in participants
+    )
+    return SelectorHit(frozenset(components), frozenset())
+
+
+def list_participants(architecture: Architecture) -> Mapping[str, tuple[str, ...]]:
+    """Return the components that take part in each use case with steps, each once: of composed ones all that is inside."""
+    return {
+        use_case.id: tuple(
+            dict.fromkeys(
+                leaf
+                for step in use_case.steps
+                for end in (step.source, step.target)
+                if end.kind in {"component", "output"}
+                for leaf in architecture.leaves_of(end.participant)
+                if leaf in architecture.components
+            )
+        )
+        for use_case in architecture.use_cases.values()
+        if use_case.steps
+    }
+
+
 def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
     """Find what has a property itself; components also by what is around them, nodes by their host."""
     condition = parse_condition(text)
@@ -211,5 +240,6 @@ _ELEMENT_FINDERS: Mapping[str, Callable[[Architecture, str], SelectorHit]] = {
     "requirement": _find_by_requirement,
     "parameter": _find_by_parameter,
     "property": _find_by_property,
+    "use_case": _find_by_use_case,
 }
 """The keys whose values stand at other elements than the components and nodes that they select."""

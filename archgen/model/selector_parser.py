@@ -35,6 +35,7 @@ SELECTOR_KEYS = (
     "parameter",
     "property",
     "variant",
+    "use_case",
 )
 ALL_STEPS = -1
 """Any number of steps."""

@@ -104,6 +104,13 @@ def describe_ready(step: StartStep) -> str:
     return f"{join_words(phrases)}{within}" if phrases else ""
 
 
+def describe_unknown(step: StartStep) -> str:
+    """Return why there is no command: it does not exist yet, somebody else starts it, or nobody says how."""
+    if step.status == "planned":
+        return "planned: there is nothing to start yet"
+    return "started by somebody else" if step.signals else "nothing says how it is started"
+
+
 def describe_state(step: StartStep) -> str:
     """Return what brings a lifecycle node into which state; empty for all others."""
     if step.state is None:

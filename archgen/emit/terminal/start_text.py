@@ -45,7 +45,7 @@ def _describe_step(number: int, step: StartStep) -> Iterator[str]:
     for words in step.preparations:
         yield f"{_INDENT}run first: {shlex.join(words)}"
     # As one line, to be copied: quoted for a POSIX shell, so that nothing in it is expanded.
-    yield _INDENT + (f"run: {shlex.join(step.command)}" if step.command else "nothing says how it is started")
+    yield _INDENT + (f"run: {shlex.join(step.command)}" if step.command else start_phrases.describe_unknown(step))
     for words in step.transitions:
         yield f"{_INDENT}run: {shlex.join(words)}"
     for name, words in step.ros.value_commands.items() if step.ros else ():

@@ -18,7 +18,7 @@ from archgen.model.port_media import list_medium_words
 from archgen.model.property_conditions import find_component_properties, find_node_properties
 from archgen.model.requirement_tree import add_above
 from archgen.model.selector_evaluation import SelectorEvaluator
-from archgen.model.selector_keys import SelectorHit
+from archgen.model.selector_keys import SelectorHit, list_participants
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -31,6 +31,10 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
     types = _list_types(architecture)
     rules = _list_rules(lookup)
     variants = find_changed_by_variants(architecture)
+    use_cases: dict[str, list[str]] = defaultdict(list)
+    for use_case_id, participants in list_participants(architecture).items():
+        for component_id in participants:
+            use_cases[component_id].append(use_case_id)
     return {
         component.id: tuple(
             dict.fromkeys(
@@ -48,6 +52,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("parameter", name) for name in component.parameters),
                     *_list_properties(find_component_properties(architecture, component)),
                     *(("variant", name) for name, hit in variants.items() if component.id in hit.components),
+                    *(("use_case", name) for name in use_cases.get(component.id, ())),
                 )
             )
         )

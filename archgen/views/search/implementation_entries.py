@@ -12,6 +12,7 @@ from archgen.views.elements.promise_words import list_text_remarks
 from archgen.views.lookup import Lookup
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys, make_property_keys
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+from archgen.views.start_phrases import describe_start
 from archgen.views.used_messages import collect_messages
 
 
@@ -32,7 +33,7 @@ def make_node_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             ),
             (f"node:{node.id}",),
             (node.id, *([node.package] if node.package else []), *keys, *make_property_keys(node)),
-            to_plain_text(node.description, *node.parameters),
+            to_plain_text(node.description, *node.parameters, " ".join(node.command), describe_start(node)),
         )
 
 

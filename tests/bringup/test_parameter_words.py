@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.bringup.plan_shapes import StartStep
+from archgen.bringup.parameter_words import list_loading_options, list_ros_2_options
+from archgen.bringup.plan_shapes import RosLaunch, StartStep
 from archgen.bringup.start_plan import make_start_plan, name_files
 from archgen.model.architecture import Architecture
 
@@ -49,7 +50,7 @@ def test_ros_2_reads_values_of_the_project_and_the_component_then_files_then_tho
     assert shlex.join(steps["camera"].command) == (
         "ros2 run p camera --ros-args -r __node:=camera -r __ns:=/front -p use_sim_time:=true -p rate:=15.0 "
         "-p 'gains:=[1.0, 2.5]' -p frame:=map --params-file config/camera.yaml --params-file 'config/more files.yaml' "
-        "-p rate:=30.0 -p filter.size:=3 -p 'filter.names:=[a, b c, \"1\"]'"
+        '-p rate:=30.0 -p filter.size:=3 -p \'filter.names:=[a, "b c", "1"]\''
     )
     assert shlex.join(steps["lidar"].command) == (
         "ros2 component load /box p p::Lidar --node-name lidar -p use_sim_time:=true -p rate:=10 "
@@ -71,7 +72,7 @@ def test_ros_1_has_its_own_words_and_a_server_for_what_words_cannot_say(derived:
         "rosparam set /front/camera/frame map",
         "rosparam load config/camera.yaml /front/camera",
         "rosparam load 'config/more files.yaml' /front/camera",
-        "rosparam set /front/camera/filter/names '[a, b c, \"1\"]'",
+        'rosparam set /front/camera/filter/names \'[a, "b c", "1"]\'',
     ]
     assert camera.command == (
         *("rosrun", "p", "camera", "__name:=camera", "__ns:=/front", "_rate:=30.0", "_filter/size:=3"),
@@ -86,29 +87,32 @@ def test_ros_1_has_its_own_words_and_a_server_for_what_words_cannot_say(derived:
 
 
 @pytest.mark.parametrize(
-    ("written", "word"),
+    ("value", "word"),
     [
-        ("1.0", "1.0"),
-        ('"1.0"', '"1.0"'),
-        ("1.0e+20", "1.0e+20"),
+        (1.0, "1.0"),
+        ("1.0", '"1.0"'),
+        (1e20, "1.0e+20"),
         ("nan", '"nan"'),
-        (".nan", ".nan"),
+        (float("nan"), ".nan"),
         ("-Infinity", '"-Infinity"'),
-        ("[inf, .inf, 2.0e+30, x]", '["inf", .inf, 2.0e+30, x]'),
+        (["inf", float("inf"), float("-inf"), 2e30, "x"], '["inf", .inf, -.inf, 2.0e+30, x]'),
         ("no", '"no"'),
-        ("true", "true"),
-        ('"true"', '"true"'),
-        ('""', '""'),
+        (True, "true"),
+        ("true", '"true"'),
+        ("", '""'),
         ("a:=b", '"a:=b"'),
-        ('"{a: 1}"', '"{a: 1}"'),
+        ("{a: 1}", '"{a: 1}"'),
         ("/dev/video0", "/dev/video0"),
-        ("[]", "[]"),
-        ("[[1, 2], [3]]", "[[1, 2], [3]]"),
+        ([], "[]"),
+        ("\u0085\u2028\n", '"\\u0085\\u2028\\n"'),
+        ([{"a": 1}], "[{a: 1}]"),
+        ([[1, 2], [3]], "[[1, 2], [3]]"),
     ],
 )
-def test_texts_stay_texts_and_numbers_numbers(derived: Derived, written: str, word: str) -> None:
-    text = f"groups: {{g: {{components: {{a: A}}}}}}\nnodes: {{a: {{implements: a, package: p, executable: a, parameters: {{x: {written}}}}}}}"
-    assert find_steps(derived(text))["a"].command[-1] == f"x:={word}"
+def test_texts_stay_texts_and_numbers_numbers(value: object, word: str) -> None:
+    launch = RosLaunch("a", own_values={"x": value})
+    assert list(list_ros_2_options(launch)) == ["-p", f"x:={word}"]
+    assert list(list_loading_options(launch)) == ["-p", f"x:={word}"]
 
 
 def test_what_a_node_says_itself_counts_more_than_what_its_file_says_to_it(tmp_path: Path) -> None:
