@@ -169,7 +169,7 @@ class Run:
     @property
     def log_folder(self) -> Path:
         """The folder with the logs of this run."""
-        (folder,) = self.logs.iterdir()
+        (folder,) = (each for each in self.logs.iterdir() if each.is_dir())
         return folder
 
 

@@ -54,7 +54,7 @@ def start(script: Path, folder: Path, port: int, **settings: Any) -> tuple[Run, 
 
 def test_it_starts_in_order_and_stops_in_reverse(script: Path, port: int, tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, port)
-    run.wait_for("all of 4 steps")
+    run.wait_for("up        all: 4 steps")
     run.send(signal.SIGINT)
     assert run.wait_for_end() == 0
     assert stage.journal == [
@@ -91,7 +91,7 @@ def test_a_signal_in_the_middle_stops_what_was_started(
 
 def test_the_end_of_one_program_stops_all_and_is_said(script: Path, port: int, tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, port)
-    run.wait_for("all of 4 steps")
+    run.wait_for("up        all: 4 steps")
     os.kill(stage.read_process("a"), signal.SIGKILL)
     assert run.wait_for_end() == 1
     assert "failed    a: it was ended by SIGKILL" in run.output
@@ -117,7 +117,7 @@ def test_a_step_that_runs_once_and_fails_ends_the_start(script: Path, port: int,
 
 def test_what_does_not_listen_is_killed_with_all_that_it_started(script: Path, port: int, tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, port, manners={"world": "deaf", "a": "stubborn", "b": "parent"})
-    run.wait_for("all of 4 steps")
+    run.wait_for("up        all: 4 steps")
     run.send(signal.SIGTERM)
     assert run.wait_for_end() == 0
     assert "killing   world: it does not end by itself" in run.output
@@ -127,9 +127,22 @@ def test_what_does_not_listen_is_killed_with_all_that_it_started(script: Path, p
 
 def test_when_the_script_itself_is_killed_nothing_is_left(script: Path, port: int, tmp_path: Path) -> None:
     run, _ = start(script, tmp_path, port)
-    run.wait_for("all of 4 steps")
+    run.wait_for("up        all: 4 steps")
     run.send(signal.SIGKILL)
     run.wait_for_nothing_left()
+
+
+def test_it_does_not_run_twice(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port)
+    run.wait_for("up        all: 4 steps")
+    output = run.output
+    second = Run(script, stage)
+    assert second.process.wait(timeout=120) == 2
+    assert second.output.startswith("What runs on no-host is running already; its logs are in ")
+    run.output_file.write_text(output, encoding="utf-8")
+    run.send(signal.SIGTERM)
+    assert run.wait_for_end() == 0
+    assert stage.journal.count("start world") == 1
 
 
 def test_what_respawns_starts_again(port: int, tmp_path: Path) -> None:
@@ -138,7 +151,7 @@ def test_what_respawns_starts_again(port: int, tmp_path: Path) -> None:
     )
     run, stage = start(script, tmp_path, port, manners={"b": "short"})
     run.wait_for("again     b")
-    run.wait_for("all of 4 steps")
+    run.wait_for("up        all: 4 steps")
     assert "ended     b: it ended with status 3, and starts again in 1 s" in run.output
     run.send(signal.SIGINT)
     assert run.wait_for_end() == 0

@@ -73,7 +73,7 @@ def test_a_shell_reads_nothing_of_them(workspace: Path, tmp_path: Path) -> None:
     stage = Stage(tmp_path / "stage", {"camera": "a"}, says={"a": "$(touch trace)\\ %n 'x' \"y\""})
     (workspace / "-a $(touch trace) %h").mkdir(exist_ok=True)
     run = Run(workspace / "start.sh", stage)
-    run.wait_for("all of 1 steps")
+    run.wait_for("up        all: 1 step,")
     run.send(signal.SIGINT)
     assert run.wait_for_end() == 0
     (told,) = stage.read_told("a")

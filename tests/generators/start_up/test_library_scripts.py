@@ -116,7 +116,12 @@ def test_a_node_is_brought_into_its_state(tools: Tools) -> None:
 
 
 def test_what_cannot_be_loaded_never_comes_up(tools: Tools) -> None:
-    tools.add("ros2", '[ "$1" = service ] && echo /box/_container/load_node && exit', 'echo "$@" > loaded', "exit ${STATUS:-0}")
+    tools.add(
+        "ros2",
+        '[ "$1" = service ] && echo /box/_container/load_node && exit',
+        'echo "$@" > loaded',
+        "exit ${STATUS:-0}",
+    )
     words = ("--load", "/box", "--", "ros2", "component", "load", "/box", "a; b")
     tools.run("wait_until_up.sh", *words)
     assert (tools.folder / "loaded").read_text(encoding="utf-8") == "component load /box a; b\n"
@@ -146,7 +151,9 @@ def test_output_is_copied(tools: Tools) -> None:
 def test_parameters_are_the_output_of_commands(tools: Tools) -> None:
     tools.add("rosparam", 'printf "%s\\n" "$@" > param')
     value = ("printf", '<robot name="a">\n\\t\t</robot>')
-    said = tools.run("run.sh", "--value", "robot_description", "2", *value, "--", "echo", "--ros-args", START_FOLDER="/")
+    said = tools.run(
+        "run.sh", "--value", "robot_description", "2", *value, "--", "echo", "--ros-args", START_FOLDER="/"
+    )
     assert said == '--ros-args -p robot_description:="<robot name=\\"a\\">\\n\\t\\t</robot>"\n'
     tools.run("run.sh", "--value", "/arm/robot_description", "2", "printf", "a\nb", "--", "true", START_FOLDER="/")
     assert (tools.folder / "param").read_text(encoding="utf-8") == 'set\n/arm/robot_description\n"a\\nb"\n'

@@ -65,7 +65,7 @@ def make_stage(folder: Path, ports: list[int]) -> Stage:
 
 def test_each_computer_waits_for_the_other(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports, "--all-here")
-    run.wait_for("all of 12 steps on 2 computers")
+    run.wait_for("all: 12 steps on 2 computers")
     events = run.events
     for first, second in (
         (("ended", "set_clock"), ("starting", "stage")),
@@ -100,7 +100,7 @@ def test_what_fails_on_one_computer_stops_both(script: Path, ports: list[int], t
     os.kill(stage.read_process("stage"), signal.SIGKILL)
     assert run.wait_for_end() == 1
     assert "[sim_pc]" in run.output
-    assert "ending    all because of stage on sim_pc" in run.output
+    assert "ending    all: because of stage on sim_pc" in run.output
     assert "stop parcel_registry" in stage.journal
 
 

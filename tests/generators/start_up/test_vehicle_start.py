@@ -83,7 +83,7 @@ def test_it_has_the_size_of_the_papers_script(script: Path) -> None:
 
 def test_it_comes_up_in_order_and_stops_in_reverse(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports)
-    run.wait_for("all of 12 steps")
+    run.wait_for("up        all: 12 steps")
     events = run.events
     for name, needs in NEEDS.items():
         for need in needs:

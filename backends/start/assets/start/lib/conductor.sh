@@ -106,8 +106,8 @@ stop_all() {
 end_all() {
   local status=$? cause=$failure
   trap - EXIT
-  [[ -z $interrupt ]] || say ending "all by SIG$interrupt"
-  [[ -z $failure ]] || say ending "all because of $failure"
+  [[ -z $interrupt ]] || say ending "all: by SIG$interrupt"
+  [[ -z $failure ]] || say ending "all: because of $failure"
   trap : INT TERM HUP
   stop_all
   rm -rf -- "$pipes"
@@ -150,7 +150,7 @@ conduct() { # OPTION...
     ((${#idle[@]} < ${#hosts[@]})) || exit 0
     if [[ $announced == no ]] && ((${#complete[@]} == ${#hosts[@]})); then
       announced=yes
-      say up "all of ${#step_ids[@]} steps on ${#hosts[@]} computers"
+      say up "all: ${#step_ids[@]} steps on ${#hosts[@]} computers"
     fi
   done
 }

@@ -6,7 +6,7 @@ ids=() failure='' interrupt='' announced=no is_follower=no run=''
 phases=(network simulators core components)
 declare -A phase=() number=() kind=() host_of=() state=() log=() within=() user=() directory=() respawn=()
 declare -A deadline=() again_at=() reason=() told_at=() address=() is_told=()
-guarded='' never='' left_over=no shown_host='' host='' open_phase=network
+guarded='' never='' locked='' left_over=no shown_host='' host='' open_phase=network
 library=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 top=${library%/*/*}
 settings=$top/settings.sh
@@ -257,6 +257,12 @@ look_at() { # ID
   esac
 }
 
+count_own_steps() {
+  local id n=0
+  for id in "${ids[@]}"; do [[ ${kind[$id]} == elsewhere ]] || n=$((n + 1)); done
+  if ((n == 1)); then printf '1 step'; else printf '%s steps' "$n"; fi
+}
+
 # Goes on until something fails, somebody ends it, or nothing is left that runs.
 bring_up() {
   local id running waiting idle=no
@@ -271,7 +277,7 @@ bring_up() {
     done
     if ((waiting == 0)) && [[ $announced == no ]]; then
       announced=yes
-      say up "all of ${#ids[@]} steps" "logs in $run"
+      say up all "$(count_own_steps), logs in $run"
       tell complete .
     fi
     if ((waiting + running == 0)); then

@@ -15,7 +15,12 @@ find_user_words() { # ID
   fi
 }
 
-mark() { printf 'START_STEP=%s:%s' "$run" "$1"; } # ID
+# Scripts of several computers may run on one: what one of them watches of another is its own.
+mark() { # ID
+  local watching=''
+  [[ ${kind[$1]} != elsewhere ]] || watching=@$host
+  printf 'START_STEP=%s:%s%s' "$run" "$1" "$watching"
+}
 
 # The words that become the program of a step, in its folder and with its variables.
 find_run_words() { # ID
@@ -42,7 +47,7 @@ launch() { # ID
   find_run_words "$1"
   set -m
   (
-    exec {never}>&- {guarded}>&-
+    exec {never}>&- {guarded}>&- {locked}>&-
     exec -- "${run_words[@]}"
   ) </dev/null >>"$output" 2>&1 &
   program[$1]=$!
@@ -54,7 +59,7 @@ start_watcher() { # ID WORD...
   shift
   set -m
   (
-    exec {never}>&- {guarded}>&-
+    exec {never}>&- {guarded}>&- {locked}>&-
     export "$(mark "$id")"
     exec bash "$library/wait_until_up.sh" --missing "$run/$id.missing" "$@"
   ) </dev/null >>"$run/${log[$id]}" 2>&1 &
@@ -133,7 +138,7 @@ end_processes() { # ID
 
 stop_step() { # ID
   local id=$1
-  [[ -z ${stopped[$id]-} && ${state[$id]} != planned && ${state[$id]} != skipped && ${kind[$id]} != elsewhere ]] || return 0
+  [[ -z ${stopped[$id]-} && ${state[$id]} != planned && ${state[$id]} != skipped ]] || return 0
   stopped[$id]=yes
   end_watcher "$id"
   end_processes "$id"

@@ -55,6 +55,8 @@ make_run_folder() { # NAME
   printf -v name '%(%Y-%m-%dT%H-%M-%S)T' -1
   name=${1:-$name} n=2
   mkdir -p -- "$folder" || exit 2
+  exec {locked}>>"$folder/.$host.lock"
+  flock -n "$locked" || { printf 'What runs on %s is running already; its logs are in %s\n' "$host" "$folder" >&2; exit 2; }
   run=$folder/$name
   until mkdir -- "$run" 2>/dev/null; do
     [[ -e $run && -z $1 ]] || [[ -d $run && -n $1 ]] || { printf '%s cannot be made\n' "$run" >&2; exit 2; }
@@ -66,12 +68,12 @@ make_run_folder() { # NAME
 # If this script itself is killed, somebody is left who ends what it started.
 guard_run() {
   local id marks=()
-  for id in "${ids[@]}"; do [[ ${kind[$id]} == elsewhere ]] || marks+=(-e "$(mark "$id")"); done
+  for id in "${ids[@]}"; do marks+=(-e "$(mark "$id")"); done
   mkfifo -- "$run/.guard$host" "$run/.never$host"
   exec {never}<>"$run/.never$host"
   set -m
   (
-    exec {never}>&-
+    exec {never}>&- {locked}>&-
     trap '' INT TERM HUP
     read -r line <"$run/.guard$host"
     [[ $line == 'done' ]] && exit
@@ -129,6 +131,7 @@ start_all() { # OPTION...
       *) printf 'What is %q? There is only --help.\n' "$1" >&2; exit 2 ;;
     esac
   done
+  [[ -e /proc/self/stat ]] || { printf 'This needs Linux: processes are found in /proc.\n' >&2; exit 2; }
   missing=$(find_missing_programs)
   if [[ -n $missing ]]; then
     printf '%s\n' "$missing" 'Nothing was started.' >&2
