@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from archgen.derivation import derive_low_level
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
-from archgen.transform import transform_architecture
 from tests import property_sizes
 from tests.linking import link_table
 from tests.running import RAMCIP, REVISION, archgen, made_once
@@ -72,7 +72,7 @@ def derived() -> Callable[[str], Architecture]:
     def derive(text: str) -> Architecture:
         architecture, found = _link(text)
         assert [_line(diagnostic) for diagnostic in found] == []
-        return transform_architecture(architecture)
+        return derive_low_level(architecture)
 
     return derive
 

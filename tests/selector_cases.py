@@ -30,10 +30,10 @@ groups:
       executor: {inputs: {ask: solver.solve}, outputs: {command: T}, requirements: [R-2, "R-2 in the dark"]}
   driving:
     components:
-      base: {role: sink, parameters: {speed.max: 1.5}, properties: {mass: 12 kg, vendor: Acme Ltd, hot: 12 g}, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
+      base: {role: sink, parameters: {speed.max: 1.5}, properties: {mass: 12 kg, vendor: Acme Ltd, hot: 12 g}, inputs: {command: executor.command, stop: lidar}, outputs: {log: {type: T, deprecated: {until: 2999-03-01}}}}
       camera: {title: Rear Camera}
       odd: {inputs: {x: stub}}
-      stub:
+      stub: {title: Stub, status: existing}
 nodes:
   cam: {implements: sensing.camera, package: usb_cam, host: board, status: existing, parameters: {image: {fps: 30}}}
   eyes: {implements: [detector, fusion], package: our_vision, host: pc, tags: [certified], owner: certh, publishes: {world: }}
@@ -80,7 +80,8 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ("tag:gpu", "camera"),  # of a host
     ("tag:certified", "detector fusion"),  # of a node
     ("owner:certh", "camera lidar"),
-    ("status:existing", "camera"),
+    ("status:existing", "camera d.stub"),  # by its node, and by itself
+    ("status:existing+", "camera detector fusion solver executor d.base d.odd d.stub"),
     ("status:planned", "lidar solver executor d.base d.camera d.odd d.stub"),
     ('type:"Colour  image"', "camera detector"),
     ("type:sensor_msgs/msg/LaserScan", "lidar fusion d.base"),
@@ -110,6 +111,8 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ('property:"vendor=Acme Ltd"', "d.base"),
     ("property:vendor=*", "d.base"),
     ('property:"ram>=8 GB"', "camera"),  # of a host
+    ("deprecated:output", "d.base"),
+    ("deprecated:*", "d.base"),
     ("use_case:UC-1", "camera detector fusion"),
     ("use_case:UC-*", "camera detector fusion d.base"),
     ("use_case:UC-1 -detector", "camera fusion"),
@@ -169,8 +172,9 @@ FOUND_NOTHING: tuple[tuple[str, str], ...] = (
 """Selectors with a warning, all of which select the lidar."""
 
 COMPOSED_ROBOT = """
+types: {Touch: {message: std_msgs/msg/Bool, deprecated: {until: 2999-01-01}}}
 component_types:
-  motor: {inputs: {target: Target}, outputs: {state: State}}
+  motor: {deprecated: {use: arm}, inputs: {target: Target}, outputs: {state: State}}
   arm:
     inputs: {goal: Goal}
     outputs: {state: {from: joint.state}}
@@ -223,6 +227,9 @@ COMPOSED_SELECTED = (
     "is:*",
     "-is:arm",
     "1+is:motor+1",
+    "deprecated:component_type",
+    "deprecated:type",
+    "deprecated:*+1",
     "finding:*",
     "finding:unfed-output",
     "tag:safety+1",

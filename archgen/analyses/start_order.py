@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen.bringup.start_plan import make_start_plan, resolve_conditions
+from archgen.derivation.ros_names import shared_topic_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.start_up import DEFAULT_PHASE, NO_START
-from archgen.transform.ros_names import shared_topic_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

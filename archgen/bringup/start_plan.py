@@ -18,11 +18,11 @@ from archgen.bringup.start_commands import (
 )
 from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
 from archgen.bringup.wait_circles import keep_acyclic
+from archgen.derivation.ros_names import resolve_ros_name
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
-from archgen.transform.ros_names import resolve_ros_name
 
 _UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
 _MAX_FILE_NAME = 100

@@ -35,6 +35,7 @@ SELECTOR_KEYS = (
     "parameter",
     "property",
     "variant",
+    "deprecated",
     "use_case",
 )
 ALL_STEPS = -1

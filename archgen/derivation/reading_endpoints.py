@@ -6,14 +6,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from archgen.derivation import ros_names
+from archgen.derivation.writing_endpoints import DEFAULT_QOS, UNWRITTEN_USE, NodePart, filter_uses, flow_of_use
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input
 from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, FlowKind, PortUse, UseKind
 from archgen.model.port_media import uses_ros
-from archgen.transform import ros_names
-from archgen.transform.writing_endpoints import DEFAULT_QOS, UNWRITTEN_USE, NodePart, filter_uses, flow_of_use
 
 NameAndFlow = tuple[str, FlowKind]
 

@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from archgen.derivation import ros_names
+from archgen.derivation.reading_endpoints import WriterIndex
+from archgen.derivation.writing_endpoints import DEFAULT_QOS, flow_of_use
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, UseKind
-from archgen.transform import ros_names
-from archgen.transform.reading_endpoints import WriterIndex
-from archgen.transform.writing_endpoints import DEFAULT_QOS, flow_of_use
 
 SharedKeyCounts = Mapping[tuple[str, str], int]
 """The number of nodes with an internal entry, by component id and the entry's key."""

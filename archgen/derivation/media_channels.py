@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from archgen.derivation.writing_endpoints import NodePart, filter_uses
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Input, Output
 from archgen.model.node import Endpoint, FlowKind, Topic
-from archgen.model.port_media import nature_of
+from archgen.model.port_media import make_channel_key, nature_of
 from archgen.model.quantity import Quantity
-from archgen.transform.writing_endpoints import NodePart, filter_uses
 
 
 @dataclass(slots=True)
@@ -90,7 +90,7 @@ def _add_writers(
         names = [topic for use in uses for topic in use.topics]
         for name in names or [output.id]:
             full_name = f"{medium} {name}"
-            key = full_name if flow == "topic" else f"{full_name} ({flow})"
+            key = make_channel_key(full_name, flow)
             users = channels.setdefault(key, _ChannelUsers(medium, full_name, flow))
             users.writers.append(
                 Endpoint(
@@ -103,6 +103,7 @@ def _add_writers(
                     type=output.type,
                     written=bool(uses),
                     name_written=bool(names),
+                    medium=medium,
                     at=uses[0].at if uses else output.at,
                 )
             )
@@ -130,6 +131,7 @@ def _add_reader(architecture: Architecture, edge: PortEdge, part: NodePart, user
         component=entry.component,
         type=entry.type or architecture.outputs[edge.output].type,
         sources=(*sources, edge.output),
+        medium=users.medium,
         at=entry.at,
     )
     if same is None:

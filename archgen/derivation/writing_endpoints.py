@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import field
 
+from archgen.derivation import ros_names
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Output
 from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, Qos, UseKind
 from archgen.model.port_media import uses_ros
-from archgen.transform import ros_names
 
 UNWRITTEN_USE = PortUse("publishes", "", None)
 """The entry of a port that its node does not list. Compared by identity: a written entry may look the same."""

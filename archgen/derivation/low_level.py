@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from archgen.derivation import ros_names
+from archgen.derivation.frame_endpoints import derive_frame_endpoints, index_written_frames
+from archgen.derivation.inner_memory import mark_inner_memory
+from archgen.derivation.media_channels import derive_channels
+from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
+from archgen.derivation.reading_endpoints import derive_reading_endpoints, index_writers
+from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.derived_names import derive_node_ids
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, FlowKind, Node, Topic
 from archgen.model.port_media import nature_of, uses_ros
-from archgen.transform import ros_names
-from archgen.transform.frame_endpoints import derive_frame_endpoints, index_written_frames
-from archgen.transform.inner_memory import mark_inner_memory
-from archgen.transform.media_channels import derive_channels
-from archgen.transform.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
-from archgen.transform.reading_endpoints import derive_reading_endpoints, index_writers
-from archgen.transform.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
 
 
 def derive_low_level(architecture: Architecture) -> Architecture:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
+from archgen.derivation.ros_names import default_port_name, resolve_ros_name, shared_topic_names
 from archgen.model.architecture import Architecture
-from archgen.transform.ros_names import default_port_name, resolve_ros_name, shared_topic_names
 
 
 @pytest.mark.parametrize(
