@@ -55,7 +55,8 @@ class TypeLayers:
     def list_used(self, root: MappingNode) -> dict[str, MappingEntry]:
         """Return the project's own types, and those of libraries that it uses, in order."""
         used = {name for name in self.entries if library_of_type(name) is None}
-        pending = [*(self.entries[name].value for name in used), *filter(None, [root.get("groups")])]
+        groups = root.get("groups")
+        pending = [*(self.entries[name].value for name in used), *([groups] if groups is not None else [])]
         while pending:
             for name in set(self._list_names(pending.pop())) - used:
                 used.add(name)
