@@ -60,8 +60,8 @@ class FlatSources:
             key_span = entries["from"].key_span if "from" in entries else entry.key_span
             entries["from"] = MappingEntry("from", key_span, SequenceNode(list(references), references[0].span))
         elif "from" in entries and self._sources.list_sources(port):
-            # It reads an input around it that nothing feeds.
-            del entries["from"]
+            # It reads an input around it that nothing feeds: it still says that nothing else does.
+            entries["from"] = MappingEntry("from", entries["from"].key_span, SequenceNode([], entry.key_span))
         outside = self._sources.find_outside(port)
         if "external" not in entries:
             entries |= {
