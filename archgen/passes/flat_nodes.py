@@ -42,6 +42,8 @@ class FlatNodes:
             linked.resolver,
         )
         self._node_by_leaf = {ids[0]: node_id for node_id, ids in self._made.implements.items()}
+        planned_nodes = [each for each in self._architecture.nodes.values() if not each.written]
+        self._planned_ids = {each.implements[0]: each.id for each in planned_nodes if len(each.implements) == 1}
         self._endpoints: dict[str, list[Endpoint]] = {}
         for endpoint in self._architecture.endpoints:
             self._endpoints.setdefault(endpoint.node, []).append(endpoint)
@@ -53,15 +55,9 @@ class FlatNodes:
     def write_own_node(self, leaf_id: str) -> MappingEntry | None:
         """Return what a leaf says of the node that it brings along, with what it has from around it."""
         node_id = self._node_by_leaf.get(leaf_id)
-        planned_id = next(
-            (
-                each.id
-                for each in self._architecture.nodes.values()
-                if not each.written and each.implements == (leaf_id,)
-            ),
-            None,
-        )
-        place = self._linked.outline.components[leaf_id].key_span
+        planned_id = self._planned_ids.get(leaf_id)
+        shell = self._linked.outline.shells.get(leaf_id)
+        place = (shell.entry if shell else self._linked.outline.components[leaf_id]).key_span
         entries: dict[str, MappingEntry] = {}
         if node_id is not None:
             entries = {e.key: e for e in mapping_values.get_body(self._made.entries[node_id]) if e.key != "implements"}

@@ -59,10 +59,12 @@ class FlatSources:
         if references:
             key_span = entries["from"].key_span if "from" in entries else entry.key_span
             entries["from"] = MappingEntry("from", key_span, SequenceNode(list(references), references[0].span))
-        elif "from" in entries and self._sources.list_sources(port):
-            # It reads an input around it that nothing feeds.
-            del entries["from"]
         outside = self._sources.find_outside(port)
+        if not references and "from" in entries and self._sources.list_sources(port):
+            # It reads an input around it that nothing in the project feeds: nothing else feeds it either.
+            written = entries.pop("from")
+            if "external" not in outside.entries:
+                entries["from"] = MappingEntry("from", written.key_span, SequenceNode([], entry.key_span))
         if "external" not in entries:
             entries |= {
                 key: outside.entries[key] for key in _SAID_OUTSIDE if key in outside.entries and key not in entries

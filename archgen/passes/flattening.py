@@ -117,7 +117,8 @@ class _Flattener:
             entries["parameters"] = MappingEntry("parameters", entries["parameters"].key_span, filled)
         if is_deep:
             self._inherit(component_id, entries)
-        if shell is None and (is_deep or component_id in self._run_leaves):
+        is_renamed = self._flat_ids[component_id] != component_id
+        if shell is not None or is_deep or is_renamed or component_id in self._run_leaves:
             entries.pop("node", None)
             own_node = None if component_id in self._run_leaves else self._nodes.write_own_node(component_id)
             if own_node is not None:

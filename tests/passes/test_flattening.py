@@ -7,10 +7,14 @@ from pathlib import Path
 import pytest
 import yaml
 
+from archgen.model.architecture import Architecture
 from archgen.passes.flat_names import name_flat_components
 from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from tests.passes.same_meaning import EXAMPLES, check_packed, pack, write_project
+from tests.passes.random_projects import RandomProject
+from tests.passes.same_meaning import EXAMPLES, check_packed, pack, transform_alike, write_project
+
+CONNECTING = ("connect_components", "connect_ports", "connect_types")
 
 
 def list_flat_ids(checked: CheckedProject) -> dict[str, str]:
@@ -23,6 +27,12 @@ def list_flat_ids(checked: CheckedProject) -> dict[str, str]:
     assert nodes
     all_ids = [*dict.fromkeys([*leaves, *checked.architecture.shells])]
     return name_flat_components(leaves, all_ids, [name for name in written_names if name not in deep_names])
+
+
+def list_writers(architecture: Architecture) -> set[tuple[str, ...]]:
+    """Return which nodes write each topic that somebody writes."""
+    topics = architecture.topics.items()
+    return {(name, *sorted(each.node for each in topic.writers)) for name, topic in topics if topic.writers}
 
 
 def flatten_alike(checked: CheckedProject, *, finds_same: bool = True) -> CheckedProject:
@@ -51,11 +61,7 @@ def flatten_alike(checked: CheckedProject, *, finds_same: bool = True) -> Checke
         for key in node_keys:
             assert getattr(after.nodes[node_id], key) == getattr(node, key), (node_id, key)
         assert after.nodes[node_id].implements == tuple(flat_ids[each] for each in node.implements)
-    assert {
-        (name, *sorted(each.node for each in (*topic.writers, *topic.readers))) for name, topic in after.topics.items()
-    } == {
-        (name, *sorted(each.node for each in (*topic.writers, *topic.readers))) for name, topic in before.topics.items()
-    }
+    assert list_writers(after) == list_writers(before)
     if checked.analysis is not None:
         assert transformed.analysis is not None
         bounds = bound_all_chains(checked.analysis, before)
@@ -65,6 +71,17 @@ def flatten_alike(checked: CheckedProject, *, finds_same: bool = True) -> Checke
         }
     assert pack(transform_project(transformed, ["flatten"])) == pack(transformed)
     return transformed
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_random_projects(seed: int, tmp_path: Path) -> None:
+    checked = write_project(tmp_path / "robot", RandomProject(seed).text)
+    if any(str(each.severity) == "error" for each in checked.findings):
+        # A connection between ports of two types, mostly.
+        assert transform_project(checked, ["flatten"]).architecture.shells == {}
+        return
+    transform_alike(checked, *CONNECTING, "resolve_instances", "remove_generics", finds_same=False)
+    check_packed(flatten_alike(checked, finds_same=False), tmp_path / "flat")
 
 
 @pytest.mark.parametrize("example", ["cleaning_robot", "arm", "vehicle/scenario", "bringup", "first_robot"])
