@@ -35,6 +35,11 @@ class BackendFile:
     path: str
     for_each: str | None = None
     only: Mapping[str, str] = field(default_factory=dict)
+    once: bool = False
+    """Whether the file is the user's own as soon as it is there; only in a workspace."""
+    executable: bool = False
+    expects: str | None = None
+    """The template of the words that the user's own file should hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +59,10 @@ class Backend:
     """What it makes; each has a verb of its own: `archgen build`, `generate` and `export`."""
     escapes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     """Filters of its own: each is a table from a character to the text in its place."""
+    passes: tuple[str, ...] = ()
+    """The passes that the architecture goes through before the views are made; only for a workspace."""
+    needs: tuple[str, ...] = ()
+    """What must hold of the architecture after the passes; only for a workspace."""
     from_project: bool = False
     """Whether the project brings it, rather than archgen."""
 
@@ -142,10 +151,24 @@ def _read_manifest(folder: Path, name: str) -> Backend:
         name=name,
         makes=data.get("makes", "documents"),
         escapes=data.get("escapes", {}),
+        passes=tuple(data.get("passes", ())),
+        needs=tuple(data.get("needs", ())),
     )
+    if backend.makes != "workspace":
+        _refuse_workspace_keys(data, root, name)
     if backend.makes == "file":
         _check_single_file(backend, root)
     return backend
+
+
+def _refuse_workspace_keys(data: Mapping[str, Any], root: ManifestNode, name: str) -> None:
+    """Refuse what only the writer of workspaces knows: elsewhere it would do nothing."""
+    paths: list[list[str | int]] = [[key] for key in ("passes", "needs") if key in data]
+    for position, file in enumerate(data.get("files", ())):
+        paths += [["files", position, key] for key in ("once", "executable", "expects") if key in file]
+    for path in paths:
+        message = f"`{path[-1]}` goes with `makes: workspace`"
+        refuse_manifest(name, message, "add that, or take the key away", find_span(root, path, name))
 
 
 def _check_escapes(escapes: Mapping[str, Mapping[str, str]], root: ManifestNode, name: str) -> None:

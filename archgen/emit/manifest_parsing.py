@@ -24,6 +24,7 @@ BACKEND_ERROR_RULE = Rule(
 BACKEND_MANIFEST = "backend.yaml"
 _MAX_MANIFEST_BYTES = 65_536
 _MAX_NESTING = 20
+_FLAG_KEYS = frozenset({"once", "executable"})
 
 
 ManifestNode = Any
@@ -94,7 +95,7 @@ def _parse_manifest(text: str, name: str) -> tuple[Any, ManifestNode]:
         _check_yaml_events(yaml.parse(text, Loader=loader), name)
         reader = loader(text)
         root = reader.get_single_node()
-        return (reader.construct_document(root) if root else {}), root
+        return _read_flags(reader.construct_document(root) if root else {}), root
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
@@ -102,6 +103,15 @@ def _parse_manifest(text: str, name: str) -> tuple[Any, ManifestNode]:
         refuse_manifest(name, f"this is not YAML: {error.problem or error.context}", span=span)
     except yaml.YAMLError as error:
         refuse_manifest(name, f"this is not YAML: {str(error).splitlines()[0]}")
+
+
+def _read_flags(data: Any) -> Any:  # noqa: ANN401 - what the file holds
+    """Return data with booleans for the flags of files, which are the only values in a manifest that are no text."""
+    files = data.get("files") if isinstance(data, dict) else None
+    for file in files if isinstance(files, list) else ():
+        for key in _FLAG_KEYS & file.keys() if isinstance(file, dict) else ():
+            file[key] = {"true": True, "false": False}.get(file[key], file[key]) if isinstance(file[key], str) else None
+    return data
 
 
 def _check_yaml_events(events: Any, name: str) -> None:  # noqa: ANN401 - the library has no types
@@ -142,9 +152,11 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
         case "Enum":
             predicate = f"must be one of {', '.join(f'`{option}`' for option in kind.options)}"
         case "AnyOf":
-            predicate = "must be `outline`, `pages`, `record`, `graphs`, `sequences` or `tables`, or a list of these"
+            predicate = f"must be one of {_list_view_names()}, or a list of these"
         case "PropertyNames":
             predicate = _describe_wrong_key(kind.error.instance, is_filter=error.instance_path == ["escapes"])
+        case "Type" if error.instance_path[-1:] and error.instance_path[-1] in _FLAG_KEYS:
+            predicate = "must be `true` or `false`"
         case "MaxProperties":
             predicate = f"has more than {kind.limit} entries"
         case "MaxLength":
@@ -152,6 +164,11 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
         case _:
             predicate = f"is not as the schema of backends asks ({error_name})"
     return f"{subject} {predicate}"
+
+
+def _list_view_names() -> str:
+    schema = json.loads(resources.resource_path("schemas", "backend.schema.json").read_text("utf-8"))
+    return ", ".join(f"`{name}`" for name in schema["$defs"]["view"]["enum"])
 
 
 def _name_of_error(error: Any) -> str:  # noqa: ANN401 - the library's own class

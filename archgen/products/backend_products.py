@@ -14,6 +14,8 @@ from archgen.products.product_inputs import FinishProduct, MadeProduct, Product,
 from archgen.products.product_table import PRODUCTS
 from archgen.products.trusted_backends import TrustedRevision, refuse_untrusted
 from archgen.views import resolved_record
+from archgen.views.generation import GENERATION_VIEWS
+from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.graph_shapes import Graph
 from archgen.views.requirement_exchange import make_requirement_exchange
 from archgen.views.sequence_shapes import SequenceChart
@@ -51,7 +53,7 @@ def choose_backends(
 
     backends_by_name, problems = backend_manifests.find_backends(checked_project.root)
     # Only manifests of backends that are asked for count; a broken one beside them must not stop the build.
-    _raise_problems([p for p in problems if any(f"backends/{name}/" in p.span.file for name in names)])
+    raise_problems([p for p in problems if any(f"backends/{name}/" in p.span.file for name in names)])
     for name in names:
         _refuse_unusable(backends_by_name, name, makes, other_outputs)
         if backends_by_name[name].from_project and trusted_revision is not None:
@@ -71,7 +73,7 @@ def _refuse_unusable(
     backend = backends_by_name.get(name)
     if backend is None or backend.emitter not in CALLED_EMITTERS:
         msg = f"there is no {'output' if other_outputs else 'text backend'} `{name}`"
-        listed_names = f"there are {', '.join(usable_names)}" if usable_names else _describe_none(makes)
+        listed_names = f"there are {', '.join(usable_names)}"
         raise file_tree.OutputError(msg, did_you_mean(name, usable_names) or listed_names)
     if backend.makes != makes:
         msg = f"the backend `{name}` makes {_TARGET_PHRASES[backend.makes]}, not {_TARGET_PHRASES[makes]}"
@@ -80,11 +82,6 @@ def _refuse_unusable(
     if backend.from_project and name in PRODUCTS:
         msg = f"the backend `{name}` is called as an output of archgen itself"
         raise file_tree.OutputError(msg, "give it another `id`, and its folder the same name")
-
-
-def _describe_none(makes: BackendTarget) -> str:
-    """Say that no backend makes this, and where one would stand."""
-    return f"no backend here says `makes: {makes}`; a project brings its own in backends/"
 
 
 def make_backend_product(backend: Backend) -> Product:
@@ -112,6 +109,19 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
     """Return the files of a text backend. Raise OutputError where its templates fail."""
     from archgen.emit import text
 
+    context = GenerationContext(inputs.checked_project.architecture, options=backend.options)
+    views, findings = make_backend_views(inputs, backend, context)
+    for finding in findings:
+        inputs.options.warn(f"{finding.span}: {finding.message}")
+    files, problems = text.render_backend(backend, views)
+    raise_problems(problems)
+    return files or file_tree.make_file_tree(())
+
+
+def make_backend_views(
+    inputs: ProductInputs, backend: Backend, context: GenerationContext
+) -> tuple[Mapping[str, object], tuple[Diagnostic, ...]]:
+    """Return the views that a backend names in its manifest, and what those for generators leave out."""
     # Made only on demand: a backend names the views that it needs in its manifest.
     shapes: dict[str, Callable[[], object]] = {
         "outline": lambda: inputs.outline,
@@ -121,12 +131,14 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
         "record": lambda: resolved_record.make_record(inputs.views.lookup),
         "tables": lambda: statistics_tables.make_statistics_tables(inputs.views.lookup.architecture),
     }
-    files, problems = text.render_backend(backend, {name: shapes[name]() for name in backend.views})
-    _raise_problems(problems)
-    return files or file_tree.make_file_tree(())
+    views = {name: shapes[name]() for name in backend.views if name in shapes}
+    generated_views = {name: GENERATION_VIEWS[name](context) for name in backend.views if name in GENERATION_VIEWS}
+    views |= {name: view.data for name, view in generated_views.items()}
+    findings = (finding for view in generated_views.values() for finding in view.findings)
+    return views, tuple(sorted(dict.fromkeys(findings), key=lambda finding: finding.sort_key))
 
 
-def _raise_problems(problems: Sequence[Diagnostic]) -> None:
+def raise_problems(problems: Sequence[Diagnostic]) -> None:
     """Raise OutputError with all problems, if there are any."""
     if problems:
         message = "; ".join(f"{problem.span}: {problem.message}" for problem in problems)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen.emit import file_tree
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_products import choose_backends, make_backend_product, render_single_file
+from archgen.products.backend_products import choose_backends, render_single_file
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.product_table import PACKED, REPORT, SITE, make_diagrams_product
@@ -101,20 +101,9 @@ def write_resolved(checked_project: CheckedProject, options: OutputOptions, targ
     write_product_file(checked_project, target, yaml_writer.write_yaml(data).encode())
 
 
-def write_workspace(
-    checked_project: CheckedProject, options: OutputOptions, backend_name: str, target: Path | None = None
-) -> Path:
-    """Write the workspace of a text backend into a folder, by default its own among the outputs; return the folder.
-
-    Raise OutputError where no backend of this name makes a workspace, or where its templates fail.
-    """
-    (backend,) = choose_backends(checked_project, (backend_name,), "workspace", options.trusted_revision)
-    folder = target or checked_project.output_folder / backend.id
-    write_product(ProductInputs(checked_project, options), make_backend_product(backend), folder)
-    return folder
-
-
 def render_exported(checked_project: CheckedProject, options: OutputOptions, backend_name: str) -> bytes:
-    """Return the single file of a text backend. Raise OutputError as `write_workspace` does."""
+    """Return the single file of a text backend. Raise OutputError where none of this name makes
+    one, or where its template fails.
+    """
     (backend,) = choose_backends(checked_project, (backend_name,), "file", options.trusted_revision)
     return render_single_file(ProductInputs(checked_project, options), backend)

@@ -51,7 +51,7 @@ def test_a_project_without_backends(tmp_path: Path) -> None:
         (GOOD.replace("text", "tex"), "3:1: `emitter` must be one of `text`, `docx`, `site`, `graphviz`"),
         (
             GOOD.replace("[record, pages]", "all"),
-            "4:1: `view` must be `outline`, `pages`, `record`, `graphs`, `sequences` or `tables`",
+            "4:1: `view` must be one of `outline`, `pages`, `record`, `graphs`, `sequences`, `tables`, `interfaces`",
         ),
         (GOOD.replace("path: a", "way: a"), "6:5: `files.0` has an unknown key `way`"),
         (GOOD.replace("id: mine", "id: Mine"), "1:1: `id` is not as the schema of backends asks (Pattern)"),

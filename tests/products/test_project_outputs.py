@@ -9,7 +9,7 @@ import yaml
 
 from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject, check_project
-from archgen.products import full_build, product_inputs, project_outputs
+from archgen.products import full_build, product_inputs, project_outputs, workspace_product
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_table import PRODUCTS
 from archgen.views import drawing_set
@@ -117,4 +117,4 @@ def test_a_picture_that_nobody_knows_is_an_error_and_nothing_is_written(
 
 def test_a_workspace_asks_for_a_backend_that_makes_one(project: CheckedProject) -> None:
     with pytest.raises(OutputError, match="wiki"):
-        project_outputs.write_workspace(project, OutputOptions(), "wiki")
+        workspace_product.write_workspace(project, OutputOptions(), "wiki")

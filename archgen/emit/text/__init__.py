@@ -20,6 +20,7 @@ from archgen.emit.file_tree import FileTree, list_files_below, make_file_tree
 from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
 from archgen.emit.safe_names import assign_safe_paths, explain_long_path
 from archgen.emit.text.template_limits import TemplateLimits
+from archgen.emit.workspace.generated_file import GeneratedFile, find_path_problems
 from archgen.resources import worker_environment
 from archgen.views.shapes import shape_to_plain
 
@@ -36,6 +37,45 @@ def render_backend(
 
     Where a template fails, there is no tree, but a diagnostic that names the template and the line.
     """
+    answer = _render_files(backend, views, limits)
+    if "error" in answer:
+        return None, (_make_diagnostic(backend, answer),)
+    rendered = [(str(path), str(text)) for path, text, *_ in answer["files"]]
+    try:
+        files = [*_read_assets(backend), *((path, text.encode()) for path, text in rendered)]
+    except (_AssetError, OSError) as error:
+        return None, (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
+    paths = assign_safe_paths(path for path, _ in files)
+    return make_file_tree((paths[path], data) for path, data in files), ()
+
+
+def render_workspace(
+    backend: Backend, views: Mapping[str, object], limits: TemplateLimits = DEFAULT_LIMITS
+) -> tuple[tuple[GeneratedFile, ...], tuple[Diagnostic, ...]]:
+    """Render the files of a backend that makes a workspace, with the paths that its manifest says.
+
+    Where a template fails or a path is no good there are no files, but diagnostics.
+    """
+    answer = _render_files(backend, views, limits)
+    if "error" in answer:
+        return (), (_make_diagnostic(backend, answer),)
+    try:
+        # What is copied stands where it stands below assets/.
+        files = [GeneratedFile(path.removeprefix("assets/"), data) for path, data in _read_assets(backend)]
+    except (_AssetError, OSError) as error:
+        return (), (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
+    for path, text, position, expected_words, place in answer["files"]:
+        entry = backend.files[position]
+        files.append(GeneratedFile(path, text.encode(), entry.executable, entry.once, tuple(expected_words), place))
+    problems = tuple(
+        _make_diagnostic(backend, {"error": problem, "template": None, "line": None})
+        for problem in find_path_problems(files)
+    )
+    return (() if problems else tuple(files)), problems
+
+
+def _render_files(backend: Backend, views: Mapping[str, object], limits: TemplateLimits) -> Mapping[str, Any]:
+    """Render all files in a process of their own, and return its answer."""
     request = {
         "templates": str(backend.folder / "templates"),
         "files": [asdict(file) for file in backend.files],
@@ -43,17 +83,9 @@ def render_backend(
         "options": shape_to_plain(backend.options),
         "escapes": {name: dict(table) for name, table in backend.escapes.items()},
         "limits": asdict(limits),
+        "is_workspace": backend.makes == "workspace",
     }
-    answer = _run_worker(request, limits)
-    if "error" in answer:
-        return None, (_make_diagnostic(backend, answer),)
-    rendered = [(str(path), str(text)) for path, text in answer["files"]]
-    try:
-        files = [*_read_assets(backend), *((path, text.encode()) for path, text in rendered)]
-    except (_AssetError, OSError) as error:
-        return None, (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
-    paths = assign_safe_paths(path for path, _ in files)
-    return make_file_tree((paths[path], data) for path, data in files), ()
+    return _run_worker(request, limits)
 
 
 class _AssetError(Exception):

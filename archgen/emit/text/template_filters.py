@@ -14,6 +14,7 @@ from archgen.emit.markdown.mermaid_chart import escape_mermaid, write_flowchart
 from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
 from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
 from archgen.emit.safe_names import make_identifier, make_slug
+from archgen.emit.text.code_filters import CODE_FILTERS
 from archgen.emit.text.plain_graphs import graph_from_plain, sequence_from_plain
 
 if TYPE_CHECKING:
@@ -92,6 +93,7 @@ def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:
 
 
 TEMPLATE_FILTERS: dict[str, Any] = {
+    **CODE_FILTERS,
     "code": make_code_span,
     "commonmark": safe_commonmark,
     "identifier": make_identifier,

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from traceback import walk_tb
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from jinja2 import StrictUndefined, Template, TemplateError, TemplateNotFound, TemplateSyntaxError
 from jinja2.loaders import BaseLoader
@@ -106,8 +106,26 @@ def _holds_text(value: object, lower_text: str) -> bool:
     return isinstance(value, str) and lower_text in value.lower()
 
 
+class PlannedFile(NamedTuple):
+    """A file to write: its path, its entry in the manifest with the position there, and what it is written for."""
+
+    path: str
+    entry: Mapping[str, Any]
+    position: int
+    item: Any
+    key: Any
+
+    @property
+    def place(self) -> str:
+        """Where the element stands that it is written for, if the view says so."""
+        return str(self.item["place"]) if isinstance(self.item, dict) and self.item.get("place") else ""
+
+
 def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Render every file. Return `files` (path, text), or `error` with its `template` and `line`."""
+    """Render every file. Return `files`, or `error` with its `template` and `line`.
+
+    A file is its path, text, position in the manifest, expected words, and the place of what it is written for.
+    """
     limits = TemplateLimits(**request["limits"])
     current_template: dict[str, str] = {}
     try:
@@ -156,22 +174,30 @@ def _render_files(
     request: Mapping[str, Any],
     limits: TemplateLimits,
     current_template: dict[str, str],
-) -> Iterator[tuple[str, str]]:
-    """Yield path and text of each file. All paths are planned first, so that templates can link to files that come
-    later.
+) -> Iterator[tuple[str, str, int, list[str], str]]:
+    """Yield each file. All paths are planned first, so that templates can link to files that come later.
 
     `current_template["template"]` always names the template in work, for the message of an error.
     """
     planned = list(_plan_files(sandbox, request, limits, current_template))
-    paths = {item["anchor"]: path for path, _, item, _ in planned if isinstance(item, dict) and "anchor" in item}
+    paths = {
+        file.item["anchor"]: file.path for file in planned if isinstance(file.item, dict) and "anchor" in file.item
+    }
     remaining = limits.output
-    for path, template, item, key in planned:
-        current_template["template"] = template
-        values = {**request["data"], "options": request["options"], "path": path, "item": item, "key": key}
-        text = _render_bounded(sandbox.get_template(template), {**values, "href": _make_href(path, paths)}, remaining)
+    for file in planned:
+        current_template["template"] = file.entry["template"]
+        values = {**_list_values(request, file.item, file.key), "path": file.path}
+        values["href"] = _make_href(file.path, paths)
+        text = _render_bounded(sandbox.get_template(file.entry["template"]), values, remaining)
         remaining -= len(text)
         text.encode()  # half a character is a mistake of this template
-        yield path, text
+        current_template.clear()
+        expects = sandbox.from_string(file.entry.get("expects") or "").render(**values)
+        yield file.path, text, file.position, expects.split(), file.place
+
+
+def _list_values(request: Mapping[str, Any], item: object, key: object) -> dict[str, Any]:
+    return {**request["data"], "options": request["options"], "item": item, "key": key}
 
 
 def _plan_files(
@@ -179,31 +205,43 @@ def _plan_files(
     request: Mapping[str, Any],
     limits: TemplateLimits,
     current_template: dict[str, str],
-) -> Iterator[tuple[str, str, Any, Any]]:
-    """Yield (path, template, item, key) for each file to write. Paths are safe, and no two are equal."""
+) -> Iterator[PlannedFile]:
+    """Yield each file to write. In a workspace paths are as the manifest makes them; else they are safe, and no two equal."""
     taken_paths: set[str] = set()
-    for file in request["files"]:
+    count = 0
+    for position, file in enumerate(request["files"]):
         current_template["template"] = file["template"]
         sandbox.get_template(file["template"])
         # What is wrong from here on is the manifest's mistake.
         current_template.clear()
         path_template = sandbox.from_string(file["path"])
         for key, item in _select_items(request["data"], file):
-            path = make_safe_path(
-                path_template.render(**request["data"], options=request["options"], item=item, key=key)
-            )
-            excess = explain_long_path(path)
-            if excess:
-                raise TemplateBoundError(excess)
-            stem, ending = posixpath.splitext(path)
-            number = 2
-            while path in taken_paths:
-                path, number = f"{stem}-{number}{ending}", number + 1
-            taken_paths.add(path)
-            if len(taken_paths) > limits.files:
+            path = path_template.render(**_list_values(request, item, key))
+            if request["is_workspace"]:
+                path = path.strip()
+                if not path:
+                    continue
+            else:
+                path = _choose_safe_path(path, taken_paths)
+            count += 1
+            if count > limits.files:
                 msg = f"it writes more than {limits.files} files"
                 raise TemplateBoundError(msg)
-            yield path, file["template"], item, key
+            yield PlannedFile(path, file, position, item, key)
+
+
+def _choose_safe_path(written_path: str, taken_paths: set[str]) -> str:
+    """Make a safe path that is not taken, and take it."""
+    path = make_safe_path(written_path)
+    excess = explain_long_path(path)
+    if excess:
+        raise TemplateBoundError(excess)
+    stem, ending = posixpath.splitext(path)
+    number = 2
+    while path in taken_paths:
+        path, number = f"{stem}-{number}{ending}", number + 1
+    taken_paths.add(path)
+    return path
 
 
 def _select_items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[tuple[Any, Any]]:
@@ -225,8 +263,16 @@ def _select_items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[
     return [
         (key, item)
         for key, item in pairs
-        if all(isinstance(item, dict) and item.get(name) == value for name, value in required_values.items())
+        if all(isinstance(item, dict) and _has_value(item, name, value) for name, value in required_values.items())
     ]
+
+
+def _has_value(item: Mapping[str, Any], name: str, value: str) -> bool:
+    """Whether an item has a value, which the manifest writes as text: `true`, `2`."""
+    found = item.get(name)
+    if isinstance(found, bool | int):
+        found = str(found).lower()
+    return bool(found == value)
 
 
 def _make_href(path: str, paths: Mapping[str, str]) -> Callable[[str | None], str]:

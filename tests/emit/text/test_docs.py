@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import get_args
@@ -9,10 +10,12 @@ from typing import get_args
 from archgen.emit import text
 from archgen.emit.backend_manifests import find_backends
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS
+from archgen.views.generation import GENERATION_VIEWS
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.shapes import Page, Section
 
-DOCS = Path(__file__).resolve().parents[3] / "docs" / "backends.md"
+ROOT = Path(__file__).resolve().parents[3]
+DOCS = ROOT / "docs" / "backends.md"
 
 
 def test_the_example_works(tmp_path: Path) -> None:
@@ -45,4 +48,20 @@ def test_the_manual_names_every_kind_of_graph() -> None:
 
 
 def test_the_manual_names_every_filter() -> None:
-    assert sorted(_first_column("filter")) == sorted(TEMPLATE_FILTERS)
+    names = [*_first_column("filter"), *_names_in_generation_page("filter")]
+    assert sorted(names) == sorted(TEMPLATE_FILTERS)
+
+
+def test_the_manual_names_every_view() -> None:
+    views = json.loads((ROOT / "schemas" / "backend.schema.json").read_text())["$defs"]["view"]["enum"]
+    generated_views = _names_in_generation_page("view")
+    assert generated_views == [name for name in views if name in GENERATION_VIEWS] == list(GENERATION_VIEWS)
+    shown_views = [name for name in _first_column("variable") if name in views and name not in GENERATION_VIEWS]
+    assert sorted([*shown_views, *generated_views]) == sorted(views)
+
+
+def _names_in_generation_page(heading: str) -> list[str]:
+    """Return the names in the first column of a table of docs/generation.md; a row may name several."""
+    table = (ROOT / "docs" / "generation.md").read_text().partition(f"\n| {heading} |")[2].partition("\n\n")[0]
+    cells = re.findall(r"^\| (`[^|]*`) \|", table, re.MULTILINE)
+    return [name for cell in cells for name in re.findall(r"`(\w+)`", cell)]

@@ -1,0 +1,133 @@
+"""Filters of templates that write code: text as a string, a comment or a word of a language, names as its identifiers.
+
+Whatever the text says, it stays inside of what the filter makes of it. The names in `CODE_FILTERS` are part of
+docs/generation.md.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping
+
+from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
+
+_PLAIN_SHELL_WORD = re.compile(r"[A-Za-z0-9_@%+=:,./-]+\Z", re.ASCII)
+_LINE_BREAKS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ufeff\ud800-\udfff\u200e\u200f\u202a-\u202e\u2066-\u2069]+")
+"""Controls and all that some language or editor takes for the end of a line, or for another direction of writing."""
+_XML_FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_COMMENT_ENDS = (
+    ("*/", "* /"),
+    ("/*", "/ *"),
+    ("?>", "? >"),
+    ("-->", "-- >"),
+    ("<!--", "<! --"),
+    ("--", "- -"),
+    ("??", "? ?"),
+)
+"""What ends or opens a comment in some language, and trigraphs: `??/` is a backslash in old C++."""
+
+
+def _print_text(value: object) -> str:
+    return value if isinstance(value, str) else str(value)
+
+
+def write_python_string(value: object) -> str:
+    """Return text as a string of Python, of printable ASCII."""
+    return '"' + "".join(_escape_python(character) for character in _print_text(value)) + '"'
+
+
+def _escape_python(character: str) -> str:
+    code = ord(character)
+    if character in '"\\':
+        return "\\" + character
+    if 0x20 <= code < 0x7F:  # noqa: PLR2004 - printable ASCII
+        return character
+    short = {"\n": "\\n", "\t": "\\t", "\r": "\\r"}.get(character)
+    return short or (f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}")  # noqa: PLR2004
+
+
+def write_cpp_string(value: object) -> str:
+    """Return text as a string of C++: bytes of UTF-8 in octal where they are not printable ASCII, no trigraphs."""
+    return '"' + "".join(_escape_cpp_byte(byte) for byte in _print_text(value).encode("utf-8", "replace")) + '"'
+
+
+def _escape_cpp_byte(byte: int) -> str:
+    if byte in b'"\\?':
+        return "\\" + chr(byte)
+    # Octal ends after three digits; a hexadecimal escape would take the digits that follow.
+    return chr(byte) if 0x20 <= byte < 0x7F else {10: "\\n", 9: "\\t"}.get(byte) or f"\\{byte:03o}"  # noqa: PLR2004
+
+
+def write_java_string(value: object) -> str:
+    """Return text as a string of Java. Its unicode escapes are read before anything else: quotes and ends of lines have others."""
+    units = _print_text(value).encode("utf-16-be", "surrogatepass")
+    codes = (int.from_bytes(units[position : position + 2], "big") for position in range(0, len(units), 2))
+    return '"' + "".join(_escape_java_unit(code) for code in codes) + '"'
+
+
+def _escape_java_unit(code: int) -> str:
+    character = chr(code)
+    short = {"\n": "\\n", "\r": "\\r", "\t": "\\t", '"': '\\"', "\\": "\\\\", "\f": "\\f", "\b": "\\b"}.get(character)
+    if short:
+        return short
+    return character if 0x20 <= code < 0x7F else f"\\u{code:04x}" if code >= 0x20 else f"\\{code:03o}"  # noqa: PLR2004
+
+
+def write_xml(value: object) -> str:
+    """Return text for an element or a quoted attribute of XML; characters that XML cannot hold are replaced."""
+    text = _XML_FORBIDDEN.sub("\ufffd", _print_text(value))
+    for character, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;"), ("'", "&#39;")):
+        text = text.replace(character, entity)
+    # In an attribute a parser makes blanks of these, unless they are written so.
+    return text.replace("\r", "&#13;").replace("\n", "&#10;").replace("\t", "&#9;")
+
+
+def write_yaml_scalar(value: object) -> str:
+    """Return a value as a scalar of YAML on one line; text is quoted, so that `no` and `1.0` stay texts."""
+    if value is None or isinstance(value, bool | int):
+        return json.dumps(value)
+    if isinstance(value, float):
+        # YAML 1.1 takes `1e+16` for a text: a number of it has a point.
+        text = repr(value) if "." in repr(value) else repr(value).replace("e", ".0e")
+        return {"inf": ".inf", "-inf": "-.inf", "nan": ".nan"}.get(text, text)
+    text = _print_text(value).encode("utf-16", "replace").decode("utf-16", "replace")
+    # The escapes of Python are those of YAML as well.
+    return (
+        '"' + "".join(each if each.isprintable() and each not in '"\\' else _escape_python(each) for each in text) + '"'
+    )
+
+
+def write_shell_word(value: object) -> str:
+    """Return text as one word of a POSIX shell. No program can be given the character NUL: it is left out."""
+    text = _print_text(value).replace("\0", "")
+    if _PLAIN_SHELL_WORD.match(text):
+        return text
+    return "'" + text.replace("'", "'\"'\"'") + "'"
+
+
+def write_line_comment(value: object) -> str:
+    """Return text for a comment of one line in any language: it ends no comment, and continues on no next line."""
+    # A backslash joins lines in C++ and starts the unicode escapes of Java, wherever they stand.
+    text = " ".join(_LINE_BREAKS.sub(" ", _print_text(value)).split()).replace("\\", "/")
+    for _ in range(2):
+        for mark, replacement in _COMMENT_ENDS:
+            text = text.replace(mark, replacement)
+    return text
+
+
+CODE_FILTERS: Mapping[str, Callable[[object], str]] = {
+    "camel": lambda value: make_camel_name(_print_text(value)),
+    "cpp_name": lambda value: make_identifier_in("cpp", _print_text(value)),
+    "cpp_string": write_cpp_string,
+    "java_name": lambda value: make_identifier_in("java", _print_text(value)),
+    "java_string": write_java_string,
+    "line_comment": write_line_comment,
+    "python_name": lambda value: make_identifier_in("python", _print_text(value)),
+    "python_string": write_python_string,
+    "ros_name": lambda value: make_ros_name(_print_text(value)),
+    "shell_word": write_shell_word,
+    "snake": lambda value: make_snake_name(_print_text(value)),
+    "xml": write_xml,
+    "yaml_scalar": write_yaml_scalar,
+}

@@ -1,0 +1,1 @@
+"""Write generated files into a folder that holds other people's files too."""

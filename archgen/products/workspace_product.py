@@ -1,0 +1,180 @@
+"""A workspace made by a backend: its files are rendered, what the folder holds is compared, then all is written or nothing."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.emit.backend_manifests import Backend
+from archgen.emit.file_tree import OutputError
+from archgen.emit.workspace import workspace_writing
+from archgen.emit.workspace.disk_files import DiskReader
+from archgen.emit.workspace.generated_file import GeneratedFile, fold_path
+from archgen.emit.workspace.run_record import read_other_records, read_run_record
+from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
+from archgen.pipeline import CheckedProject
+from archgen.products.backend_products import choose_backends, make_backend_views, raise_problems
+from archgen.products.output_options import OutputOptions
+from archgen.products.product_inputs import ProductInputs
+from archgen.products.product_writing import refuse_leaving_links
+from archgen.views.generation.architecture_needs import find_unmet_needs
+from archgen.views.generation.generation_context import GenerationContext
+
+
+@dataclass(frozen=True, slots=True)
+class WorkspaceRequest:
+    """What of a workspace is asked for: a host alone, single files taken or kept, other options, nothing but a look."""
+
+    host: str | None = None
+    options: Mapping[str, str] = field(default_factory=dict)
+    overwritten: Sequence[str] = ()
+    kept: Sequence[str] = ()
+    only_look: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WorkspaceResult:
+    """What was done, or would be: the folder, the plan, and what could not be generated."""
+
+    folder: Path
+    plan: WorkspacePlan | None
+    """None where nothing is written, since the findings say that it would be wrong."""
+    findings: tuple[Diagnostic, ...] = ()
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the workspace is now what the architecture says, but for the user's own files."""
+        has_errors = any(each.effective_severity is Severity.ERROR for each in self.findings)
+        return self.plan is not None and not self.plan.conflicts and not has_errors
+
+
+def write_workspace(
+    checked_project: CheckedProject,
+    options: OutputOptions,
+    backend_name: str,
+    target: Path | None = None,
+    request: WorkspaceRequest = WorkspaceRequest(),
+) -> WorkspaceResult:
+    """Write the workspace of a backend into a folder, by default its own among the outputs.
+
+    Raise OutputError where no backend of this name makes a workspace, where its templates fail, and where the folder
+    cannot be used.
+    """
+    (backend,) = choose_backends(checked_project, (backend_name,), "workspace", options.trusted_revision)
+    backend = _set_options(backend, request.options)
+    folder = target or checked_project.output_folder / backend.id
+    refuse_leaving_links(checked_project, folder)
+    files, findings = _render_files(checked_project, options, backend, request.host)
+    if files is None:
+        return WorkspaceResult(folder, None, findings)
+    run = _name_run(checked_project, options, request.host)
+    return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
+
+
+def _set_options(backend: Backend, options: Mapping[str, str]) -> Backend:
+    """Return a backend with other values for some of its options. Raise OutputError for one that it has not."""
+    for name in options:
+        known_names = [each for each, value in backend.options.items() if isinstance(value, str)]
+        if name not in known_names:
+            msg = f"the backend `{backend.id}` has no option `{name}`"
+            known = f"it has {', '.join(known_names)}" if known_names else "it has none"
+            raise OutputError(msg, did_you_mean(name, known_names) or known)
+    return replace(backend, options={**backend.options, **options})
+
+
+def _render_files(
+    checked_project: CheckedProject, options: OutputOptions, backend: Backend, host: str | None
+) -> tuple[tuple[GeneratedFile, ...] | None, tuple[Diagnostic, ...]]:
+    """Return the files of a backend, and what could not be generated; no files where its needs do not hold."""
+    from archgen.emit import text
+
+    architecture, selection = checked_project.architecture, options.selection
+    context = GenerationContext(
+        architecture,
+        selection.components if selection else None,
+        selection.nodes if selection else None,
+        host,
+        backend.options,
+    )
+    unmet_needs = tuple(find_unmet_needs(context, backend.needs))
+    if unmet_needs:
+        return None, unmet_needs
+    views, findings = make_backend_views(ProductInputs(checked_project, options), backend, context)
+    files, problems = text.render_workspace(backend, views)
+    raise_problems(problems)
+    return files, findings
+
+
+def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str | None) -> str:
+    """Name what a run makes: the project, and the part of it that is asked for. A variant changes what its files say."""
+    words = [checked_project.architecture.project.id]
+    if options.selector_text:
+        words += ["--select", " ".join(options.selector_text.split())]
+    if host:
+        words += ["--host", host]
+    return " ".join(words)
+
+
+def _write_files(
+    files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
+) -> WorkspacePlan:
+    """Plan, and unless only a look is asked for, do what is planned."""
+    _refuse_unusable(folder)
+    try:
+        if request.only_look:
+            return _plan_files(files, backend, folder, run, request)
+        with workspace_writing.lock_workspace(folder):
+            plan = _plan_files(files, backend, folder, run, request)
+            workspace_writing.carry_out(plan, folder)
+            return plan
+    except OSError as error:
+        msg = f"cannot write {error.filename or folder}: {error.strerror or error}"
+        raise OutputError(msg, "no file is half written; run this again when that is mended") from error
+
+
+def _refuse_unusable(folder: Path) -> None:
+    if folder.exists() and not folder.is_dir():
+        msg = f"{folder} is a file, not a folder"
+        raise OutputError(msg, "give another folder with `-o`")
+
+
+def _plan_files(
+    files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
+) -> WorkspacePlan:
+    other_backends = read_other_records(folder, backend.id)
+    for file in files:
+        other = other_backends.get(fold_path(file.path))
+        if other:
+            msg = f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`"
+            raise OutputError(
+                msg,
+                f"nothing was changed; give another folder with `-o`, or remove `.archgen/{other}.json` if that one is not used here any more",
+            )
+    record = read_run_record(folder, backend.id)
+    known_paths = {*record.files, *(file.path for file in files)}
+    choices = UserChoices(
+        _find_named_paths(request.overwritten, folder, known_paths),
+        _find_named_paths(request.kept, folder, known_paths),
+    )
+    return plan_workspace(record, run, files, DiskReader(folder), choices)
+
+
+def _find_named_paths(names: Sequence[str], folder: Path, known_paths: set[str]) -> frozenset[str]:
+    """Return the files that somebody names: relative to the workspace, or from where he stands; a folder names all below."""
+    found_paths = set[str]()
+    for name in names:
+        spellings = [name.replace("\\", "/").removeprefix("./").rstrip("/")]
+        with contextlib.suppress(ValueError):
+            spellings.append(Path(name).resolve().relative_to(folder.resolve()).as_posix())
+        named_paths = {
+            path for path in known_paths if any(path == each or path.startswith(f"{each}/") for each in spellings)
+        }
+        if not named_paths:
+            msg = f"this backend makes no file `{name}` here"
+            raise OutputError(msg, did_you_mean(name, sorted(known_paths)) or "`--dry-run` shows all files")
+        found_paths |= named_paths
+    return frozenset(found_paths)

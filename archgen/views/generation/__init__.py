@@ -1,0 +1,23 @@
+"""What generators of code and configuration are made from: plain data, computed for the backends that name it.
+
+Each view has a module of its own with a function `make_view(context)`, and a line in `GENERATION_VIEWS` by the name that
+manifests write below `view`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from archgen.views.generation.generation_context import GeneratedView, GenerationContext
+
+
+def _make_interfaces(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import interface_packages
+
+    return interface_packages.make_view(context)
+
+
+GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
+    "interfaces": _make_interfaces,
+}
+"""The functions that make the views, by name. Modules are imported for the views that a backend asks for."""

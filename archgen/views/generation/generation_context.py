@@ -1,0 +1,87 @@
+"""What a view for generators is made from, and what it gives back: plain data, and what could not be generated."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node
+from archgen.model.ros_distro import is_ros_1
+
+NOT_GENERATED = Rule(
+    "not-generated",
+    Severity.ERROR,
+    "Something of the architecture cannot be generated.\n\n"
+    "Why: a generator leaves out what it lacks words for, and makes the rest. What is left out is an error, since the "
+    "workspace is not what the architecture says.",
+    fixed=True,
+)
+"""What `archgen generate` says of an element that is left out. `archgen check` never says it."""
+
+
+@dataclass(frozen=True, slots=True)
+class GeneratedView:
+    """A view: dicts, lists, texts and numbers for templates, and what of the architecture is not in it."""
+
+    data: Mapping[str, Any]
+    findings: tuple[Diagnostic, ...] = ()
+
+
+# Without slots: `cached_property` stores its values in the object's dictionary.
+@dataclass(frozen=True)
+class GenerationContext:
+    """The architecture, in the variant and after the passes that were asked for, and the part to generate from."""
+
+    architecture: Architecture
+    components: frozenset[str] | None = None
+    """The complete ids of the components that `--select` names; None for all."""
+    nodes: frozenset[str] | None = None
+    host: str | None = None
+    """The only host to generate for; None for all."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """What the manifest says under `options`, as texts, with what `--option` says instead."""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether everything is asked for."""
+        return self.components is None and self.host is None
+
+    @cached_property
+    def wanted_nodes(self) -> Mapping[str, Node]:
+        """The nodes to generate for, by id: the selected ones, on the host that is asked for."""
+        return {
+            node.id: node
+            for node in self.architecture.nodes.values()
+            if (self.nodes is None or node.id in self.nodes) and (self.host is None or node.host == self.host)
+        }
+
+    @cached_property
+    def wanted_components(self) -> Collection[str]:
+        """The complete ids of the components to generate for, in their order: with a host those that its nodes implement."""
+        implemented = {leaf for node in self.wanted_nodes.values() for leaf in node.implements}
+        return {
+            component_id: None
+            for component_id in self.architecture.components
+            if (self.components is None or component_id in self.components)
+            and (self.host is None or component_id in implemented)
+        }
+
+    @property
+    def ros_generation(self) -> int:
+        """The generation of ROS to generate for, 1 or 2: the option `ros`, else that of the project's distribution."""
+        return {"1": 1, "2": 2}.get(self.options.get("ros", ""), 1 if is_ros_1(self.architecture.distro) else 2)
+
+
+def write_place(span: Span) -> str:
+    """Return where an element is written, as `place` of what is generated for it; empty where it is written nowhere."""
+    return "" if span == NO_SPAN else str(span)
+
+
+def tell_left_out(message: str, span: Span, *, element: str | None = None, help_line: str | None = None) -> Diagnostic:
+    """Report what a generator leaves out, and what to do about it."""
+    return Diagnostic(NOT_GENERATED.name, message, span, NOT_GENERATED.severity, help=help_line, element=element)

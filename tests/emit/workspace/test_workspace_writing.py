@@ -1,0 +1,409 @@
+"""Writing into a folder that holds other people's files: whose each is, and what an interruption at any step leaves."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+import pytest
+
+from archgen.emit.file_tree import OutputError
+from archgen.emit.workspace import workspace_writing
+from archgen.emit.workspace.disk_files import DiskReader
+from archgen.emit.workspace.generated_file import GeneratedFile, find_path_problems
+from archgen.emit.workspace.run_record import read_other_records, read_run_record, write_run_record
+from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
+from tests.running import contents
+
+NO_CHOICES = UserChoices()
+
+
+def files(**texts: str) -> list[GeneratedFile]:
+    """Make files by path, with `__` for a slash."""
+    return [GeneratedFile(path.replace("__", "/"), text.encode()) for path, text in texts.items()]
+
+
+def generate(
+    folder: Path,
+    made: Iterable[GeneratedFile],
+    run: str = "robot",
+    backend: str = "code",
+    choices: UserChoices = NO_CHOICES,
+) -> WorkspacePlan:
+    """Write files as a run of a backend does."""
+    with workspace_writing.lock_workspace(folder):
+        plan = plan_workspace(read_run_record(folder, backend), run, made, DiskReader(folder), choices)
+        workspace_writing.carry_out(plan, folder)
+    return plan
+
+
+def verbs(plan: WorkspacePlan) -> dict[str, str]:
+    return {step.path: step.verb for step in plan.steps}
+
+
+def texts(folder: Path) -> dict[str, str]:
+    """Return what stands in a workspace, without what archgen knows of it."""
+    return {
+        path: data.decode()
+        for name, data in contents(folder).items()
+        if data is not None and not (path := str(name)).startswith(".archgen")
+    }
+
+
+def test_files_of_others_stay_and_own_ones_follow(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert verbs(generate(tmp_path, files(a="1", b__c="2"))) == {"a": "new", "b/c": "new"}
+    assert verbs(generate(tmp_path, files(a="1!", d="3"))) == {"a": "changed", "b/c": "removed", "d": "new"}
+    assert texts(tmp_path) == {"mine.txt": "mine", "a": "1!", "d": "3"}
+    assert not (tmp_path / "b").exists()
+    assert verbs(generate(tmp_path, [])) == {"a": "removed", "d": "removed"}
+    assert texts(tmp_path) == {"mine.txt": "mine"}
+    assert not (tmp_path / ".archgen").exists()
+
+
+def test_what_is_the_same_is_not_touched(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1", b="2"))
+    stamps = {path: path.stat().st_mtime_ns for path in (tmp_path / "a", tmp_path / ".archgen" / "code.json")}
+    for path in stamps:
+        os.utime(path, ns=(1, 1))
+    assert verbs(generate(tmp_path, files(b="2", a="1"))) == {"a": "same", "b": "same"}
+    assert {path: path.stat().st_mtime_ns for path in stamps} == dict.fromkeys(stamps, 1)
+
+
+def test_an_edited_file_is_left_until_its_owner_decides(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1", b="1", c="1"))
+    for name in "abc":
+        (tmp_path / name).write_text("by hand")
+    for _ in range(2):
+        assert verbs(generate(tmp_path, files(a="2", b="2", c="2"))) == dict.fromkeys("abc", "edited")
+        assert set(texts(tmp_path).values()) == {"by hand"}
+    choices = UserChoices(overwritten=("a",), kept=("b",))
+    assert verbs(generate(tmp_path, files(a="2", b="2"), choices=choices)) == {
+        "a": "changed",
+        "b": "yours",
+        "c": "left",
+    }
+    assert texts(tmp_path) == {"a": "2", "b": "by hand", "c": "by hand"}
+    assert verbs(generate(tmp_path, files(a="3", b="3"))) == {"a": "changed", "b": "yours"}
+    assert verbs(generate(tmp_path, files(b="3"), choices=UserChoices(overwritten=("b",)))) == {
+        "a": "removed",
+        "b": "changed",
+    }
+    assert texts(tmp_path) == {"b": "3", "c": "by hand"}
+
+
+def test_an_edited_file_that_becomes_what_is_made_is_archgens_again(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1"))
+    (tmp_path / "a").write_text("2")
+    assert verbs(generate(tmp_path, files(a="2"))) == {"a": "same"}
+    assert verbs(generate(tmp_path, files(a="3"))) == {"a": "changed"}
+
+
+def test_a_file_of_the_users_is_never_replaced(tmp_path: Path) -> None:
+    (tmp_path / "a").write_text("mine")
+    assert verbs(generate(tmp_path, files(a="1", b="1"))) == {"a": "foreign", "b": "new"}
+    assert verbs(generate(tmp_path, files(a="1"), choices=UserChoices(overwritten=("a",)))) == {
+        "a": "foreign",
+        "b": "removed",
+    }
+    assert verbs(generate(tmp_path, files(a="1"), choices=UserChoices(kept=("a",)))) == {"a": "yours"}
+    assert verbs(generate(tmp_path, [])) == {"a": "yours"}
+    assert texts(tmp_path) == {"a": "mine"}
+
+
+def test_a_file_made_once_is_the_users(tmp_path: Path) -> None:
+    def once(text: str, *words: str) -> list[GeneratedFile]:
+        return [GeneratedFile("own.py", text.encode(), once=True, expected_words=words)]
+
+    assert verbs(generate(tmp_path, once("def on_scan(): ..."))) == {"own.py": "new"}
+    plan = generate(tmp_path, once("another", "on_scan", "on_image", "scan"))
+    assert [(step.verb, step.note) for step in plan.steps] == [("yours", "it lacks on_image, scan")]
+    assert texts(tmp_path) == {"own.py": "def on_scan(): ..."}
+    assert verbs(generate(tmp_path, [])) == {"own.py": "yours"}
+    assert verbs(generate(tmp_path, [])) == {}
+    assert texts(tmp_path) == {"own.py": "def on_scan(): ..."}
+    (tmp_path / "own.py").unlink()
+    assert verbs(generate(tmp_path, once("another"))) == {"own.py": "new"}
+
+
+def test_programs_may_be_run(tmp_path: Path) -> None:
+    def mode() -> int:
+        return (tmp_path / "run").stat().st_mode & 0o777
+
+    made = GeneratedFile("run", b"1", executable=True)
+    old_mask = os.umask(0o027)
+    try:
+        generate(tmp_path, [made])
+        assert mode() == 0o750
+        (tmp_path / "run").chmod(0o644)
+        assert verbs(generate(tmp_path, [made])) == {"run": "changed"}
+        assert mode() == 0o755
+        generate(tmp_path, [GeneratedFile("run", b"2", executable=True)])
+        assert mode() == 0o755
+        generate(tmp_path, [GeneratedFile("run", b"2")])
+        assert mode() == 0o644
+    finally:
+        os.umask(old_mask)
+
+
+def test_partners_generate_their_parts_in_one_folder(tmp_path: Path) -> None:
+    generate(tmp_path, files(common="1", a="1"), "robot --select owner:a")
+    generate(tmp_path, files(common="1", b="1"), "robot --select owner:b")
+    assert verbs(generate(tmp_path, files(common="2"), "robot --select owner:a")) == {
+        "a": "removed",
+        "common": "changed",
+    }
+    assert texts(tmp_path) == {"common": "2", "b": "1"}
+    generate(tmp_path, [], "robot --select owner:a")
+    assert texts(tmp_path) == {"common": "2", "b": "1"}
+    generate(tmp_path, [], "robot --select owner:b")
+    assert texts(tmp_path) == {}
+
+
+def test_two_backends_know_of_each_other(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1"), backend="code")
+    generate(tmp_path, files(b="1"), backend="other")
+    assert read_other_records(tmp_path, "code") == {"b": "other"}
+    assert verbs(generate(tmp_path, [], backend="other")) == {"b": "removed"}
+    assert texts(tmp_path) == {"a": "1"}
+
+
+@pytest.mark.parametrize("change", [("a", "a/b"), ("a/b", "a"), ("A", "a"), ("x/A", "X/a")])
+def test_a_file_takes_the_place_of_a_folder_and_of_another_case(tmp_path: Path, change: tuple[str, str]) -> None:
+    old, new = change
+    generate(tmp_path, [GeneratedFile(old, b"1")])
+    assert verbs(generate(tmp_path, [GeneratedFile(new, b"2")])) == {old: "removed", new: "new"}
+    assert texts(tmp_path) == {new: "2"}
+
+
+def test_links_are_not_followed(tmp_path: Path) -> None:
+    outside, folder = tmp_path / "outside", tmp_path / "ws"
+    outside.mkdir()
+    (outside / "f").write_text("outside")
+    folder.mkdir()
+    (folder / "d").symlink_to(outside)
+    (folder / "f").symlink_to(outside / "f")
+    (folder / "g").mkdir()
+    (folder / "g" / "mine").touch()
+    plan = generate(folder, files(d__f="1", f="1", g="1", h="1"))
+    assert [(step.path, step.verb, step.note) for step in plan.steps] == [
+        ("d/f", "blocked", "`d` is a link"),
+        ("f", "blocked", "`f` is a link"),
+        ("g", "blocked", "`g` is a folder"),
+        ("h", "new", ""),
+    ]
+    assert contents(outside) == {"f": b"outside"}
+    # One that was a folder of archgen's before.
+    generate(folder, files(h="1", k__f="outside", k__deep__f="1"))
+    shutil.rmtree(folder / "k")
+    (folder / "k").symlink_to(outside)
+    (outside / "deep").mkdir()
+    assert verbs(generate(folder, files(h="1"))) == {"h": "same"}
+    assert contents(outside) == {"f": b"outside"}
+    assert (outside / "deep").is_dir()
+
+
+def test_a_record_that_is_a_link_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "ws").mkdir()
+    (tmp_path / "ws" / ".archgen").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(OutputError, match="is a link"):
+        generate(tmp_path / "ws", files(a="1"))
+    assert list((tmp_path / "elsewhere").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "[]",
+        '{"archgen": 2, "files": {}}',
+        '{"archgen": 1, "files": {"../x": {"sha256": "0", "runs": []}}}',
+        '{"archgen": 1, "files": {".git/hooks/x": {"sha256": "0", "runs": []}}}',
+        '{"archgen": 1, "files": {"/x": {"sha256": "0", "runs": []}}}',
+        '{"archgen": 1, "files": {"x": {"sha256": 3, "runs": []}}}',
+        '{"archgen": 1, "files": {"x": []}}',
+        "<<<<<<< ours",
+        "[" * 100_000,
+    ],
+)
+def test_a_damaged_record_is_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / ".archgen").mkdir()
+    (tmp_path / ".archgen" / "code.json").write_text(text)
+    with pytest.raises(OutputError, match="does not say what archgen wrote"):
+        generate(tmp_path, files(a="1"))
+    assert texts(tmp_path) == {}
+
+
+def test_a_record_says_what_it_read(tmp_path: Path) -> None:
+    made = [*files(a="1", b__ä="2"), GeneratedFile("c", b"3", executable=True), GeneratedFile("d", b"4", once=True)]
+    (tmp_path / "e").write_text("own")
+    generate(tmp_path, [*made, *files(e="5")], choices=UserChoices(kept=("e",)))
+    record = read_run_record(tmp_path, "code")
+    assert set(record.files) == {"a", "b/ä", "c", "d", "e"}
+    assert write_run_record(record) == (tmp_path / ".archgen" / "code.json").read_bytes()
+
+
+def test_another_archgen_waits(tmp_path: Path) -> None:
+    with workspace_writing.lock_workspace(tmp_path), pytest.raises(OutputError, match="another archgen"):
+        generate(tmp_path, files(a="1"))
+
+
+class _Killed(BaseException):
+    """The process ends here."""
+
+
+def _count_steps(monkeypatch: pytest.MonkeyPatch, last_step: int) -> Callable[[], int]:
+    """Let the process die in front of the given step: each change of the disk is one. Return how many there were."""
+    done = [0]
+
+    def watch(owner: object, name: str) -> None:
+        real = getattr(owner, name)
+
+        def step(*words: object, **named: object) -> object:
+            if done[0] == last_step:
+                raise _Killed
+            done[0] += 1
+            return real(*words, **named)
+
+        monkeypatch.setattr(owner, name, step)
+
+    for name in ("mkdir", "write_bytes", "unlink", "rmdir", "chmod"):
+        watch(Path, name)
+    watch(os, "replace")
+    # A killed process cleans nothing up.
+    monkeypatch.setattr(shutil, "rmtree", lambda *_words, **_named: None)
+    return lambda: done[0]
+
+
+OLD = [
+    *files(same="=", changed="old", gone__deep__x="old", swap="old", made__x="x"),
+    GeneratedFile("run", b"#!", executable=True),
+]
+NEW = [
+    *files(same="=", changed="new", swap__inner="new", made="now a file", fresh__y="new"),
+    GeneratedFile("run", b"#!"),
+    GeneratedFile("go", b"#!", executable=True),
+    GeneratedFile("own", b"1", once=True),
+]
+
+
+def _list_steps(tmp_path: Path) -> Iterator[int]:
+    """Yield the steps of writing NEW over OLD, one for each that can be the last."""
+    folder = tmp_path / "counted"
+    generate(folder, OLD)
+    with pytest.MonkeyPatch.context() as patch:
+        count = _count_steps(patch, -1)
+        generate(folder, NEW)
+    yield from range(count())
+
+
+def test_a_run_that_is_killed_at_any_step_is_healed_by_the_next(tmp_path: Path) -> None:
+    steps = list(_list_steps(tmp_path))
+    assert len(steps) > 15
+    clean = tmp_path / "clean"
+    generate(clean, NEW)
+    old_texts, new_texts = ({each.path: each.data.decode() for each in made} for made in (OLD, NEW))
+    for step in steps:
+        folder = tmp_path / f"killed{step}"
+        generate(folder, OLD)
+        (folder / "mine").write_text("mine")
+        with pytest.MonkeyPatch.context() as patch:
+            _count_steps(patch, step)
+            with pytest.raises(_Killed):
+                generate(folder, NEW)
+        for path, text in texts(folder).items():
+            assert text in {old_texts.get(path), new_texts.get(path), "mine"}, (step, path)
+        # What is known is true: no file that archgen wrote is taken for one that somebody edited.
+        again = generate(folder, NEW)
+        assert not again.conflicts, step
+        assert "left" not in verbs(again).values(), step
+        (folder / "mine").unlink()
+        assert contents(folder) == contents(clean), step
+        # And back: what the killed run began is known to one that does not want it.
+        assert set(verbs(generate(folder, [])).values()) <= {"removed", "yours"}
+
+
+def test_what_a_killed_run_began_can_be_dropped_at_once(tmp_path: Path) -> None:
+    for step in _list_steps(tmp_path):
+        folder = tmp_path / f"killed{step}"
+        generate(folder, OLD)
+        with pytest.MonkeyPatch.context() as patch:
+            _count_steps(patch, step)
+            with pytest.raises(_Killed):
+                generate(folder, NEW)
+        generate(folder, [])
+        # The user's own file stays; nothing else does, not even a folder.
+        assert {path.name for path in folder.rglob("*")} <= {"own"}, step
+
+
+def test_a_full_disk_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    generate(tmp_path, OLD)
+    before = contents(tmp_path)
+    real_write = Path.write_bytes
+
+    def write(path: Path, data: bytes) -> int:
+        if data == b"new":
+            raise OSError(28, "No space left on device")
+        return real_write(path, data)
+
+    monkeypatch.setattr(Path, "write_bytes", write)
+    with pytest.raises(OSError, match="No space"):
+        generate(tmp_path, NEW)
+    assert contents(tmp_path) == before
+
+
+def test_a_closed_folder_is_said_before_anything_is_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    generate(tmp_path, files(a="1", closed__b="1"))
+    before = contents(tmp_path)
+    monkeypatch.setattr(os, "access", lambda path, _mode: Path(path).name != "closed")
+    with pytest.raises(OutputError, match="closed may not be written"):
+        generate(tmp_path, files(a="2", closed__b="2"))
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    ("paths", "problem"),
+    [
+        (["a/b.py", "c.py"], None),
+        (
+            ["Node.py", "node.py"],
+            "`Node.py` (x.yaml:1:1) and `node.py` (x.yaml:2:1) fall together: on many systems they are one file",
+        ),
+        (["a", "a"], "`a` (x.yaml:1:1) and `a` (x.yaml:2:1) fall together: two files of one name"),
+        (
+            ["a", "A/b"],
+            "`a` (x.yaml:1:1) and `A/b` (x.yaml:2:1) fall together: one is a file where the other needs a folder",
+        ),
+        (
+            ["A/b", "a"],
+            "`A/b` (x.yaml:1:1) and `a` (x.yaml:2:1) fall together: one is a file where the other needs a folder",
+        ),
+        (["\u00e9", "e\u0301"], "fall together"),
+        (["../a"], "`../a` (x.yaml:1:1) is no path that every system takes"),
+        (["/a"], "is no path"),
+        (["a//b"], "is no path"),
+        (["a/./b"], "is no path"),
+        (["con.py"], "is no path"),
+        (["a/NUL"], "is no path"),
+        (["a:b"], "is no path"),
+        (["a\\b"], "is no path"),
+        (["a "], "is no path"),
+        (["a."], "is no path"),
+        (["a\nb"], "is no path"),
+        ([".git/hooks/pre-commit"], "leads into a folder of another tool"),
+        (["x/.GIT/config"], "leads into a folder of another tool"),
+        (["GIT~1/config"], "leads into a folder of another tool"),
+        ([".archgen/code.json"], "leads into a folder of another tool"),
+        (["a" * 300], "has a part of more than 200 bytes"),
+        (["a/" * 60 + "b"], "is too long a path"),
+    ],
+)
+def test_paths_that_are_refused(paths: list[str], problem: str | None) -> None:
+    made = [GeneratedFile(path, b"", place=f"x.yaml:{number}:1") for number, path in enumerate(paths, start=1)]
+    found = list(find_path_problems(made))
+    assert len(found) == (problem is not None)
+    assert problem is None or problem in found[0]
