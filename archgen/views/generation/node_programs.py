@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span, first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
@@ -16,6 +17,10 @@ from archgen.views.generation.program_parameters import list_node_values, record
 from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports
 
 _NANOSECONDS = 10**9
+_IMPORTED_CLASSES = frozenset(
+    ["ActionClient", "ActionServer", "Duration", "DurabilityPolicy", "ExternalShutdownException", "FloatingPointRange", "HistoryPolicy", "IntegerRange", "LifecycleNode", "LivelinessPolicy", "MultiThreadedExecutor", "Node", "Parameter", "ParameterDescriptor", "QoSProfile", "ReentrantCallbackGroup", "ReliabilityPolicy", "SetParametersResult", "TransitionCallbackReturn"]
+)
+"""What the modules of nodes import of rclpy: a message of this name is imported under another one."""
 
 
 def make_view(context: GenerationContext) -> GeneratedView:
@@ -29,12 +34,16 @@ def make_view(context: GenerationContext) -> GeneratedView:
     endpoints = _index_endpoints(context.architecture)
     programs: dict[tuple[str, str], list[Node]] = {}
     for node in nodes:
-        programs.setdefault((name_package(context.architecture, node), name_program(context.architecture, node)), []).append(node)
+        programs.setdefault(
+            (name_package(context.architecture, node), name_program(context.architecture, node)), []
+        ).append(node)
     findings: list[Diagnostic] = list(_find_mixed_packages(context, programs, language))
     packages: dict[str, dict[str, object]] = {}
     records: list[dict[str, object]] = []
     for (package_name, program_name), program_nodes in sorted(programs.items()):
-        record, program_findings = _record_program(context.architecture, package_name, program_name, program_nodes, endpoints)
+        record, program_findings = _record_program(
+            context.architecture, package_name, program_name, program_nodes, endpoints
+        )
         records.append(record)
         findings += program_findings
         package = packages.setdefault(
@@ -45,10 +54,12 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 "language": language,
                 "programs": [],
                 "dependencies": [],
-                "place": write_place(program_nodes[0].at),
+                "has_values": False,
+                "place": write_place(_find_place(context.architecture, program_nodes[0])),
             },
         )
         package["programs"].append(record)  # type: ignore[attr-defined]
+        package["has_values"] |= any(each["parameters"] for each in record["nodes"])  # type: ignore[attr-defined,operator]
     for package in packages.values():
         used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
         package["dependencies"] = sorted(used)
@@ -80,7 +91,9 @@ def name_program(architecture: Architecture, node: Node) -> str:
 
 
 def _is_generated(node: Node, language: str) -> bool:
-    return node.status != "existing" and not node.is_program and (node.language or "python") == language
+    # What a container loads is a library of C++.
+    usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
+    return node.status != "existing" and not node.is_program and (node.language or usual_language) == language
 
 
 def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:
@@ -135,7 +148,7 @@ def _record_program(
         "description": first.description or " ".join(functionalities),
         "is_lifecycle": "lifecycle" in first.kinds,
         "is_composable": "composable" in first.kinds,
-        "nodes": [_record_node(architecture, each, endpoints) for each in nodes],
+        "nodes": [_record_node(architecture, each, sections) for each in nodes],
         "node_name": first.name if len(nodes) == 1 else make_ros_name(program_name),
         "namespace": first.namespace if len(nodes) == 1 else "/",
         "threads": first.threads,
@@ -144,14 +157,14 @@ def _record_program(
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),
-        "python_imports": _list_python_imports(sections),
-        "place": write_place(first.at),
+        "python_imports": _import_in_python(sections, make_camel_name(program_name)),
+        "place": write_place(_find_place(architecture, first)),
     }
     return record, [*findings, *parameter_findings]
 
 
 def _record_node(
-    architecture: Architecture, node: Node, endpoints: Mapping[str, Sequence[Endpoint]]
+    architecture: Architecture, node: Node, sections: Mapping[str, Sequence[Mapping[str, object]]]
 ) -> dict[str, object]:
     return {
         "id": node.id,
@@ -160,9 +173,25 @@ def _record_node(
         "full_name": node.full_name,
         "implements": list(node.implements),
         "parameters": list_node_values(architecture, node),
-        "endpoints": len(endpoints.get(node.id, ())),
-        "place": write_place(node.at),
+        "remaps": list(_list_remaps(node, sections)),
+        "place": write_place(_find_place(architecture, node)),
     }
+
+
+def _list_remaps(node: Node, sections: Mapping[str, Sequence[Mapping[str, object]]]) -> Iterator[dict[str, str]]:
+    """Yield which names of the program become others at one of its nodes: `own_name`, and what it becomes, `name`."""
+    for ports in sections.values():
+        for port in ports:
+            name = port["topics"].get(node.id)  # type: ignore[attr-defined]
+            if name is not None and name != port["topic"]:
+                yield {"own_name": str(port["topic"]), "name": name}
+    yield from ({"own_name": own_name, "name": name} for own_name, name in node.remaps.items())
+
+
+def _find_place(architecture: Architecture, node: Node) -> Span:
+    """Return where a node is written; of one that archgen adds, its component."""
+    components = (architecture.components[each] for each in node.implements)
+    return first_written_span(node.at, *(each.at for each in components))
 
 
 def _list_timers(node: Node) -> Iterator[dict[str, object]]:
@@ -173,13 +202,29 @@ def _list_timers(node: Node) -> Iterator[dict[str, object]]:
             period = Fraction(_NANOSECONDS) / timing.rate.value
         if period and timing.behaviour in {None, "periodic"}:
             name = "" if len(node.timing) == 1 else make_snake_name(component.rpartition(".")[2])
-            yield {"key": name, "component": component, "period_ns": round(period)}
+            yield {"key": name, "component": component, "period_ns": round(period), "period_s": _format_seconds(period)}
 
 
-def _list_python_imports(sections: Mapping[str, Sequence[Mapping[str, object]]]) -> list[dict[str, object]]:
-    """Return the modules of messages with the classes that are used of each."""
-    names: dict[str, set[str]] = {}
-    for section in PORT_SECTIONS.values():
-        for port in sections[section]:
-            names.setdefault(f"{port['package']}.{port['kind']}", set()).add(str(port["name"]))
-    return [{"module": module, "names": sorted(each)} for module, each in sorted(names.items())]
+def _format_seconds(duration_ns: Fraction) -> str:
+    """Return a duration in seconds as code has it: `0.1`."""
+    return f"{float(duration_ns) / _NANOSECONDS:.9f}".rstrip("0").removesuffix(".") + (
+        "" if duration_ns % _NANOSECONDS else ".0"
+    )
+
+
+def _import_in_python(sections: Mapping[str, Sequence[dict[str, object]]], class_name: str) -> list[dict[str, object]]:
+    """Return what is imported of which module, and tell each port the class of its message (`python_class`).
+
+    Messages of one name in several packages are told apart by their packages.
+    """
+    ports = [port for section in PORT_SECTIONS.values() for port in sections[section]]
+    modules_by_name: dict[object, set[str]] = {}
+    for port in ports:
+        modules_by_name.setdefault(port["name"], set()).add(f"{port['package']}.{port['kind']}")
+    imports: dict[str, set[str]] = {}
+    for port in ports:
+        module, name = f"{port['package']}.{port['kind']}", str(port["name"])
+        is_taken = len(modules_by_name[name]) > 1 or name in {class_name, f"{class_name}Node", *_IMPORTED_CLASSES}
+        port["python_class"] = f"{make_camel_name(module)}{name}" if is_taken else name
+        imports.setdefault(module, set()).add(f"{name} as {port['python_class']}" if is_taken else name)
+    return [{"module": module, "names": sorted(each)} for module, each in sorted(imports.items())]

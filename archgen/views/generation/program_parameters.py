@@ -98,22 +98,15 @@ def _find_ros_type(parameters: Iterable[EffectiveParameter]) -> str | None:
 
 
 def _infer_ros_type(value: object) -> str:
-    if isinstance(value, bool):
-        return "bool"
-    if isinstance(value, int):
-        return "integer"
-    if isinstance(value, float):
-        return "double"
-    if isinstance(value, str):
-        return "string"
+    """Return the type of a value in ROS; empty for what is none."""
     if isinstance(value, list | tuple):
-        item_types = {_infer_ros_type(each) for each in value}
-        if item_types == {"integer", "double"}:
-            return "double_array"
-        if len(item_types) == 1 and not next(iter(item_types)).endswith("_array"):
-            return f"{next(iter(item_types))}_array"
-        return "" if item_types else "string_array"
-    return ""
+        item_types = {_infer_ros_type(each) for each in value} or {"string"}
+        item_type = "double" if item_types == {"integer", "double"} else item_types.pop()
+        is_plain = item_type in _ROS_TYPES.values() and item_types <= {"integer", "double"}
+        return f"{item_type}_array" if is_plain else ""
+    # A boolean is an integer in Python, but not in ROS.
+    python_types = {bool: "bool", int: "integer", float: "double", str: "string"}
+    return python_types.get(type(value), "")
 
 
 def _convert_value(value: object, ros_type: str) -> object:
