@@ -1,6 +1,6 @@
 """All stages in order, from YAML files to findings. Read this module first for an overview of archgen.
 
-project -> syntax -> schema -> compose -> link -> model -> transform -> analyses -> findings
+project -> syntax -> schema -> compose -> link -> model -> derivation -> analyses -> findings
 
 `archgen.products` goes on from there: views -> emit -> files.
 """
@@ -12,8 +12,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from archgen import analyses, compose, findings, link, project, schema, transform
+from archgen import analyses, compose, derivation, findings, link, project, schema
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
@@ -31,6 +32,7 @@ from archgen.frozen import dataclass, replace
 from archgen.link import (
     chapter_pictures,
     element_outline,
+    hint_checks,
     interface_sources,
     library_merging,
     mapping_values,
@@ -59,6 +61,9 @@ from archgen.syntax import project_files
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, list_spans
 from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import AnalysisMemory
+
+if TYPE_CHECKING:
+    from archgen.passes import Pass, TransformedProject
 
 ALL_RULES: tuple[Rule, ...] = (
     *interface_files.RULES,
@@ -102,6 +107,8 @@ class CheckedProject:
     """The findings that hold in the project itself, whatever its variants give; empty where it has no variants."""
     steps: tuple[str, ...] = ()
     """The variants that are laid over the project as it stands here, in order."""
+    transformed: TransformedProject | None = None
+    """What passes made of the project, None where it is as it was written."""
 
     @property
     def root(self) -> Path:
@@ -260,17 +267,23 @@ def judge_project(
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
-    analysis_memory = analysis_memory or AnalysisMemory()
-    merged_project = _merge_project(loaded_project)
+    return _judge_in_variants(_merge_project(loaded_project), analysis_memory or AnalysisMemory(), variant_names)
+
+
+def _judge_in_variants(
+    merged_project: _MergedProject, analysis_memory: AnalysisMemory, variant_names: Sequence[str] | None
+) -> CheckedProject:
     checked_project = _judge_merged(merged_project, analysis_memory)
     if "variants" not in merged_project.table.entries:
         return checked_project
     from archgen.findings import variant_findings
 
     judge = _VariantJudge(merged_project, checked_project, analysis_memory)
+    judged_names = variant_order.list_judged(checked_project.architecture.variants)
+    analysis_memory.make_room(len(judged_names) + 1)
     variants = {
         name: judge.judge_steps(judge.list_steps([name]))
-        for name in variant_order.list_judged(checked_project.architecture.variants)
+        for name in judged_names
         if variant_names is None or name in variant_names
     }
     judged_projects = {BASE_NAME: checked_project, **variants}
@@ -313,6 +326,42 @@ def stand_in_variants(
     merged_project = _merge_project(checked_project.loaded_project)
     judge = _VariantJudge(merged_project, checked_project, analysis_memory or AnalysisMemory())
     return judge.judge_steps(judge.list_steps(wanted_names))
+
+
+def transform_project(
+    checked_project: CheckedProject,
+    pass_names: Sequence[str],
+    known_passes: Mapping[str, Pass] | None = None,
+    analysis_memory: AnalysisMemory | None = None,
+) -> CheckedProject:
+    """Return what passes make of a checked project, judged again; `transformed` says what was made from what.
+
+    `known_passes` are those that there are by name, None for those that ship with archgen.
+    A project with variants is taken as it stands without them where a pass keeps none: see `stand_in_variants`.
+    Raise `passes.UnknownPassError` for a name that is none of `known_passes`.
+    """
+    # Imported here: hardly any run needs it.
+    from archgen.passes import PASSES, order_passes, run_passes
+
+    known_passes = PASSES if known_passes is None else known_passes
+    ordered_passes = order_passes(pass_names, known_passes)
+    if checked_project.variants and not all(each.keeps_variants for each in ordered_passes):
+        checked_project = stand_in_variants(checked_project, [BASE_NAME])
+    transformed = run_passes(
+        checked_project.loaded_project,
+        checked_project.merged_table,
+        pass_names,
+        checked_project.architecture.interfaces,
+        known_passes,
+    )
+    diagnostics = (*_merge_project(checked_project.loaded_project).diagnostics, *transformed.findings)
+    reading_errors = tuple(_list_structural_errors(checked_project.loaded_project.diagnostics))
+    damaged_elements = frozenset(error.element for error in reading_errors if error.element)
+    merged_project = _MergedProject(
+        checked_project.loaded_project, transformed.root, diagnostics, reading_errors, damaged_elements
+    )
+    judged_project = _judge_in_variants(merged_project, analysis_memory or AnalysisMemory(), None)
+    return replace(judged_project, transformed=transformed, steps=checked_project.steps)
 
 
 def keep_variant_findings(checked_project: CheckedProject, names: Sequence[str]) -> CheckedProject:
@@ -424,8 +473,19 @@ def _merge_project(loaded_project: LoadedProject) -> _MergedProject:
         if "variants" in merged_table.entries
         else ()
     )
-    all_findings = (*merge_findings, *library_findings, *variant_findings)
+    pass_findings = _find_wrong_passes(loaded_project)
+    all_findings = (*merge_findings, *library_findings, *variant_findings, *pass_findings)
     return _MergedProject(loaded_project, merged_table, all_findings, reading_errors, damaged_elements)
+
+
+def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
+    is_folder = loaded_project.first_file == project.PROJECT_FILE
+    if not is_folder or not loaded_project.files.has_path(project.PASS_FOLDER.rstrip("/")):
+        return ()
+    # Imported here: hardly any project has passes of its own.
+    from archgen.passes.patterns.pattern_registry import find_wrong_passes
+
+    return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
 
 
 def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:
@@ -457,7 +517,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     )
     for path, text in read_parameters.texts.items():
         loaded_project.sources.add_text(path, text)
-    architecture = transform.transform_architecture(read_parameters.architecture)
+    architecture = derivation.derive_low_level(read_parameters.architecture)
     commit_day = find_commit_day(loaded_project.files, architecture)
     if commit_day is not None:
         architecture = replace(architecture, commit_day=commit_day)
@@ -475,6 +535,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     missing_verifications = verification_files.find_missing_verifications(
         linked_architecture, loaded_project.files if is_folder else None
     )
+    wrong_hints = tuple(hint_checks.find_wrong_hints(linked_architecture, loaded_project.files)) if is_folder else ()
     linking_errors = _list_structural_errors((*merge_findings, *interface_findings, *link_findings))
     waiting_rules = error_aftermath.list_waiting_rules(
         (*reading_errors, *linking_errors), loaded_project.lost_keys, is_partial=loaded_project.partial
@@ -491,6 +552,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
         *missing_files,
         *named_file_findings,
         *missing_verifications,
+        *wrong_hints,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
             analyses.check_architecture(architecture, analysis, rule_options), reading_errors, waiting_rules

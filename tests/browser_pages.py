@@ -27,6 +27,7 @@ def watch_pages(addresses: tuple[str, ...] = ("file://",)) -> Iterator[Callable[
 
     def watch(page: Page, *, console: bool = True) -> Page:
         contexts.append(page.context)
+        page.set_default_timeout(120_000)
         page.on("request", judge)
         if console:
             page.on("console", lambda message: mistakes.append(message.text))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import sys
@@ -12,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from archgen.derivation import derive_low_level
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
-from archgen.transform import transform_architecture
 from tests import property_sizes
 from tests.linking import link_table
 from tests.running import RAMCIP, REVISION, archgen, made_once
@@ -71,7 +72,7 @@ def derived() -> Callable[[str], Architecture]:
     def derive(text: str) -> Architecture:
         architecture, found = _link(text)
         assert [_line(diagnostic) for diagnostic in found] == []
-        return transform_architecture(architecture)
+        return derive_low_level(architecture)
 
     return derive
 
@@ -95,6 +96,11 @@ def pytest_configure(config: pytest.Config) -> None:
     property_sizes.choose_profile(config)
 
 
+def pytest_collection_finish() -> None:
+    # Fourteen thousand tests stay until the end: nothing is found by looking through them for garbage again and again.
+    gc.freeze()
+
+
 @pytest.fixture(scope="session")
 def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
     """Build the case study with every output, once for all workers; give the folder."""
@@ -111,11 +117,15 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
 def browser() -> Iterator[Browser]:
     """Start Chromium for the tests of one module: while it runs, no test of this process can have an event loop."""
     # Few tests need it, and importing it takes longer than most of them.
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        # Many others may run at the same time, which makes everything late and nothing wrong.
+        expect.set_options(timeout=120_000)
+        started = playwright.chromium.launch(
+            executable_path=chromium, args=["--no-sandbox", "--disable-gpu"], timeout=600_000
+        )
         yield started
         started.close()

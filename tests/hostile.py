@@ -100,7 +100,7 @@ def project(text: str) -> dict[str, Any]:
             },
             "b": {
                 "components": {
-                    "y": _component({"in": {"from": "a.x.out"}}, kind, text),
+                    "y": _component({"in": {"from": "a.x.out"}, "heard": {"from": "a.x.sent"}}, kind, text),
                     "z": {},
                     "s": _compose(),
                     "w": {"is": "lib.u"},
@@ -108,7 +108,12 @@ def project(text: str) -> dict[str, Any]:
             },
         },
         "nodes": {
-            "n": {"implements": "a.x", "container": "c", "parameters": {text[:60]: [text, {text[:60]: text}]}},
+            "n": {
+                "implements": "a.x",
+                "container": "c",
+                "publishes": {"sent": {"topic": text}},
+                "parameters": {text[:60]: [text, {text[:60]: text}]},
+            },
             "m": {"implements": "b.y", "host": "h"},
             "s": {
                 "kind": ["program"],
@@ -133,7 +138,7 @@ def project(text: str) -> dict[str, Any]:
         },
         "hosts": {"h": {}, "i": {}},
         "containers": {"c": {"host": "i", "parameters": {text[:60]: [text, {text[:60]: text}]}}},
-        "links": {"l": {"connects": ["h", "i"]}},
+        "links": {"l": {"connects": ["h", "i", "a.x"], "protocol": "X-_+/"}},
         "frames": {"map": {}, "".join(text.replace("\ufeff", "").split())[:150]: {"parent": "map", "by": "a.x"}},
         "chains": {"k": {"through": ["a.x", "b.y"]}},
         "views": {"v": {"show": "a.x+"}},
@@ -179,6 +184,7 @@ def _component(inputs: dict[str, Any], kind: str, text: str) -> dict[str, Any]:
                 "deprecated": {"until": "2999-01-01", "use": "seen"},
             },
             "seen": {**outside, "type": kind},
+            "sent": {"type": kind, "medium": "ws+X/1"},
         },
     }
 

@@ -6,6 +6,10 @@ ROBOT = """
 partners: {certh: , tum: }
 requirements: {R-1: {title: Safe, tags: [law]}, R-2: , R-0: All, R-1a: {parent: R-0}, R-1b: {parent: [R-1a, R-1]}}
 hosts: {pc: , board: {tags: [gpu], properties: {ram: 8 GB}}}
+use_cases:
+  UC-1: {actors: {user: }, steps: [{from: camera.image, to: detector}, {from: detector, to: planning.fusion, say: what it saw}]}
+  UC-2: {steps: [{from: base, to: base}]}
+  UC-3: Without steps
 groups:
   sensing:
     owner: certh
@@ -26,10 +30,10 @@ groups:
       executor: {inputs: {ask: solver.solve}, outputs: {command: T}, requirements: [R-2, "R-2 in the dark"]}
   driving:
     components:
-      base: {role: sink, parameters: {speed.max: 1.5}, properties: {mass: 12 kg, vendor: Acme Ltd, hot: 12 g}, inputs: {command: executor.command, stop: lidar}, outputs: {log: T}}
+      base: {role: sink, parameters: {speed.max: 1.5}, properties: {mass: 12 kg, vendor: Acme Ltd, hot: 12 g}, inputs: {command: executor.command, stop: lidar}, outputs: {log: {type: T, deprecated: {until: 2999-03-01}}}}
       camera: {title: Rear Camera}
       odd: {inputs: {x: stub}}
-      stub:
+      stub: {title: Stub, status: existing}
 nodes:
   cam: {implements: sensing.camera, package: usb_cam, host: board, status: existing, parameters: {image: {fps: 30}}}
   eyes: {implements: [detector, fusion], package: our_vision, host: pc, tags: [certified], owner: certh, publishes: {world: }}
@@ -76,7 +80,8 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ("tag:gpu", "camera"),  # of a host
     ("tag:certified", "detector fusion"),  # of a node
     ("owner:certh", "camera lidar"),
-    ("status:existing", "camera"),
+    ("status:existing", "camera d.stub"),  # by its node, and by itself
+    ("status:existing+", "camera detector fusion solver executor d.base d.odd d.stub"),
     ("status:planned", "lidar solver executor d.base d.camera d.odd d.stub"),
     ('type:"Colour  image"', "camera detector"),
     ("type:sensor_msgs/msg/LaserScan", "lidar fusion d.base"),
@@ -106,6 +111,12 @@ SELECTED: tuple[tuple[str, str], ...] = (
     ('property:"vendor=Acme Ltd"', "d.base"),
     ("property:vendor=*", "d.base"),
     ('property:"ram>=8 GB"', "camera"),  # of a host
+    ("deprecated:output", "d.base"),
+    ("deprecated:*", "d.base"),
+    ("use_case:UC-1", "camera detector fusion"),
+    ("use_case:UC-*", "camera detector fusion d.base"),
+    ("use_case:UC-1 -detector", "camera fusion"),
+    ("use_case:UC-2", "d.base"),
     ("-property:sil sensing planning", "fusion solver executor"),
     ("+role:sink -sensing", "detector fusion solver executor d.base"),
     ("host:pc..base", "detector fusion solver executor d.base"),
@@ -153,6 +164,7 @@ WRONG: tuple[tuple[str, str], ...] = (
 FOUND_NOTHING: tuple[tuple[str, str], ...] = (
     ("lidar tag:nothing", "6-17 nothing has `tag:nothing`"),
     ("lidar *_x", "6-9 nothing fits `*_x`"),
+    ("lidar use_case:UC-3", "6-19 nothing has `use_case:UC-3`"),
     ("lidar property:sil=>2", "6-21 nothing has `property:sil=>2`"),
     ("lidar property:mass>=1", "6-22 nothing has `property:mass>=1`"),
     ("lidar property:vendor>=1", "6-24 nothing has `property:vendor>=1`"),
@@ -160,8 +172,9 @@ FOUND_NOTHING: tuple[tuple[str, str], ...] = (
 """Selectors with a warning, all of which select the lidar."""
 
 COMPOSED_ROBOT = """
+types: {Touch: {message: std_msgs/msg/Bool, deprecated: {until: 2999-01-01}}}
 component_types:
-  motor: {inputs: {target: Target}, outputs: {state: State}}
+  motor: {deprecated: {use: arm}, inputs: {target: Target}, outputs: {state: State}}
   arm:
     inputs: {goal: Goal}
     outputs: {state: {from: joint.state}}
@@ -214,6 +227,9 @@ COMPOSED_SELECTED = (
     "is:*",
     "-is:arm",
     "1+is:motor+1",
+    "deprecated:component_type",
+    "deprecated:type",
+    "deprecated:*+1",
     "finding:*",
     "finding:unfed-output",
     "tag:safety+1",

@@ -116,7 +116,7 @@ def run(*words: str | Path) -> bytes:
     """Run a program with archgen from this checkout; give what it prints, and its exit status."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": ""}
     done = subprocess.run(  # noqa: S603 - our own program, pip or venv
-        [*map(str, words)], cwd=ROOT, env=environment, capture_output=True, check=False, timeout=600
+        [*map(str, words)], cwd=ROOT, env=environment, capture_output=True, check=False, timeout=1800
     )
     assert done.returncode in {0, 1}, done.stdout.decode()[-3000:] + done.stderr.decode()[-3000:]
     return b"%b\nstatus %d" % (done.stdout + done.stderr, done.returncode)

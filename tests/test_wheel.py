@@ -23,7 +23,7 @@ from tests.running import REVISION, ROOT, contents, made_once
 
 pytestmark = pytest.mark.build
 NAME = f"archgen-{__version__}"
-DATA = ("backends", "schemas", "start", "example_ramcip", "ros_library", "ros_type_mapper.yaml")
+DATA = ("backends", "schemas", "start", "passes", "example_ramcip", "ros_library", "ros_type_mapper.yaml")
 LEFT_OUT = {"__pycache__", "archgen-out"}
 
 

@@ -43,6 +43,7 @@ from archgen.analyses import (
     selector_checks,
     start_order,
     start_settings,
+    started_programs,
     timing_plausibility,
     topic_messages,
     topic_sources,
@@ -102,6 +103,7 @@ _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *interface_promises.RULES,
     *deprecated_uses.RULES,
     *start_order.RULES,
+    *started_programs.RULES,
     *start_settings.RULES,
     *completeness.RULES,
 )

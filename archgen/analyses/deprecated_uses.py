@@ -124,11 +124,19 @@ def _diagnose_use(architecture: Architecture, use: _Use, rule: str) -> Diagnosti
         f"{use.phrase} the deprecated {_KIND_WORDS[use.kind]} `{use.name}`{until}",
         use.span,
         labels=(Label(at, "deprecated here"),) if at != NO_SPAN and at.file else (),
-        help=f"use `{short}` instead"
-        if short
-        else f"ask its owner what replaces it; `deprecated` of `{use.name}` names nothing",
+        help=f"use `{short}` instead" if short else f"ask its owner what replaces it; {_explain_dead_end(use)}",
         element=use.element,
     )
+
+
+def _explain_dead_end(use: _Use) -> str:
+    """Return why nothing can be named that replaces what is going away."""
+    deprecated = use.deprecated
+    if deprecated.use is None:
+        return f"`deprecated` of `{use.name}` names nothing"
+    if deprecated.target is None:
+        return f"`use: {deprecated.use}` at `{use.name}` names nothing that can take its place"
+    return f"`use: {deprecated.use}` at `{use.name}` leads in a circle of what is deprecated itself"
 
 
 def _list_uses(architecture: Architecture) -> Iterator[_Use]:

@@ -15,6 +15,7 @@ from archgen.timing.system import activity_builder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from fractions import Fraction
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
@@ -161,10 +162,10 @@ def _rank(value: TimingValue) -> tuple[bool, object]:
     return (value.value is None, value.value or 0)
 
 
-def _exceed(value: TimingValue, limit: object, where: str) -> str | None:
+def _exceed(value: TimingValue, limit: Fraction, where: str) -> str | None:
     """Return in words that a duration (ns) may exceed a limit; None where it does not, or figures are missing."""
     place = f" {where}" if where else ""
-    if value.value is not None and value.value > limit:  # type: ignore[operator]
+    if value.value is not None and value.value > limit:
         return f"it may be {format_duration(value.value)}{place}"
     if is_boundless(value) or (
         value.value is None and not value.missing and not is_known_bound(value) and value.complete

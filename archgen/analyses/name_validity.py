@@ -11,7 +11,7 @@ from archgen.model.port_media import uses_ros
 from archgen.model.ros_distro import is_ros_1
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from archgen.model.architecture import Architecture
     from archgen.model.deployment import Container

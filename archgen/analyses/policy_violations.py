@@ -238,6 +238,8 @@ def unneeded_exception(architecture: Architecture) -> Iterator[Diagnostic]:
     policies = [policy for policy in architecture.policies.values() if policy.accepted]
     evaluator = SelectorEvaluator(architecture)
     for policy in policies:
+        if _has_wrong_selector(policy, evaluator):
+            continue
         objected_inputs = set(_list_objected_inputs(architecture, policy, evaluator))
         for port, place in policy.accepted_places.items():
             if objected_inputs.isdisjoint(architecture.leaf_ports_of("input", port)):
@@ -248,6 +250,14 @@ def unneeded_exception(architecture: Architecture) -> Iterator[Diagnostic]:
                     help="take it out of `accepted`",
                     element=policy.id,
                 )
+
+
+def _has_wrong_selector(policy: Policy, evaluator: SelectorEvaluator) -> bool:
+    """Whether a selector of a policy means nothing: then nobody knows to what it objects."""
+    demand = policy.require
+    texts = (policy.forbid_from, policy.forbid_to, *((demand.of, demand.inputs_from) if demand else ()))
+    problems = (problem for text in texts if text for problem in evaluator.evaluate(text)[1])
+    return any(problem.severity == "error" for problem in problems)
 
 
 def _list_objected_inputs(architecture: Architecture, policy: Policy, evaluator: SelectorEvaluator) -> Iterator[str]:

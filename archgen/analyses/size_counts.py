@@ -7,13 +7,16 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from archgen.frozen import dataclass
+from archgen.model.annotated_elements import list_annotated_elements
 from archgen.model.port_media import uses_ros
+from archgen.model.requirement_tree import add_wholes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from archgen.model.architecture import Architecture
     from archgen.model.component import Component
+    from archgen.model.element_annotations import PropertyDeclaration
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +71,10 @@ class ArchitectureSize:
     """The outputs that promise something."""
     deprecated: int = 0
     """The outputs, types and component types that are going away."""
+    verified: int = 0
+    """The requirements that something verifies, or all of their parts."""
+    property_values: int = 0
+    """How often elements have a declared property."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +144,28 @@ def measure_size(architecture: Architecture) -> ArchitectureSize:
         variants=len(arch.variants),
         steps=sum(len(use_case.steps) for use_case in arch.use_cases.values()),
         programs=sum("program" in node.kinds for node in arch.nodes.values()),
+        verified=len(
+            add_wholes(arch.requirements, (each.id for each in arch.requirements.values() if each.verified_by))
+        ),
+        property_values=sum(have for _, have, _ in count_declared_properties(arch)),
+    )
+
+
+def count_declared_properties(architecture: Architecture) -> tuple[tuple[PropertyDeclaration, int, int], ...]:
+    """Return for each declared property how many elements have it, and how many others are of a kind that it names."""
+    if not architecture.properties:
+        return ()
+    elements = list(list_annotated_elements(architecture))
+    return tuple(
+        (
+            declared,
+            sum(declared.id in each.element.annotations.properties for each in elements),
+            sum(
+                each.is_expected and each.kind in declared.of and declared.id not in each.element.annotations.properties
+                for each in elements
+            ),
+        )
+        for declared in architecture.properties.values()
     )
 
 

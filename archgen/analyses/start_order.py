@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from archgen.bringup.start_commands import build_command
-from archgen.bringup.start_plan import describes_start, make_start_plan, resolve_conditions
+from archgen.bringup.start_plan import make_start_plan, resolve_conditions
+from archgen.derivation.ros_names import shared_topic_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.start_up import DEFAULT_PHASE, NO_START
-from archgen.transform.ros_names import shared_topic_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -206,123 +204,7 @@ def _find_later_steps(plan: StartPlan, step_id: str) -> set[str]:
     return later - {step_id}
 
 
-def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Two programs on one host are to listen on the same port.
-
-    Why: The second one that starts finds the port taken and ends, or the first one is taken for the second one.
-
-    Bad:
-        nodes:
-          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
-          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6665}}}
-        hosts: {sim_pc: {title: Simulation computer}}
-
-    Good:
-        nodes:
-          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
-          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6666}}}
-        hosts: {sim_pc: {title: Simulation computer}}
-    """
-    first_nodes: dict[tuple[str | None, int], Node] = {}
-    for node in architecture.nodes.values():
-        port = node.start.ready.port if node.start else None
-        if port is None:
-            continue
-        first = first_nodes.setdefault((node.host, port), node)
-        if first is not node:
-            place = f"on `{node.host}`" if node.host else "and on no host that is named"
-            yield Diagnostic(
-                "shared-port",
-                f"`{first.id}` and `{node.id}` are both to listen on the port {port} {place}",
-                _find_ready_span(node, "port"),
-                labels=(Label(_find_ready_span(first, "port"), f"`{first.id}`"),),
-                help="give one of them another port" + ("" if node.host else ", or each its host"),
-                element=node.id,
-            )
-
-
-def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A lifecycle node is started, and nobody says who activates it.
-
-    Why: A lifecycle node does nothing until it is configured and activated. It is asked as soon as the project says something
-    about its start-up.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
-              planner: {inputs: {map: map_server.map}}
-        nodes:
-          map_server: {implements: map_server, kind: lifecycle, start: {phase: core}}
-          planner: planner
-
-    Good:
-        groups:
-          driving:
-            components:
-              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
-              planner: {inputs: {map: map_server.map}}
-        nodes:
-          map_server: {implements: map_server, kind: lifecycle, start: {phase: core, state: active}}
-          planner: planner
-    """
-    if not describes_start(architecture):
-        return
-    managers: dict[str, list[str]] = defaultdict(list)
-    for node in architecture.nodes.values():
-        if node.start and node.start.by:
-            managers[node.start.by.id].append(node.id)
-    usual = max(managers, key=lambda name: len(managers[name]), default=None)
-    for node in architecture.nodes.values():
-        if "lifecycle" in node.kinds and (node.start or NO_START).wanted_state is None:
-            by_help = f"`start: {{by: {usual}}}`" if usual else "`start: {by: NODE}` with the node that manages it"
-            yield Diagnostic(
-                "unactivated-node",
-                f"nobody activates the lifecycle node `{node.id}`",
-                node.kind_at,
-                help=f"write `start: {{state: active}}`, or {by_help}",
-                element=node.id,
-            )
-
-
-def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A program has no command and no package, and nothing shows that it is up.
-
-    Why: Nobody can start it, and nobody can wait for it. A program that is started elsewhere (a cloud service, another team's
-    computer) says by what one sees that it is up: `ready`.
-
-    Bad:
-        nodes:
-          fleet_server: {kind: program}
-          logger: {kind: program, command: [logger], start: fleet_server}
-
-    Good:
-        nodes:
-          fleet_server: {kind: program, start: {ready: {port: 8080}}}
-          logger: {kind: program, command: [logger], start: fleet_server}
-    """
-    if not describes_start(architecture):
-        return
-    for node in architecture.nodes.values():
-        is_known = (
-            node.status == "planned" or build_command(architecture, node) or (node.start or NO_START).ready.has_sign
-        )
-        if node.is_program and node.written and not is_known:
-            yield Diagnostic(
-                "unstarted-program",
-                f"nothing says how the program `{node.id}` is started, nor how one sees that it is up",
-                node.kind_at,
-                help="write its `command`, or `start: {ready: ...}` where somebody else starts it; while it is not "
-                "decided, `status: planned`",
-                element=node.id,
-            )
-
-
 RULES = (
     (circular_start, Severity.ERROR),
     (unmet_ready, Severity.WARNING),
-    (shared_port, Severity.WARNING),
-    (unactivated_node, Severity.WARNING),
-    (unstarted_program, Severity.WARNING),
 )

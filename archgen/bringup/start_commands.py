@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from archgen.bringup.parameter_words import (
+    list_loading_options,
+    list_ros_1_options,
+    list_ros_1_preparations,
+    list_ros_2_options,
+)
+from archgen.bringup.plan_shapes import RosLaunch
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -32,50 +39,56 @@ _SYSTEM_PROGRAMS = frozenset(
 """Programs that change the system, for which one needs rights as a rule."""
 
 
-def build_command(architecture: Architecture, node: Node) -> tuple[str, ...]:
+def build_command(architecture: Architecture, node: Node, launch: RosLaunch | None) -> tuple[str, ...]:
     """Return the words that start a node, or that load it into its container; none where that is not known."""
-    if node.command:
-        return node.command
+    if launch is None:
+        return node.command or _run_program(node)
     if is_ros_1(architecture.distro):
-        return _build_ros_1_command(architecture, node)
-    if node.plugin and node.package and not node.executable:
-        container = architecture.containers.get(node.container or "")
-        verb = ("load", container.full_name) if container else ("standalone",)
-        names = ("--node-name", node.name, *(("--node-namespace", node.namespace) if node.namespace != "/" else ()))
-        return ("ros2", "component", *verb, node.package, node.plugin, *names)
-    if not node.package or not node.executable:
+        return _build_ros_1_command(node, launch)
+    if launch.plugin and launch.package and not launch.executable:
+        verb = ("load", launch.container) if launch.container else ("standalone",)
+        namespace = ("--node-namespace", launch.namespace) if launch.namespace != "/" else ()
+        names = ("--node-name", launch.name, *namespace)
+        return ("ros2", "component", *verb, launch.package, launch.plugin, *names, *list_loading_options(launch))
+    return _run_in_ros_2(launch)
+
+
+def _run_program(node: Node) -> tuple[str, ...]:
+    return ("ros2", "run", node.package, node.executable) if node.package and node.executable else ()
+
+
+def _run_in_ros_2(launch: RosLaunch) -> tuple[str, ...]:
+    if not launch.package or not launch.executable:
         return ()
-    if "program" in node.kinds:
-        return ("ros2", "run", node.package, node.executable)
-    files = tuple(word for path in node.parameter_files for word in ("--params-file", path))
-    return ("ros2", "run", node.package, node.executable, *_name_in_ros(node.name, node.namespace), *files)
+    namespace = ("-r", f"__ns:={launch.namespace}") if launch.namespace != "/" else ()
+    names = ("-r", f"__node:={launch.name}", *namespace)
+    return ("ros2", "run", launch.package, launch.executable, "--ros-args", *names, *list_ros_2_options(launch))
 
 
-def _build_ros_1_command(architecture: Architecture, node: Node) -> tuple[str, ...]:
-    names = (f"__name:={node.name}", *((f"__ns:={node.namespace}",) if node.namespace != "/" else ()))
-    if "nodelet" in node.kinds and node.plugin:
-        if node.container is None:
-            return ("rosrun", "nodelet", "nodelet", "standalone", node.plugin, *names)
-        manager = architecture.containers[node.container]
-        return ("rosrun", "nodelet", "nodelet", "load", node.plugin, manager.full_name, *names)
-    return ("rosrun", node.package, node.executable, *names) if node.package and node.executable else ()
+def _build_ros_1_command(node: Node, launch: RosLaunch) -> tuple[str, ...]:
+    words = (*_name_in_ros_1(launch), *list_ros_1_options(launch))
+    if "nodelet" in node.kinds and launch.plugin:
+        verb = ("load", launch.plugin, launch.container) if launch.container else ("standalone", launch.plugin)
+        return ("rosrun", "nodelet", "nodelet", *verb, *words)
+    return ("rosrun", launch.package, launch.executable, *words) if launch.package and launch.executable else ()
 
 
-def _name_in_ros(name: str, namespace: str) -> tuple[str, ...]:
-    return ("--ros-args", "-r", f"__node:={name}", *(("-r", f"__ns:={namespace}") if namespace != "/" else ()))
+def _name_in_ros_1(launch: RosLaunch) -> tuple[str, ...]:
+    return (f"__name:={launch.name}", *((f"__ns:={launch.namespace}",) if launch.namespace != "/" else ()))
 
 
-def build_container_command(architecture: Architecture, container: Container) -> tuple[str, ...]:
+def build_container_command(architecture: Architecture, container: Container, launch: RosLaunch) -> tuple[str, ...]:
     """Return the words that start a container: its own program, else ROS's."""
-    name = container.name or container.id
-    if is_ros_1(architecture.distro):
-        program = (container.package or "nodelet", container.executable or "nodelet")
-        manager = () if container.package else ("manager",)
-        namespace = (f"__ns:={container.namespace}",) if container.namespace != "/" else ()
-        return ("rosrun", *program, *manager, f"__name:={name}", *namespace)
-    default = "component_container" if container.threads in {None, 1} else "component_container_mt"
-    program = (container.package or "rclcpp_components", container.executable or default)
-    return ("ros2", "run", *program, *_name_in_ros(name, container.namespace))
+    if not is_ros_1(architecture.distro):
+        return _run_in_ros_2(launch)
+    manager = () if container.package else ("manager",)
+    program = (launch.package or "", launch.executable or "")
+    return ("rosrun", *program, *manager, *_name_in_ros_1(launch), *list_ros_1_options(launch))
+
+
+def list_preparations(architecture: Architecture, launch: RosLaunch | None) -> tuple[tuple[str, ...], ...]:
+    """Return the commands that run to their ends before a node starts: ROS 1 has parameters on a server."""
+    return tuple(list_ros_1_preparations(launch)) if launch and is_ros_1(architecture.distro) else ()
 
 
 def list_transitions(node: Node) -> tuple[tuple[str, ...], ...]:

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from heapq import heapify, heappop, heappush
 
-from archgen.bringup.plan_shapes import FIRM_NEED, DroppedWait, StartPlan, StartStep, StepKind, Wait
+from archgen.bringup.plan_shapes import FIRM_NEED, AwaitedStep, DroppedWait, StartPlan, StartStep, StepKind, Wait
+from archgen.bringup.ros_launches import describe_container_launch, describe_node_launch
 from archgen.bringup.start_commands import (
     build_command,
     build_container_command,
     list_needed_rights,
+    list_preparations,
     list_transitions,
 )
 from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
 from archgen.bringup.wait_circles import keep_acyclic
+from archgen.derivation.ros_names import resolve_ros_name
 from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
-from archgen.transform.ros_names import resolve_ros_name
+
+_UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
+_MAX_FILE_NAME = 100
 
 
 def describes_start(architecture: Architecture) -> bool:
@@ -40,14 +47,49 @@ def make_start_plan(architecture: Architecture) -> StartPlan:
     left_out = [*(DroppedWait(wait) for wait in against_phases), *closing]
     waits_of = group_by_waiting(kept)
     steps = {step.id: step for step in _list_steps(architecture, phases, start_waits.managers)}
+    ordered_ids = _order_steps(step_ids, phases, kept)
+    file_names = name_files(ordered_ids)
     return StartPlan(
         steps=tuple(
-            replace(steps[step_id], waits=tuple(waits_of.get(step_id, ())))
-            for step_id in _order_steps(step_ids, phases, kept)
+            replace(
+                steps[step_id],
+                file_name=file_names[step_id],
+                waits=tuple(waits_of.get(step_id, ())),
+                awaited=tuple(_gather_awaited(waits_of.get(step_id, ()), steps)),
+            )
+            for step_id in ordered_ids
         ),
         dropped=tuple(each for each in left_out if each.wait.need < FIRM_NEED),
         circles=tuple(each for each in left_out if each.wait.need >= FIRM_NEED),
     )
+
+
+def _gather_awaited(waits: Iterable[Wait], steps: Mapping[str, StartStep]) -> Iterator[AwaitedStep]:
+    """Yield what is awaited, what is needed most first. A manager only needs that what it manages was started."""
+    waits_by_step: dict[str, list[Wait]] = {}
+    for wait in waits:
+        waits_by_step.setdefault(wait.awaited, []).append(wait)
+    for awaited, its_waits in waits_by_step.items():
+        is_managed = all(wait.reason == "manages" for wait in its_waits)
+        yield AwaitedStep(
+            awaited, "ended" if steps[awaited].once else "started" if is_managed else "ready", tuple(its_waits)
+        )
+
+
+def name_files(step_ids: Iterable[str]) -> dict[str, str]:
+    """Return what files about each step are called: its id where that can be a name of a file, and no other has it."""
+    names: dict[str, str] = {}
+    taken_names: set[str] = set()
+    for step_id in step_ids:
+        stem = _UNSAFE_IN_FILES.sub("_", step_id).strip(".-") or "step"
+        stem = stem[:_MAX_FILE_NAME]
+        name, number = stem, 1
+        while name.lower() in taken_names:
+            number += 1
+            name = f"{stem}_{number}"
+        taken_names.add(name.lower())
+        names[step_id] = name
+    return names
 
 
 def _find_phases(architecture: Architecture) -> dict[str, StartPhase]:
@@ -96,37 +138,44 @@ def _order_steps(step_ids: Sequence[str], phases: Mapping[str, StartPhase], wait
 def _list_steps(
     architecture: Architecture, phases: Mapping[str, StartPhase], managers: Mapping[str, tuple[str, ...]]
 ) -> list[StartStep]:
-    containers = []
-    for container in architecture.containers.values():
-        step_id = name_container(architecture, container.id)
-        command = build_container_command(architecture, container)
-        containers.append(
-            StartStep(
-                step_id,
-                "container",
-                phases[step_id],
-                container.host,
-                container.title,
-                command=command,
-                container=container.id,
-            )
-        )
     return [
-        *containers,
+        *(
+            _make_container_step(architecture, each, phases[name_container(architecture, each.id)])
+            for each in architecture.containers.values()
+        ),
         *(_make_node_step(architecture, each, managers[each.id]) for each in architecture.nodes.values()),
     ]
+
+
+def _make_container_step(architecture: Architecture, container: Container, phase: StartPhase) -> StartStep:
+    launch = describe_container_launch(architecture, container)
+    return StartStep(
+        name_container(architecture, container.id),
+        "container",
+        phase,
+        container.host,
+        container.title,
+        ros=launch,
+        preparations=list_preparations(architecture, launch),
+        command=build_container_command(architecture, container, launch),
+        container=container.id,
+    )
 
 
 def _make_node_step(architecture: Architecture, node: Node, managers: tuple[str, ...]) -> StartStep:
     start = node.start or NO_START
     kind: StepKind = "program" if "program" in node.kinds else "composable" if node.container is not None else "node"
+    launch = describe_node_launch(architecture, node)
     return StartStep(
         node.id,
         kind,
         _phase_of(node),
         node.host,
         node.title,
-        command=build_command(architecture, node),
+        status=node.status,
+        ros=launch,
+        preparations=list_preparations(architecture, launch),
+        command=build_command(architecture, node, launch),
         ready=resolve_conditions(start.ready, node),
         once=start.once,
         transitions=list_transitions(node),

@@ -64,22 +64,49 @@ class _KeptOrder:
             return (awaited,)
         lowest, highest = self.positions[waiting], self.positions[awaited]
         if highest >= lowest:
+            way = self._find_way(waiting, awaited)
+            if way:
+                return way
             forward = self._reach(self._successors, waiting, lowest, highest)
-            if awaited in forward:
-                return _walk_back(forward, awaited)
             self._reorder(self._reach(self._predecessors, awaited, lowest, highest), forward)
         self._successors[awaited].append(waiting)
         self._predecessors[waiting].append(awaited)
         return ()
 
-    def _reach(self, neighbours: dict[str, list[str]], start: str, lowest: int, highest: int) -> dict[str, str | None]:
-        """Return what can be reached between two positions, each with the step before it: the nearest first."""
-        found: dict[str, str | None] = {start: None}
+    def _find_way(self, first: str, last: str) -> tuple[str, ...]:
+        """Return a shortest way from one step to another; nothing where there is none.
+
+        It is searched from both ends, always on at the end with less to look at: most ways are short, and one end alone
+        would look at most of the graph.
+        """
+        positions = self.positions
+        lowest, highest = positions[first], positions[last]
+        forward: dict[str, str | None] = {first: None}
+        backward: dict[str, str | None] = {last: None}
+        ahead, behind = [first], [last]
+        while ahead and behind:
+            is_forward = len(ahead) <= len(behind)
+            neighbours = self._successors if is_forward else self._predecessors
+            own, other = (forward, backward) if is_forward else (backward, forward)
+            edge = []
+            for step_id in ahead if is_forward else behind:
+                for neighbour in neighbours[step_id]:
+                    if neighbour not in own and lowest <= positions[neighbour] <= highest:
+                        own[neighbour] = step_id
+                        if neighbour in other:
+                            return (*_walk_back(forward, neighbour), *reversed(_walk_back(backward, neighbour)[:-1]))
+                        edge.append(neighbour)
+            ahead, behind = (edge, behind) if is_forward else (ahead, edge)
+        return ()
+
+    def _reach(self, neighbours: dict[str, list[str]], start: str, lowest: int, highest: int) -> set[str]:
+        """Return what can be reached between two positions."""
+        found = {start}
         queue = [start]
         for step_id in queue:
             for neighbour in neighbours[step_id]:
                 if neighbour not in found and lowest <= self.positions[neighbour] <= highest:
-                    found[neighbour] = step_id
+                    found.add(neighbour)
                     queue.append(neighbour)
         return found
 

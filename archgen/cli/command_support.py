@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
-from archgen.cli.shared_options import VARIANT_KEY
+from archgen.cli.shared_options import find_asked_variants
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, sort_gravest_first
 
 if TYPE_CHECKING:
@@ -28,8 +28,7 @@ def check_or_exit(project: Path | None, version_cache: VersionCache | None = Non
     from archgen import pipeline
     from archgen.project import ProjectNotFoundError
 
-    context = click.get_current_context(silent=True)
-    names = context.meta.get(VARIANT_KEY, ()) if context else ()
+    names = find_asked_variants()
     try:
         checked_project = pipeline.check_project(project, version_cache, names or None)
     except ProjectNotFoundError as error:

@@ -42,10 +42,11 @@ def _read_variants(
         raise click.UsageError(msg)
     names = [shared_options.split_variants(text) for text in variants]
     if len(names) == 1:
-        return tuple(  # type: ignore[return-value]
+        old, new = (
             read_variant(version, command_support.stand_or_exit(version.checked_project, names[0]), names[0])
             for version in _read_versions(before, after, project)
         )
+        return old, new
     if after is not None:
         msg = "two variants are those of one version: name one, or none for the working tree"
         raise click.UsageError(msg)

@@ -37,12 +37,13 @@ def command(file: Path, into: Path | None, project: Path | None, *, dry_run: boo
     Each object of the file is accounted for. A requirement that the project knows is brought up to date; what the file
     does not say of it stays. Nothing is written where the result would bring errors.
     """
-    from archgen.importers.reqif import take_requirements
+    from archgen.importers.reqif import find_known_requirements, take_requirements
 
     checked_project = command_support.check_or_exit(project)
     _refuse_single_file(checked_project)
     document = _read_file(file)
-    imported = take_requirements(document)
+    known = find_known_requirements(checked_project.architecture.requirements.values())
+    imported = take_requirements(document, known)
     for line in _summarise_objects(file, imported):
         click.echo(make_visible(line))
     if not imported.requirements:
@@ -99,6 +100,8 @@ def _summarise_objects(file: Path, imported: ImportedRequirements) -> Iterator[s
         yield f"  attribute not taken: `{name}` of {count} object{'s' * (count != 1)}"
     for name, count in sorted(imported.unread_relations.items()):
         yield f"  relations not taken: {count} of the type `{name}`"
+    for name, parent in imported.closing_relations:
+        yield f"  relation not taken: `{name}` is a part of `{parent}`, which would be a part of itself"
 
 
 def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements, into: Path | None) -> RequirementSlice:
@@ -139,8 +142,8 @@ def _summarise_slice(requirement_slice: RequirementSlice) -> Iterator[str]:
     yield f"{requirement_slice.file}: {', '.join(f'{count} {word}' for count, word in counts)}"
     yield from (f"  no longer in the file, kept: {name}" for name in requirement_slice.missing)
     yield from (f"  said otherwise in another file, kept: {key}" for key in requirement_slice.written_elsewhere)
-    if requirement_slice.lost_comments:
-        yield f"  comments not kept: {requirement_slice.lost_comments} lines; those at the beginning stay"
+    if requirement_slice.is_rewritten:
+        yield "  written anew: comments could not stay in their places, and stand at the beginning"
 
 
 def _write_slice(checked_project: CheckedProject, requirement_slice: RequirementSlice, into: Path | None) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, get_args
 
 import click
 
-from archgen.cli import command_support, element_adding, new_instance, shared_options
+from archgen.cli import command_support, element_adding, new_instance, new_variant, shared_options
 from archgen.model.component import ComponentRole
 from archgen.model.node import NodeStatus
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @click.group("new")
 def command() -> None:
-    """Add a group, a component, a type of components, an instance of one, a node or a partner.
+    """Add a group, a component, a type of components, an instance of one, a node, a partner or a variant.
 
     It goes into the file where its like stand, in the form that the file has. All else in the file stays as it is,
     byte for byte. Nothing is written where the result would not load, or where another element would change; then it
@@ -27,6 +27,7 @@ def command() -> None:
 
 command.add_command(new_instance.add_type)
 command.add_command(new_instance.add_instance)
+command.add_command(new_variant.add_variant)
 
 
 @command.command("group")
@@ -160,7 +161,7 @@ def add_partner(name: str, title: str | None, reviewers: str | None, project: Pa
     body = element_adding.drop_missing(title=title or title_from_id(name), reviewers=reviewers)
     element_adding.add_element(
         checked_project,
-        element_place.place_for_partner(checked_project),
+        element_place.place_in_section(checked_project, "partners"),
         NewElement(name, body),
         name,
         dry_run=dry_run,

@@ -55,7 +55,7 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
     }
     element_adding.add_element(
         checked_project,
-        element_place.place_for_type(checked_project),
+        element_place.place_in_section(checked_project, "component_types"),
         NewElement(name, body, hints),
         name,
         dry_run=dry_run,

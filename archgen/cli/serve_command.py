@@ -31,6 +31,7 @@ DEFAULT_PORT = 8470
 )
 @click.option("--open", "opens", is_flag=True, help="Open the start page in the browser.")
 @shared_options.select_option
+@shared_options.variant_option
 @shared_options.level_option
 @click.option(
     "--since",
@@ -58,7 +59,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     options = OutputOptions(selector_text=select or "", level=level, warn=command_support.print_warning)
     try:
-        live_site = LiveSite(project, options, since)
+        live_site = LiveSite(project, options, since, shared_options.find_asked_variants())
     except ProjectNotFoundError as error:
         raise click.UsageError(str(error)) from None
     server = _open_port(live_site, host, port)
@@ -116,12 +117,13 @@ def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
 def _start_site(live_site: LiveSite) -> None:
     """Read the project. What is not there to select, or to compare with, is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
+    from archgen.pipeline import UnknownVariantError
     from archgen.serve.project_state import SelectionError
 
     try:
         with command_support.explain_missing_versions():
             live_site.start()
-    except SelectionError as error:
+    except (SelectionError, UnknownVariantError) as error:
         raise click.UsageError(make_visible(str(error))) from None
 
 

@@ -77,6 +77,14 @@ variant_option = click.option(
     help="Take the project as it stands in a variant; in several, laid over it in this order: `indoor,simulation`.",
 )
 """The variant that a verb looks at: `command_support.check_or_exit` reads it off click's context."""
+
+
+def find_asked_variants() -> tuple[str, ...]:
+    """Return the variants that the verb which runs is asked for; none where it takes the project with all of them."""
+    context = click.get_current_context(silent=True)
+    return context.meta.get(VARIANT_KEY, ()) if context else ()
+
+
 level_option = click.option(
     "--level",
     type=click.Choice(["functional", "implementation"]),

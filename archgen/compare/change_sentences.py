@@ -15,8 +15,8 @@ from archgen.compare.meaning_sentences import (
 from archgen.compare.owner_sentences import describe_new_owner
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.version_pair import VersionPair
+from archgen.derivation import ros_names
 from archgen.model.quantity import Quantity
-from archgen.transform import ros_names
 
 SURE_CONFIDENCE = 0.85
 """From here on a rename is stated without its confidence."""

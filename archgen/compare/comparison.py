@@ -22,13 +22,15 @@ class PartnerBreak:
     """What a partner loses by a change. `reason` completes a sentence after the change: "takes `a.b.c` from sssa, who
     ...".
 
-    `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it.
+    `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
+    those in which it is lost, where nothing is lost in the project itself.
     """
 
     partner: str
     reason: str
     agreement: str | None = None
     category: BreakCategory = "wire"
+    variants: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Change:
     values as plain data (None: not written). `confidence` is below 1 where a rename or a move was only recognised by
     likeness. `breaks` are the losses of partners other than the owner, those of the parts included; `claims` are the
     accepted entries that speak of the change and excuse nothing. `parts` are what came or went with an element, and what follows
-    from the change.
+    from the change. `variants` are those in which it is seen, where the project itself does not change there.
     """
 
     kind: ChangeKind
@@ -54,6 +56,7 @@ class Change:
     claims: tuple[AcceptedChange, ...] = ()
     text: str = ""
     parts: tuple[Change, ...] = ()
+    variants: tuple[str, ...] = ()
 
     @property
     def broken_partners(self) -> tuple[str, ...]:

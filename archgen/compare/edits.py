@@ -61,7 +61,8 @@ class Edit:
 def list_edits(comparison: Comparison) -> tuple[Edit, ...]:
     """Return the edits behind the changes of a comparison, in the order of the first change of each."""
     positions = {id(change): position for position, change in enumerate(comparison.changes)}
-    left_changes = list(comparison.changes)
+    # What is told of a variant alone is no part of an edit of the project itself.
+    left_changes = [change for change in comparison.changes if not change.variants]
     edits: list[Edit] = []
     for edit in _find_joint_edits(comparison, left_changes):
         edits.append(edit)
@@ -69,7 +70,7 @@ def list_edits(comparison: Comparison) -> tuple[Edit, ...]:
         left_changes[:] = (change for change in left_changes if id(change) not in folded_ids)
     edits += (
         Edit(change.kind, change.element_kind, change.element_id, change.text, (change,), change.confidence)
-        for change in left_changes
+        for change in (*left_changes, *(each for each in comparison.changes if each.variants))
     )
     return tuple(sorted(edits, key=lambda edit: min(positions[id(change)] for change in edit.changes)))
 

@@ -170,8 +170,9 @@ def lay_data(base: MappingNode, over: MappingNode) -> MappingNode:
     entries = dict(base.entries)
     for entry in over:
         below = entries.get(entry.key)
-        both = below and isinstance(below.value, MappingNode) and isinstance(entry.value, MappingNode)
-        value = lay_data(below.value, entry.value) if both else entry.value  # type: ignore[union-attr,arg-type]
+        value = entry.value
+        if below is not None and isinstance(below.value, MappingNode) and isinstance(value, MappingNode):
+            value = lay_data(below.value, value)
         entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
     return MappingNode(entries, base.span)
 

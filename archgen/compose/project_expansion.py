@@ -53,6 +53,18 @@ class ComponentShell:
 
 
 @dataclass(slots=True)
+class Expansion:
+    """A component's body with everything written out, what it is made from, and how many components it stands for."""
+
+    written: MappingNode
+    """What it was made of: kept alive, since expansions are found by its identity."""
+    body: MappingNode
+    origin: InstanceOrigin | None
+    parts: dict[str, tuple[MappingEntry, Expansion]]
+    size: int
+
+
+@dataclass(slots=True)
 class ExpandedProject:
     """A project with everything written out: `root` has leaves only below its groups."""
 
@@ -71,6 +83,8 @@ class ExpandedProject:
     """The shell around each leaf and shell that has one, by complete ids."""
     container_holders: dict[str, str] = field(default_factory=dict)
     """The component that brings along each container that is not the project's own, by id."""
+    parts: dict[str, list[tuple[MappingEntry, Expansion]]] = field(default_factory=dict)
+    """What stands directly in each group, as it is written and with everything written out."""
     damaged_elements: frozenset[str] = frozenset()
     """Components of which the type is not known: what they have is not known either."""
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -110,18 +124,6 @@ def _list_components(body: object) -> Iterator[MappingEntry]:
     return iter(components) if isinstance(components, MappingNode) else iter(())
 
 
-@dataclass(slots=True)
-class _Expansion:
-    """A component's body with everything written out, what it is made from, and how many components it stands for."""
-
-    written: MappingNode
-    """What it was made of: kept alive, since expansions are found by its identity."""
-    body: MappingNode
-    origin: InstanceOrigin | None
-    parts: dict[str, tuple[MappingEntry, _Expansion]]
-    size: int
-
-
 class _ProjectExpander:
     """Expands the components of a project; equal parts of one type are expanded once and shared."""
 
@@ -136,7 +138,7 @@ class _ProjectExpander:
         self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries, describe_missing_type)
         self._overlay = InstanceOverlay(self._diagnostics, self._types.may_replace)
         # By the identity of the written node, which the merged tree or a type's body keeps alive.
-        self._expansions: dict[int, _Expansion] = {}
+        self._expansions: dict[int, Expansion] = {}
         self._open_types: list[str] = []
         self._damaged_elements: set[str] = set()
         self._circular_types: set[str] = set()
@@ -153,6 +155,7 @@ class _ProjectExpander:
         total = sum(expansion.size for _, parts in sized_groups for _, expansion in parts)
         if total > MAX_ELEMENTS:
             sized_groups = [(group, list(self._limit_parts(group, parts))) for group, parts in sized_groups]
+        self._result.parts = {group.key: parts for group, parts in sized_groups}
         group_entries = {group.key: self._flatten_group(group, parts) for group, parts in sized_groups}
         if group_entries:
             section = MappingEntry(
@@ -204,7 +207,7 @@ class _ProjectExpander:
             self._expand(part.value, f"{name}.{part.key}")
         self._open_types.pop()
 
-    def _expand(self, node: object, component_id: str) -> _Expansion:
+    def _expand(self, node: object, component_id: str) -> Expansion:
         body = node if isinstance(node, MappingNode) else MappingNode({}, self._root.span)
         expansion = self._expansions.get(id(body))
         if expansion is None:
@@ -212,15 +215,15 @@ class _ProjectExpander:
             self._expansions[id(body)] = expansion
         return expansion
 
-    def _make_expansion(self, body: MappingNode, component_id: str) -> _Expansion:
+    def _make_expansion(self, body: MappingNode, component_id: str) -> Expansion:
         if component_id.count(".") > MAX_DEPTH:
             self._report_depth(body, component_id)
-            return _Expansion(body, _drop_components(body), None, {}, 1)
+            return Expansion(body, _drop_components(body), None, {}, 1)
         origin, full_body = self._lay_over_type(body, component_id)
         if origin:
             if origin.expression.name in self._open_types:
                 self._report_circle(origin.expression.name)
-                return _Expansion(body, _drop_components(body), origin, {}, 1)
+                return Expansion(body, _drop_components(body), origin, {}, 1)
             self._open_types.append(origin.expression.name)
         parts = {
             part.key: (part, self._expand(part.value, f"{component_id}.{part.key}"))
@@ -228,7 +231,7 @@ class _ProjectExpander:
         }
         if origin:
             self._open_types.pop()
-        return _Expansion(
+        return Expansion(
             body,
             _drop_components(full_body) if parts else full_body,
             origin,
@@ -269,8 +272,8 @@ class _ProjectExpander:
             self._diagnostics.append(diagnose_circle(self._types.entries[name], self._open_types[start:], "holds"))
 
     def _limit_parts(
-        self, group: MappingEntry, parts: list[tuple[MappingEntry, _Expansion]]
-    ) -> Iterator[tuple[MappingEntry, _Expansion]]:
+        self, group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]
+    ) -> Iterator[tuple[MappingEntry, Expansion]]:
         """Report what is too large, and leave out what is inside of it."""
         for part, expansion in parts:
             if expansion.size <= MAX_ELEMENTS // max(len(parts), 1):
@@ -287,9 +290,9 @@ class _ProjectExpander:
                     element=element_id,
                 )
             )
-            yield part, _Expansion(expansion.written, expansion.body, expansion.origin, {}, 1)
+            yield part, Expansion(expansion.written, expansion.body, expansion.origin, {}, 1)
 
-    def _flatten_group(self, group: MappingEntry, parts: list[tuple[MappingEntry, _Expansion]]) -> MappingEntry:
+    def _flatten_group(self, group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]) -> MappingEntry:
         if not isinstance(group.value, MappingNode) or "components" not in group.value.entries:
             return group
         leaves: dict[str, MappingEntry] = {}
@@ -307,7 +310,7 @@ class _ProjectExpander:
         self,
         group_id: str,
         part: MappingEntry,
-        expansion: _Expansion,
+        expansion: Expansion,
         path: str,
         parent: str | None,
         leaves: dict[str, MappingEntry],
@@ -330,7 +333,7 @@ class _ProjectExpander:
         for name, (inner_part, inner_expansion) in expansion.parts.items():
             self._flatten_part(group_id, inner_part, inner_expansion, f"{path}.{name}", component_id, leaves)
 
-    def _report_duplicates(self, component_id: str, expansion: _Expansion) -> None:
+    def _report_duplicates(self, component_id: str, expansion: Expansion) -> None:
         for output in _list_entries(expansion.body.get("outputs")):
             if output.key in expansion.parts:
                 self._diagnostics.append(

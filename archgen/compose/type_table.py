@@ -124,7 +124,7 @@ class TypeTable:
             return None
         body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
         bindings = dict(zip(list_generic_names(entry), expression.arguments, strict=True))
-        own_body = _bind_types(_drop_type_keys(body), bindings) if bindings else _drop_type_keys(body)
+        own_body = bind_type_body(_drop_type_keys(body), bindings) if bindings else _drop_type_keys(body)
         base_reference = own_body.get("is")
         own_body.entries.pop("is", None)
         if not isinstance(base_reference, ScalarNode):
@@ -262,7 +262,7 @@ def _drop_type_keys(body: MappingNode) -> MappingNode:
     return MappingNode({e.key: e for e in body if e.key not in _TYPE_KEYS}, body.span)
 
 
-def _bind_types(node: MappingNode, bindings: Mapping[str, str], *, has_ids: bool = False) -> MappingNode:
+def bind_type_body(node: MappingNode, bindings: Mapping[str, str], *, has_ids: bool = False) -> MappingNode:
     """Return a copy of a type's body in which generic names are replaced by what they stand for.
 
     `has_ids`: its keys are ids of ports or components, whatever they are called.
@@ -276,7 +276,7 @@ def _bind_types(node: MappingNode, bindings: Mapping[str, str], *, has_ids: bool
 def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str], *, has_ids: bool) -> YamlNode:
     if isinstance(node, MappingNode):
         is_data = key in _DATA_KEYS and not has_ids
-        return node if is_data else _bind_types(node, bindings, has_ids=key in _KEYS_OF_IDS and not has_ids)
+        return node if is_data else bind_type_body(node, bindings, has_ids=key in _KEYS_OF_IDS and not has_ids)
     if key in _NAMING_KEYS and isinstance(node, ScalarNode) and node.value is not None:
         text = bind_type_name(node.text, bindings)
         return node if text == node.text else ScalarNode(text, text, node.span)

@@ -82,6 +82,8 @@ class Diagnostic:
     asked_name: AskedName | None = None
     variants: tuple[str, ...] = ()
     """The variants in which it holds, `base` for the project itself; empty where it holds in all that were judged."""
+    absent_variants: tuple[str, ...] = ()
+    """The variants in which it does not hold, where it holds in some."""
 
     @property
     def effective_severity(self) -> Severity:

@@ -45,18 +45,11 @@ def place_for_group(checked_project: CheckedProject, name: str) -> ElementPlace:
     return ElementPlace(file, ("groups",), is_new_file=True)
 
 
-def place_for_partner(checked_project: CheckedProject) -> ElementPlace:
-    """Return the file with most of the partners."""
-    partner_counts = {file: len(table.entries) for file, table in _section_tables(checked_project, "partners")}
-    file = max(partner_counts, key=lambda name: partner_counts[name], default=first_file_of(checked_project))
-    return ElementPlace(file, ("partners",))
-
-
-def place_for_type(checked_project: CheckedProject) -> ElementPlace:
-    """Return the file with most of the component types."""
-    type_counts = {file: len(table.entries) for file, table in _section_tables(checked_project, "component_types")}
-    file = max(type_counts, key=lambda name: type_counts[name], default=first_file_of(checked_project))
-    return ElementPlace(file, ("component_types",))
+def place_in_section(checked_project: CheckedProject, section: str) -> ElementPlace:
+    """Return the file with most elements of a section, such as `partners`; the first one where none has any."""
+    counts = {file: len(table.entries) for file, table in _section_tables(checked_project, section)}
+    file = max(counts, key=lambda name: counts[name], default=first_file_of(checked_project))
+    return ElementPlace(file, (section,))
 
 
 def place_for_component(checked_project: CheckedProject, holder_id: str) -> ElementPlace:

@@ -13,11 +13,13 @@ from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.link import mapping_values
+from archgen.merge.slice_merge import SliceVersions, merge_slices
 from archgen.pipeline import CheckedProject
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.project_files import read_text_file
+from archgen.syntax.yaml_parser import list_comments
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
-from archgen.syntax.yaml_writer import write_yaml
+from archgen.syntax.yaml_writer import PlainText, write_yaml
 
 _HEADER = "# Requirements from another tool: `archgen import` brings them up to date, and keeps what that tool does not say.\n"
 _SECTIONS = ("use_cases", "requirements")
@@ -36,7 +38,8 @@ class RequirementSlice:
     """Requirements of the slice that the other tool does not name any more: they stay."""
     written_elsewhere: list[str] = field(default_factory=list)
     """Keys that another file of the project says otherwise: these stay, and the slice leaves them out."""
-    lost_comments: int = 0
+    is_rewritten: bool = False
+    """Whether the text is a new one, with the comments of the old one at its beginning: elsewhere they stay in place."""
     errors: tuple[Diagnostic, ...] = ()
     is_read: bool = True
     """Whether the project reads the file, by its `sources`."""
@@ -50,16 +53,17 @@ def make_requirement_slice(
     files = checked_project.loaded_project.files
     old_file = read_text_file(files, file) if files.has_path(file) else None
     old_text = old_file.text if old_file else ""
-    data, header, diagnostics = _read_slice(file, old_text, result)
+    data, diagnostics = _read_slice(file, old_text)
     problems = (*diagnostics, *([old_file.problem] if old_file and old_file.problem else []))
     if problems:
         # What cannot be read cannot be kept either.
         result.errors = problems
         return result
     others = _read_others(checked_project, file, old_text)
+    base = write_yaml(data)
     for section in _SECTIONS:
         _merge_section(section, data, imported.get(section, {}), others, result)
-    result.text = header + write_yaml(data)
+    result.text = _update_text(old_text, base, write_yaml(data), result)
     loaded_project = load_with_text(checked_project, file, result.text)
     result.is_read = file in loaded_project.sources.file_names()
     if result.is_read:
@@ -70,18 +74,28 @@ def make_requirement_slice(
     return result
 
 
-def _read_slice(file: str, text: str, result: RequirementSlice) -> tuple[dict[str, Any], str, tuple[Diagnostic, ...]]:
-    """Return what the slice holds in normal form, the comments at its beginning, and why it cannot be read."""
+def _update_text(old_text: str, base: str, new: str, result: RequirementSlice) -> str:
+    """Return the slice with what is new in it; what people wrote around it stays, comments in particular."""
+    if not old_text.strip():
+        return _HEADER + new
+    if base == new:
+        return old_text
+    merged = merge_slices(SliceVersions(base, ours=old_text, theirs=new))
+    if isinstance(merged, str):
+        return merged
+    result.is_rewritten = True
+    return "".join(f"{comment}\n" for comment in list_comments(old_text)) + new
+
+
+def _read_slice(file: str, text: str) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
+    """Return what the slice holds in normal form, and why it cannot be read."""
     if not text.strip():
-        return {}, _HEADER, ()
+        return {}, ()
     parsed_slice = parse_slice(file, text)
     document = parsed_slice.document
     diagnostics = (*parsed_slice.diagnostics, *parsed_slice.validate_once().diagnostics)
     if document is None or any(each.severity in {None, Severity.ERROR} for each in diagnostics):
-        return {}, "", diagnostics
-    lines = text.splitlines(keepends=True)
-    header_size = next((n for n, line in enumerate(lines) if not line.startswith("#")), len(lines))
-    result.lost_comments = sum("#" in line and line.lstrip().startswith("#") for line in lines[header_size:])
+        return {}, diagnostics
     foreign = next((entry for entry in document.root if entry.key not in _SECTIONS), None)
     if foreign:
         message = (
@@ -90,8 +104,8 @@ def _read_slice(file: str, text: str, result: RequirementSlice) -> tuple[dict[st
         refusal = Diagnostic(
             "wrong-value", message, foreign.key_span, Severity.ERROR, help="name a file of its own behind `--into`"
         )
-        return {}, "", (refusal,)
-    return {entry.key: _to_texts(entry.value) for entry in document.root}, "".join(lines[:header_size]) or _HEADER, ()
+        return {}, (refusal,)
+    return {entry.key: _to_texts(entry.value) for entry in document.root}, ()
 
 
 def _to_texts(node: YamlNode) -> Any:  # noqa: ANN401 - any value of the language
@@ -100,7 +114,9 @@ def _to_texts(node: YamlNode) -> Any:  # noqa: ANN401 - any value of the languag
         return {entry.key: _to_texts(entry.value) for entry in node}
     if isinstance(node, SequenceNode):
         return [_to_texts(item) for item in node.items]
-    return node.text if isinstance(node, ScalarNode) and node.value is not None else None
+    if not isinstance(node, ScalarNode) or node.value is None:
+        return None
+    return node.text if isinstance(node.value, str) else PlainText(node.text)
 
 
 def _read_others(checked_project: CheckedProject, file: str, old_text: str) -> MappingNode:
@@ -127,7 +143,9 @@ def _merge_section(
         new_body = dict(written) if isinstance(written, dict) else {}
         other_body = mapping_values.get_mapping(other_elements, name)
         for key, value in body.items():
-            if key in other_body.entries and key not in new_body:
+            if key == "hints":
+                _lay_hints(new_body, value, mapping_values.get_mapping(other_body, key))
+            elif key in other_body.entries and key not in new_body:
                 if _to_texts(other_body.entries[key].value) != value:
                     result.written_elsewhere.append(f"{key} of {name}")
             else:
@@ -140,3 +158,14 @@ def _merge_section(
             elements[name] = new_body or None
     if elements:
         data[section] = elements
+
+
+def _lay_hints(body: dict[str, Any], hints: Mapping[str, object], other_hints: MappingNode) -> None:
+    """Put hints into a requirement beside those for other programs, and those that another file has already."""
+    written = body.get("hints")
+    all_hints = dict(written) if isinstance(written, dict) else {}
+    for program, value in hints.items():
+        if program in all_hints or program not in other_hints.entries:
+            all_hints[program] = value
+    if all_hints:
+        body["hints"] = all_hints

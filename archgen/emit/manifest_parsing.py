@@ -109,7 +109,7 @@ def _read_flags(data: Any) -> Any:  # noqa: ANN401 - what the file holds
     """Return data with booleans for the flags of files, which are the only values in a manifest that are no text."""
     files = data.get("files") if isinstance(data, dict) else None
     for file in files if isinstance(files, list) else ():
-        for key in _FLAG_KEYS & file.keys() if isinstance(file, dict) else ():
+        for key in sorted(_FLAG_KEYS & file.keys()) if isinstance(file, dict) else ():
             file[key] = {"true": True, "false": False}.get(file[key], file[key]) if isinstance(file[key], str) else None
     return data
 
@@ -151,7 +151,7 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
             predicate = f"lacks the key `{kind.property}`"
         case "Enum":
             predicate = f"must be one of {', '.join(f'`{option}`' for option in kind.options)}"
-        case "AnyOf":
+        case "AnyOf" if error.instance_path[:1] == ["view"]:
             predicate = f"must be one of {_list_view_names()}, or a list of these"
         case "PropertyNames":
             predicate = _describe_wrong_key(kind.error.instance, is_filter=error.instance_path == ["escapes"])

@@ -79,7 +79,7 @@ def join_findings(
             if identity not in joined and not _is_explained(finding, holding[identity], names):
                 holders = holding[identity]
                 joined[identity] = (
-                    finding if len(holders) == len(names) else _name_variants(finding, holders, variant_places)
+                    finding if len(holders) == len(names) else _name_variants(finding, holders, names, variant_places)
                 )
     return tuple(sorted(joined.values(), key=lambda each: each.sort_key))
 
@@ -93,30 +93,44 @@ def _is_explained(finding: Diagnostic, holders: Sequence[str], names: Sequence[s
     return finding.rule in MISSING_RULES and BASE_NAME in names and list(holders) == [BASE_NAME]
 
 
-def _name_variants(finding: Diagnostic, holders: Sequence[str], variant_places: Collection[Span]) -> Diagnostic:
+def _name_variants(
+    finding: Diagnostic, holders: Sequence[str], names: Sequence[str], variant_places: Collection[Span]
+) -> Diagnostic:
     """Return a finding with the variants in which it holds; one that does not hold in the project itself says it."""
-    quoted_names = [f"`{name}`" for name in holders if name != BASE_NAME]
+    absent_names = tuple(name for name in names if name not in holders and name != BASE_NAME)
     message, help_line = finding.message, finding.help
     if finding.rule in _ABSENCE_RULES and BASE_NAME not in holders:
         # What the project itself writes is right there: no slip, and nothing that is still to be declared.
         help_line = help_line if help_line and finding.span in variant_places else _ABSENCE_HELP
     if BASE_NAME not in holders:
         # In the message, by which findings are told apart: a baseline knows one of a variant as such.
-        plural = "s" if len(quoted_names) > 1 else ""
-        message = f"{message} (in the variant{plural} {join_words(quoted_names, 'and')})"
-    return replace(finding, message=message, help=help_line, variants=tuple(holders))
+        message = f"{message} (in {_phrase_holders(holders, absent_names)})"
+    return replace(finding, message=message, help=help_line, variants=tuple(holders), absent_variants=absent_names)
+
+
+def _phrase_holders(holders: Sequence[str], absent_names: Sequence[str]) -> str:
+    """Return the variants in which something holds, in words: by those in which it does not, where that is shorter."""
+    if len(holders) > 1 and not absent_names:
+        return "every variant"
+    if len(holders) > 2 * len(absent_names):
+        return (
+            f"every variant but {_tick_names(absent_names)}" if absent_names else f"the variant {_tick_names(holders)}"
+        )
+    return f"the variant{'s' if len(holders) > 1 else ''} {_tick_names(holders)}"
+
+
+def _tick_names(names: Sequence[str]) -> str:
+    return join_words([f"`{name}`" for name in names], "and")
 
 
 def phrase_absence(finding: Diagnostic) -> str:
     """Return where a finding of the project itself holds, in words; empty where that is everywhere, or in its message."""
     if BASE_NAME not in finding.variants:
         return ""
-    quoted_names = [f"`{name}`" for name in finding.variants if name != BASE_NAME]
-    if not quoted_names:
+    holders = [name for name in finding.variants if name != BASE_NAME]
+    if not holders:
         return "it holds in no variant"
-    plural = "s" if len(quoted_names) > 1 else ""
-    return (
-        f"of the variants it holds in {join_words(quoted_names, 'and')}"
-        if plural
-        else f"of the variants it holds in {quoted_names[0]} only"
-    )
+    absent_names = finding.absent_variants
+    if absent_names and len(holders) > len(absent_names):
+        return f"it does not hold in the variant{'s' if len(absent_names) > 1 else ''} {_tick_names(absent_names)}"
+    return f"of the variants it holds in {_tick_names(holders)}{' only' if len(holders) == 1 else ''}"

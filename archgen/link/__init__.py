@@ -6,6 +6,7 @@ from archgen.link import composition_rules, reference_rules, slice_merging
 from archgen.link.chapter_pictures import MISSING_PICTURE
 from archgen.link.data_types import type_rules
 from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
+from archgen.link.hint_checks import WRONG_HINT
 from archgen.link.named_files import MISSING_FILE
 from archgen.link.parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
@@ -25,6 +26,7 @@ RULES = (
     MISSING_FILE,
     MISSING_PARAMETER_FILE,
     MISSING_VERIFICATION,
+    WRONG_HINT,
 )
 
 __all__ = ["RULES", "link_project"]

@@ -130,8 +130,23 @@ def get_annotations(mapping: MappingNode) -> ElementAnnotations:
         properties=get_text_mapping(mapping, "properties"),
         hints=get_data(mapping, "hints"),
         property_places={name: value.span for name, value in properties.items()},
-        hint_places={entry.key: entry.key_span for entry in get_mapping(mapping, "hints")},
+        hint_places=dict(_list_hint_places(get_mapping(mapping, "hints"))),
     )
+
+
+def _list_hint_places(hints: MappingNode) -> Iterator[tuple[tuple[str | int, ...], Span]]:
+    """Yield where each part of an element's hints is written, by the keys and positions that lead there."""
+    waiting: list[tuple[tuple[str | int, ...], object]] = [((), hints)]
+    while waiting:
+        path, node = waiting.pop()
+        if isinstance(node, MappingNode):
+            for entry in node:
+                yield (*path, entry.key), entry.key_span
+                waiting.append(((*path, entry.key), entry.value))
+        elif isinstance(node, SequenceNode):
+            for number, item in enumerate(node.items):
+                yield (*path, number), item.span
+                waiting.append(((*path, number), item))
 
 
 def iterate_elements(mapping: MappingNode, key: str) -> Iterator[tuple[str, MappingEntry, MappingNode]]:

@@ -108,7 +108,8 @@ def _report_missing(files: ProjectFiles, named: NamedFile, noun: str) -> Diagnos
         return Diagnostic("missing-file", message, span, help=help_line, element=named.element)
     parent, file_name = posixpath.split(path)
     _, _, neighbours = next(iter(files.walk_folders(parent)), ("", [], []))
-    help_line = did_you_mean(file_name, neighbours) or (
+    candidates = [posixpath.join(parent, each) for each in neighbours]
+    help_line = did_you_mean(posixpath.join(parent, file_name), candidates) or (
         "write its path from the project's folder; an address on the web begins with `https://`"
     )
     return Diagnostic("missing-file", f"{noun} `{text}` is not there", span, help=help_line, element=named.element)

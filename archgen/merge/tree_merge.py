@@ -14,7 +14,18 @@ from archgen.merge.sequence_merge import MergedRun, merge_sequences
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
 _GATHERING_KEYS = frozenset(
-    {"backends", "interfaces", "open", "requirements", "reviewers", "shared_topics", "sources", "tags", "use_cases"}
+    {
+        "backends",
+        "interfaces",
+        "open",
+        "passes",
+        "requirements",
+        "reviewers",
+        "shared_topics",
+        "sources",
+        "tags",
+        "use_cases",
+    }
     | {"parent", "verified_by"}
 )
 """Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""

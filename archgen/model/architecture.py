@@ -186,7 +186,7 @@ class Architecture:
     """An architecture with all references resolved. Mappings keep the order of first appearance.
 
     `components`, `inputs` and `outputs` are the same objects as below `groups`, by complete id. `edges` are all pairs
-    that the connections make, services and actions included (there the output is the server's). `transform` fills in
+    that the connections make, services and actions included (there the output is the server's). `derivation` fills in
     the low level: planned nodes in `nodes`, `endpoints` in the order of nodes, and `topics` by absolute name (with the
     flow behind the name if a topic and a service share one).
     """
@@ -320,10 +320,6 @@ class Architecture:
         """Yield what nodes exchange data over, by name: topics, services and actions, then channels of other media."""
         yield from self.topics.items()
         yield from self.channels.items()
-
-    def find_carrier(self, name: str) -> Topic | None:
-        """Return the topic, service, action or channel of a name."""
-        return self.topics.get(name) or self.channels.get(name)
 
     def list_endpoints(self) -> Iterator[Endpoint]:
         """Yield the endpoints of nodes over ROS, then those over other media."""

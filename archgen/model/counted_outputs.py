@@ -94,3 +94,15 @@ def find_deprecation(architecture: Architecture, kind: str, name: str) -> Deprec
         return output.deprecated if output else None
     holder = (architecture.types if kind == "type" else architecture.component_types).get(name)
     return holder.deprecated if holder else None
+
+
+def list_deprecated_kinds(architecture: Architecture, component: Component) -> Iterator[str]:
+    """Yield what of a component is going away: an `output` of its own, a `type` that its ports name, its `component_type`."""
+    if any(output.deprecated for output in component.outputs.values()):
+        yield "output"
+    type_names = (port.type for port in component.ports if port.type)
+    if any(find_deprecation(architecture, "type", name) for name in type_names):
+        yield "type"
+    origins = architecture.list_types_of(component)
+    if any(find_deprecation(architecture, "component_type", name) for name in origins):
+        yield "component_type"

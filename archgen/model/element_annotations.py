@@ -29,8 +29,8 @@ class ElementAnnotations:
     hints: Mapping[str, object] = field(default_factory=dict)
     property_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where the value of each property is written."""
-    hint_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
-    """Where the hints for each program begin."""
+    hint_places: Mapping[tuple[str | int, ...], Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each part of the hints is written, by the keys and positions that lead there, the program first."""
 
 
 NO_ANNOTATIONS = ElementAnnotations()

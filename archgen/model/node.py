@@ -176,6 +176,8 @@ class Endpoint:
     written: bool = False
     name_written: bool = False
     sources: tuple[str, ...] = ()
+    medium: str = "ros"
+    """What it travels over; of anything but `ros` the name is free text behind the medium's word."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
     from archgen.model.component import Input, Output
     from archgen.model.message_types import ConceptualType
+    from archgen.model.node import Endpoint, Topic
 
 PortNature = Literal["ros", "physical", "other"]
 """`other`: data between programs that does not travel over ROS, so that it has neither topic nor message of ROS."""
@@ -91,9 +92,9 @@ def normalise_medium(text: str | None) -> str | None:
     return None if word == DIGITAL else word or None
 
 
-def word_of_medium(port: Input | Output) -> str:
-    """Return the word by which lists, selectors and other programs name a port's medium: `digital` where it is ROS."""
-    return DIGITAL if port.medium == ROS else port.medium
+def word_of_medium(carrier: Input | Output | Topic) -> str:
+    """Return the word by which lists, selectors and other programs name a medium: `digital` where it is ROS."""
+    return DIGITAL if carrier.medium == ROS else carrier.medium
 
 
 def list_medium_words(port: Input | Output) -> tuple[str, ...]:
@@ -106,9 +107,29 @@ def name_medium(word: str) -> str:
     return MEDIUM_NAMES.get(word, word)
 
 
-def label_of_medium(port: Input | Output) -> str:
-    """Return what pictures and tables add to a port: how its medium is called, nothing where it is ROS."""
-    return "" if port.medium == ROS else name_medium(port.medium)
+def label_of_medium(carrier: Input | Output | Topic | Endpoint) -> str:
+    """Return what pictures and tables add to a port or topic: how its medium is called, nothing where it is ROS."""
+    return "" if carrier.medium == ROS else name_medium(carrier.medium)
+
+
+def key_of_carrier(endpoint: Endpoint) -> str:
+    """Return the key of what an endpoint uses, in the architecture's topics or channels: a call has a key of its own."""
+    return make_channel_key(endpoint.name, endpoint.flow) if endpoint.medium != ROS else endpoint.name
+
+
+def make_channel_key(name: str, flow: PortFlow) -> str:
+    """Return the key of a channel: the same name may be sent to and called."""
+    return name if flow == "topic" else f"{name} ({flow})"
+
+
+def label_of_carrier(carrier: Topic | Endpoint) -> str:
+    """Return how people call a topic or channel: its name in ROS, else what is written of it with its medium in brackets."""
+    return carrier.name if carrier.medium == ROS else f"{name_on_medium(carrier)} ({name_medium(carrier.medium)})"
+
+
+def name_on_medium(carrier: Topic | Endpoint) -> str:
+    """Return the name of a topic or channel without the word of its medium."""
+    return carrier.name if carrier.medium == ROS else carrier.name.removeprefix(f"{carrier.medium} ")
 
 
 def describe_carried(port: Input | Output) -> str:

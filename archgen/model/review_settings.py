@@ -89,8 +89,8 @@ class ReviewSettings:
     """The section `review`. `main` is the branch that changes are compared with, None to ask git.
 
     `breaking` is the severity of a change that breaks another partner's part, by category, None if not written.
-    `guards_margins`: promises have a severity of their own, so that a promise breaks as soon as it is weaker. `backends` are
-    the project's own backends that may run in the review of a pull request.
+    `guards_margins`: promises have a severity of their own, so that a promise breaks as soon as it is weaker. `backends` and
+    `passes` are the project's own that may run in the review of a pull request.
     """
 
     main: str | None = None
@@ -98,3 +98,4 @@ class ReviewSettings:
     guards_margins: bool = False
     accepted: tuple[AcceptedChange, ...] = ()
     backends: tuple[str, ...] = ()
+    passes: tuple[str, ...] = ()

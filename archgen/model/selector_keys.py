@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
+from archgen.model.counted_outputs import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
@@ -69,16 +70,23 @@ def find_by_key(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
         )
     component_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
-    components: Iterable[str] = (
-        (c.id for c in architecture.components.values() if _matches_any(value, component_values(c)))
-        if component_values
-        else ()
-    )
+    components = [
+        c.id
+        for c in architecture.components.values()
+        if component_values and _matches_any(value, component_values(architecture, c))
+    ]
     nodes = (n.id for n in architecture.nodes.values() if _matches_any(value, node_values(n))) if node_values else ()
+    # Most statuses are those of nodes: where no component says this one, steps are between nodes.
+    only_nodes = component_values is None or (key == "status" and not components)
     # A node of one partner may implement components of others: `owner:` selects the node without those components.
     return SelectorHit(
-        frozenset(components), frozenset(nodes), only_nodes=component_values is None, includes_components=key != "owner"
+        frozenset(components), frozenset(nodes), only_nodes=only_nodes, includes_components=key != "owner"
     )
+
+
+def find_component_status(architecture: Architecture, component: Component) -> str | None:
+    """Return what a component says of its state, else what the composed one around it says."""
+    return next((each.status for each in (component, *architecture.list_around(component)) if each.status), None)
 
 
 def _matches_any(pattern: str, texts: Iterable[str | None]) -> bool:
@@ -89,15 +97,17 @@ def _port_media(component: Component) -> Iterable[str]:
     return (word for port in component.ports for word in list_medium_words(port))
 
 
-_COMPONENT_KEYS: Mapping[str, Callable[[Component], Iterable[str | None]]] = {
-    "owner": lambda component: component.owners,
-    "medium": _port_media,
-    "role": lambda component: (component.role,),
-    "behaviour": lambda component: (component.timing.behaviour if component.timing else None,),
+_COMPONENT_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str | None]]] = {
+    "owner": lambda _, component: component.owners,
+    "status": lambda architecture, component: (find_component_status(architecture, component),),
+    "medium": lambda _, component: _port_media(component),
+    "role": lambda _, component: (component.role,),
+    "behaviour": lambda _, component: (component.timing.behaviour if component.timing else None,),
 }
 _ORIGIN_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str]]] = {
     "is": lambda architecture, component: architecture.list_types_of(component),
     "library": lambda architecture, component: architecture.list_libraries_of(component),
+    "deprecated": list_deprecated_kinds,
 }
 _NODE_KEYS: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
     "owner": lambda node: node.owners,
@@ -162,6 +172,35 @@ def _find_by_parameter(architecture: Architecture, pattern: str) -> SelectorHit:
     return SelectorHit(frozenset(components), frozenset(nodes))
 
 
+def _find_by_use_case(architecture: Architecture, pattern: str) -> SelectorHit:
+    """Find the components that take part in a use case, of composed ones all that is inside."""
+    components = (
+        leaf
+        for use_case_id, participants in list_participants(architecture).items()
+        if matches_wildcard(pattern, use_case_id)
+        for leaf in participants
+    )
+    return SelectorHit(frozenset(components), frozenset())
+
+
+def list_participants(architecture: Architecture) -> Mapping[str, tuple[str, ...]]:
+    """Return the components that take part in each use case with steps, each once: of composed ones all that is inside."""
+    return {
+        use_case.id: tuple(
+            dict.fromkeys(
+                leaf
+                for step in use_case.steps
+                for end in (step.source, step.target)
+                if end.kind in {"component", "output"}
+                for leaf in architecture.leaves_of(end.participant)
+                if leaf in architecture.components
+            )
+        )
+        for use_case in architecture.use_cases.values()
+        if use_case.steps
+    }
+
+
 def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
     """Find what has a property itself; components also by what is around them, nodes by their host."""
     condition = parse_condition(text)
@@ -211,5 +250,6 @@ _ELEMENT_FINDERS: Mapping[str, Callable[[Architecture, str], SelectorHit]] = {
     "requirement": _find_by_requirement,
     "parameter": _find_by_parameter,
     "property": _find_by_property,
+    "use_case": _find_by_use_case,
 }
 """The keys whose values stand at other elements than the components and nodes that they select."""

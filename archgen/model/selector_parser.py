@@ -35,6 +35,8 @@ SELECTOR_KEYS = (
     "parameter",
     "property",
     "variant",
+    "deprecated",
+    "use_case",
 )
 ALL_STEPS = -1
 """Any number of steps."""

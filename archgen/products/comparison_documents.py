@@ -148,12 +148,20 @@ def compare_since(revision: str, path: Path | None, checked_project: CheckedProj
 
 
 def read_version_before(revision: str, path: Path | None, checked_project: CheckedProject) -> ProjectVersion:
-    """Read an earlier version of a project. Raise `git.GitError` and `project.ProjectNotFoundError`."""
-    from archgen.pipeline import VersionCache
+    """Read an earlier version of a project; as it stood in the variants in which the project is shown, if it had them.
+
+    Raise `git.GitError` and `project.ProjectNotFoundError`.
+    """
+    from archgen.pipeline import VersionCache, stand_in_variants
     from archgen.products import compared_versions
 
     new_version = ProjectVersion(WORKING_TREE_NAME, checked_project)
-    return compared_versions.read_earlier_version(revision, path, VersionCache(), new_version)
+    old_version = compared_versions.read_earlier_version(revision, path, VersionCache(), new_version)
+    steps = [name for name in checked_project.steps if name in old_version.checked_project.architecture.variants]
+    if not steps:
+        return old_version
+    standing_project = stand_in_variants(old_version.checked_project, steps)
+    return compared_versions.read_variant(old_version, standing_project, steps)
 
 
 def list_changes_since(old_version: ProjectVersion, checked_project: CheckedProject) -> SiteChanges:

@@ -1,4 +1,4 @@
-"""Which of a project's own backends may run in a review: those that a trusted revision names, if they are as they are there."""
+"""Which of a project's own backends and passes may run in a review: those that a trusted revision names, as they are there."""
 
 from __future__ import annotations
 
@@ -14,8 +14,13 @@ from archgen.git.object_reader import LINK_MODE, GitObjects, TreeEntry
 from archgen.pipeline import check_at_revision
 from archgen.project import NotAtRevisionError
 from archgen.syntax.committed_files import CommittedFiles
+from archgen.syntax.project_files import ProjectFiles
 
 _MAX_NAMED_FILES = 3
+
+
+class UntrustedPassError(OutputError):
+    """A pass of the project may not run: the trusted revision does not name it, or holds another one."""
 
 
 class UntrustedBackendError(OutputError):
@@ -24,13 +29,14 @@ class UntrustedBackendError(OutputError):
 
 @dataclass(frozen=True, slots=True)
 class TrustedRevision:
-    """What a revision that is trusted says about the project's own backends."""
+    """What a revision that is trusted says about the project's own backends and passes."""
 
     revision: str
     """As the user wrote it."""
     allowed_names: Collection[str] = ()
     committed_files: CommittedFiles | None = None
     """The project's files there; None where the project does not exist there."""
+    allowed_passes: Collection[str] = ()
 
 
 def read_trusted_revision(project: Path | None, revision: str) -> TrustedRevision:
@@ -44,8 +50,9 @@ def read_trusted_revision(project: Path | None, revision: str) -> TrustedRevisio
     except NotAtRevisionError:
         return TrustedRevision(revision)
     files = checked_project.loaded_project.files
+    review = checked_project.architecture.review
     return TrustedRevision(
-        revision, checked_project.architecture.review.backends, files if isinstance(files, CommittedFiles) else None
+        revision, review.backends, files if isinstance(files, CommittedFiles) else None, review.passes
     )
 
 
@@ -68,6 +75,22 @@ def refuse_untrusted(backend: Backend, trusted_revision: TrustedRevision) -> Non
             f"{refusal} it differs from the one in `{revision}`: {names}{f' and {further} more' if further > 0 else ''}"
         )
         raise UntrustedBackendError(
+            msg, f"bring its change into `{revision}` first, or this branch up to date with `{revision}`"
+        )
+
+
+def refuse_untrusted_pass(name: str, file: str, files: ProjectFiles, trusted_revision: TrustedRevision) -> None:
+    """Raise UntrustedPassError unless the revision names a pass of the project and holds the very file of it."""
+    refusal = f"the project's own pass `{name}` is not run here:"
+    revision, committed_files = trusted_revision.revision, trusted_revision.committed_files
+    if committed_files is None or name not in trusted_revision.allowed_passes:
+        msg = f"{refusal} the revision that is trusted does not name it"
+        raise UntrustedPassError(msg, "add it to `review.passes` there, in a change of its own")
+    there, here = committed_files.fetch_bytes(file), files.fetch_bytes(file)
+    is_same = isinstance(there, bytes) and isinstance(here, bytes) and here.replace(b"\r\n", b"\n") == there
+    if files.is_behind_link(file) or committed_files.is_behind_link(file) or not (is_same or there == here):
+        msg = f"{refusal} `{file}` is not as it is in `{revision}`"
+        raise UntrustedPassError(
             msg, f"bring its change into `{revision}` first, or this branch up to date with `{revision}`"
         )
 

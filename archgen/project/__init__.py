@@ -14,9 +14,11 @@ from archgen.project.project_tracking import (
     load_at_revision,
 )
 from archgen.project.slice_parsing import ParsedSlices
+from archgen.project.source_reading import PASS_FOLDER
 from archgen.project.source_rules import RULES
 
 __all__ = [
+    "PASS_FOLDER",
     "PROJECT_FILE",
     "RULES",
     "LoadedProject",

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 _SKIPPED_FOLDERS = frozenset({"backends"})
 """Folders that are not searched for slices unless `sources` names them."""
+PASS_FOLDER = "passes/"  # noqa: S105 - not a password
+"""Where a project's own passes stand; a file there whose `rules` are a list is one."""
 _MAX_SECTIONS = 100
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
 _GUESS_BUDGET = 300_000
@@ -133,8 +135,15 @@ def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> Non
     """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
     state.seen_files.add(file)
     parsed_slice = _parse_file(state, file)
-    if is_named or _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
+    if is_named or (_OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections) and not _is_pass(parsed_slice)):
         _keep_slice(state, parsed_slice)
+
+
+def _is_pass(parsed_slice: Slice) -> bool:
+    """Whether a file is a pass of the project: rules to rewrite it by, and nothing that it holds."""
+    if not parsed_slice.file.startswith(PASS_FOLDER) or parsed_slice.document is None:
+        return False
+    return isinstance(parsed_slice.document.root.get("rules"), SequenceNode)
 
 
 def _read_all_slices(state: ReadingState) -> None:
@@ -146,7 +155,7 @@ def _read_all_slices(state: ReadingState) -> None:
         state.seen_files.add(file)
         parsed_slice = _parse_file(state, file)
         # Tested on the text, since a baseline that a merge broke cannot be parsed.
-        if baseline_reading.is_baseline(parsed_slice.text):
+        if baseline_reading.is_baseline(parsed_slice.text) or _is_pass(parsed_slice):
             continue  # broken or not, it is judged where it is used
         # A repository holds other YAML as well, some of it templates that no parser reads. A broken file is an error
         # only if it seems to be meant as a slice.

@@ -78,4 +78,35 @@ Good:
     ros: {interfaces: []}
 """,
     ),
+    Rule(
+        "wrong-pass",
+        Severity.ERROR,
+        """A pass of the project, rules in a file of its folder `passes`, cannot be read or comes to no end.
+
+Why: a rule that names a variable that nothing binds, or a key that there is not, would find and write nothing, and nobody
+would see why. One that changes nothing that it finds would find it for ever. Such a pass does not run.
+
+Bad:
+
+    # file: archgen.yaml
+    archgen: 1
+    # file: passes/tag_cameras.yaml
+    title: Tags what sends pictures
+    rules:
+      - find: {components: {$camera: {outputs: {$port: {type: Picture}}}}}
+        unless: {components: {$camera: {tags: [camera]}}}
+        add: {components: {$kamera: {tags: [camera]}}}
+
+Good:
+
+    # file: archgen.yaml
+    archgen: 1
+    # file: passes/tag_cameras.yaml
+    title: Tags what sends pictures
+    rules:
+      - find: {components: {$camera: {outputs: {$port: {type: Picture}}}}}
+        unless: {components: {$camera: {tags: [camera]}}}
+        add: {components: {$camera: {tags: [camera]}}}
+""",
+    ),
 )

@@ -32,10 +32,21 @@ def list_components(root: MappingNode) -> Iterator[tuple[str, MappingNode]]:
 
 def expand_sugar(document: YamlDocument) -> tuple[Diagnostic, ...]:
     """Replace the short forms of composed components in a validated document, in place."""
+    return (*name_listed_elements(document.root), *move_targets(document.root))
+
+
+def name_listed_elements(root: MappingNode) -> tuple[Diagnostic, ...]:
+    """Replace lists of components and ports, and dotted ids, by what they stand for, in place."""
     diagnostics: list[Diagnostic] = []
-    for holder in _list_holders(document.root):
+    for holder in _list_holders(root):
         _expand_components(holder.body, diagnostics)
-    for holder in _list_holders(document.root):
+    return tuple(diagnostics)
+
+
+def move_targets(root: MappingNode) -> tuple[Diagnostic, ...]:
+    """Replace `to` at outputs by `from` at the inputs that it names, in place."""
+    diagnostics: list[Diagnostic] = []
+    for holder in _list_holders(root):
         _move_targets(holder.body, diagnostics)
     return tuple(diagnostics)
 

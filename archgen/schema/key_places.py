@@ -39,6 +39,15 @@ _GIVER_KEYS = frozenset({"promise"})
 """Keys that only an output has."""
 _READER_KEYS = frozenset({"freshness", "optional"})
 """Keys that only an input has, and that say by themselves what they are about: `from` and `type` do not."""
+_FORBIDDEN_OF = (
+    "a flow has two ends: `forbid: {from: ..., to: ...}`; `of` belongs to `require`, which asks something of elements"
+)
+_REQUIRED_ENDS = "`require` asks something of elements: `require: {of: ..., inputs_from: ...}`; what may not flow stands below `forbid`"
+_POLICY_KEYS = {
+    "forbid": dict.fromkeys(("of", "inputs_from", "outputs_to"), _FORBIDDEN_OF),
+    "require": dict.fromkeys(("from", "to"), _REQUIRED_ENDS),
+}
+"""Help for the keys that one kind of policy has and the other has not."""
 _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
@@ -65,11 +74,12 @@ _ELEMENT_SECTIONS = {
 def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     """Return the place where a key is written that an element of a kind (its title in the schema) does not have."""
     is_port = len(path) > 2 and path[-2] in {"inputs", "outputs"} and path[0] == "groups"  # noqa: PLR2004
+    is_policy = path[:1] == ("policies",) and key in _POLICY_KEYS.get(str(path[-1]), {})
+    if is_policy or (path[:1] == ("variants",) and path[2:] == ("changes",)):
+        return _POLICY_KEYS[str(path[-1])][key] if is_policy else _find_changes_help(key)
     parent = _find_parent(key, kind)
-    if parent is not None:
-        return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`"
-    if key in _TELLING_NOTHING:
-        return None
+    if parent is not None or key in _TELLING_NOTHING:
+        return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`" if parent else None
     if key in _READER_KEYS and kind != "Input":
         return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
     if key in _GIVER_KEYS and kind != "Output":
@@ -176,6 +186,22 @@ def _find_parent(key: str, kind: str) -> str | None:
         if key in below.get("properties", ()) and below.get("title") != kind:
             return str(parent)
     return None
+
+
+def _find_changes_help(key: str) -> str | None:
+    """Return help for a key that no section of a variant's changes has."""
+    if key == "components":
+        return "components are changed in their group: `groups: {GROUP: {components: {COMPONENT: ...}}}`"
+    if key in _list_keys("variant"):
+        return f"`{key}` says something of the variant: begin it in the column of `changes`"
+    if key in load_schema()["properties"]:
+        return f"no variant changes `{key}`: it says what the project is, and holds in all of them"
+    home = _find_kind(key, tuple(_HOMES))
+    return (
+        f"write it as {_HOMES[home].format(key=key, implements='', use='publishes', port='PORT', type='TYPE')}"
+        if home
+        else None
+    )
 
 
 def _find_section_help(key: str, path: KeyPath) -> str | None:

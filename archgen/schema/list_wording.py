@@ -14,6 +14,7 @@ _LOWER_PATH = re.compile(r"[a-z][a-z0-9_.]*\Z")
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 _RANGE = re.compile(r"(\d{1,4})\s*(?:-|\.\.\.?)\s*(\d{1,4})\Z", re.ASCII)
+_ENDS = re.compile(r"([+-]?\d+(?:\.\d+)?)\s*(?:-|\.\.\.?|,|;|to)\s*([+-]?\d+(?:\.\d+)?)\Z", re.ASCII)
 _SHELL_SIGN = re.compile(r"[$&|;<>`*?~]")
 _MAX_RANGE = 16
 """A longer list of numbers is not written out."""
@@ -45,6 +46,20 @@ def suggest_list(text: str, schema_part: dict[str, Any]) -> str:
     """Return a text as the list in brackets that was most likely meant."""
     entries = _list_range(text, schema_part) or split_ids(text, schema_part) or [text]
     return f"[{', '.join(map(_quote_entry, entries))}]"
+
+
+def describe_list(text: str, schema_part: dict[str, Any]) -> str:
+    """Return a line that says how a text is written as the list that is asked for."""
+    is_range = schema_part.get("title") == "Range"
+    return _describe_range(text) if is_range else f"write `{suggest_list(text, schema_part)}`"
+
+
+def _describe_range(text: str) -> str:
+    """Return a line that says how a range is written; both ends, where the text names them (`1-9`, `0..30`)."""
+    if ends := _ENDS.match(text.strip()):
+        return f"write its least and its greatest value: `[{ends[1]}, {ends[2]}]`"
+    end = _quote_entry(text.strip())
+    return f"write its least and its greatest value: `[0, {end}]`, or `[{end}, .inf]` for no upper end"
 
 
 def suggest_words(text: str) -> str:

@@ -133,7 +133,7 @@ def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
     if "propertyNames" in schema_part:
         return "write one `id: ...` line for each below it, or `{}` for none"
     if "array" in types:
-        return f"write `{list_wording.suggest_list(clip_text(text), schema_part)}`"
+        return list_wording.describe_list(clip_text(text), schema_part)
     if "patternErrorMessage" in schema_part:
         return str(schema_part["patternErrorMessage"])
     return f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None

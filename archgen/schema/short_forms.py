@@ -116,10 +116,15 @@ _ROOT_FORM = ElementForm(
         "properties": ElementForm(("title",), frozenset({"of"})),
     },
     part_forms={
-        "review": ElementForm(list_keys=frozenset({"backends"}), raw_keys=frozenset({"accepted"})),
+        "review": ElementForm(list_keys=frozenset({"backends", "passes"}), raw_keys=frozenset({"accepted"})),
         "ros": ElementForm(raw_keys=frozenset({"parameters"})),
     },
 )
+
+
+COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM = _COMPONENT_FORM, _COMPONENT_TYPE_FORM, _TYPE_FORM
+"""What components, component types and conceptual types look like, for those who write them."""
+GROUP_FORM = _ROOT_FORM.keyed_forms["groups"]
 
 
 def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:

@@ -14,7 +14,7 @@ from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter
 from archgen.emit.site.explorer_files import EXPLORER_ANCHOR
 from archgen.emit.site.page_links import renew_ids
-from archgen.pipeline import CheckedProject, VersionCache, check_project
+from archgen.pipeline import CheckedProject, UnknownVariantError, VersionCache
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import read_version_before
 from archgen.products.output_options import OutputOptions
@@ -25,7 +25,14 @@ from archgen.serve.error_notes import list_error_notes
 from archgen.serve.file_watch import WatchedPlaces, join_paths
 from archgen.serve.live_pictures import LivePictures
 from archgen.serve.live_status import LiveStatus
-from archgen.serve.project_state import ProjectState, SelectionError, make_state, renew_changes, renew_history
+from archgen.serve.project_state import (
+    ProjectState,
+    SelectionError,
+    make_state,
+    read_project,
+    renew_changes,
+    renew_history,
+)
 from archgen.serve.site_index import SiteIndex, list_figures, make_index
 from archgen.views.pages.report_outline import make_notices
 from archgen.views.pages.single_page import make_page
@@ -52,13 +59,16 @@ class _Shared:
 class LiveSite:
     """The site of the project at a path. Call `start`, then `refresh` whenever files have changed, and `stop` at the end."""
 
-    def __init__(self, path: Path | None, options: OutputOptions, since: str | None = None) -> None:
+    def __init__(
+        self, path: Path | None, options: OutputOptions, since: str | None = None, variants: tuple[str, ...] = ()
+    ) -> None:
         """Read nothing yet. Raise `ProjectNotFoundError` if there is no project.
 
-        `since` is a version: the site shows what changed since. It is read once, by `start`.
+        `since` is a version: the site shows what changed since. It is read once, by `start`. `variants` are those in
+        which the project is shown; none is the project with all of them.
         """
         self._root, self._first_file = find_project(path)
-        self._path, self._options, self._since = path, options, since
+        self._path, self._options, self._since, self._variants = path, options, since, variants
         self._old_version: ProjectVersion | None = None
         self._cache = VersionCache()
         self._shared = _Shared()
@@ -121,8 +131,11 @@ class LiveSite:
     def refresh(self) -> None:
         """Read the files as they are now. What is not sound is not shown: the last sound state stays."""
         try:
-            checked_project = check_project(self._path, self._cache)
-        except ProjectNotFoundError as error:
+            checked_project = read_project(self._path, self._cache, self._variants)
+        except (ProjectNotFoundError, UnknownVariantError) as error:
+            # At the start a variant that is not there is a slip; later somebody takes it out, or renames it.
+            if isinstance(error, UnknownVariantError) and self._shared.state is None:
+                raise
             self._tell_failure(str(error))
             return
         self.checked_project = checked_project

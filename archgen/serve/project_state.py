@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
-from archgen.pipeline import CheckedProject
+from archgen.pipeline import CheckedProject, VersionCache, check_project, stand_in_variants
 from archgen.products import project_views
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import list_changes_since
@@ -36,6 +37,17 @@ class ProjectState:
 
 class SelectionError(ValueError):
     """What the selector names is not there; the message says why."""
+
+
+def read_project(path: Path | None, version_cache: VersionCache, variants: tuple[str, ...]) -> CheckedProject:
+    """Return the project at a path as it stands in some of its variants; with all of them where none is named.
+
+    Raise `project.ProjectNotFoundError`, and `pipeline.UnknownVariantError` where it has one of them not.
+    """
+    checked_project = check_project(path, version_cache, variants or None)
+    if not variants:
+        return checked_project
+    return stand_in_variants(checked_project, variants, version_cache.analysis_memory)
 
 
 def make_state(checked_project: CheckedProject, options: OutputOptions, last: ProjectState | None) -> ProjectState:

@@ -9,6 +9,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 ElementPath = tuple[str | int, ...]
+
+
+class PlainText(str):
+    """A scalar as somebody wrote it without quotes, such as `1.10`: it is written so again."""
+
+    __slots__ = ()
+
+
 _PLAIN_SCALAR = re.compile(
     r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff#:,\[\]{}'\"]*\Z"
 )
@@ -72,6 +80,8 @@ def _write_item(
 
 def format_scalar(value: object) -> str:
     """Format one scalar, or an empty mapping or list, on one line."""
+    if isinstance(value, PlainText):
+        return str(value)
     if isinstance(value, str):
         return _format_text(value)
     if isinstance(value, (Mapping, list, tuple)):

@@ -44,6 +44,11 @@ class AnalysisMemory:
         """Start without any analysis."""
         self._analyses: list[Analysis] = []
         """The one that was asked for last comes first."""
+        self._room = _MAX_ANALYSES
+
+    def make_room(self, version_count: int) -> None:
+        """Remember at least so many analyses: whoever judges so many versions holds all of them anyway."""
+        self._room = max(self._room, version_count)
 
     def judge_architecture(self, architecture: Architecture) -> Analysis:
         """Analyse an architecture for judging; an earlier analysis, where every figure and every place is the same."""
@@ -53,7 +58,7 @@ class AnalysisMemory:
         others = [each for each in self._analyses if each is not analysis]
         # Only a few are kept: a variant may have the figures of the project itself, or of another one; of versions in
         # their order, one that returns to older figures is rare.
-        self._analyses = [analysis, *others[: _MAX_ANALYSES - 1]]
+        self._analyses = [analysis, *others[: self._room - 1]]
         return analysis
 
 

@@ -179,7 +179,7 @@ def make_lookup(
         written_connections=written_connections,
         connection_positions=_group_values(_list_ends(architecture, written_connections)),
         nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
-        endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.endpoints),
+        endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.list_endpoints()),
         findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
         components_for_requirement=components_for_requirement,
         chains_for_requirement=chains_for_requirement,

@@ -13,10 +13,14 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.document_chapters import GENERATED_CHAPTERS
 from archgen.model.known_interfaces import KNOWN_DISTROS
+from archgen.model.port_media import DIGITAL, MEDIUM_NAMES, ROS, name_medium
 
 _MAX_MEANING_LENGTH = 100
 _PLAIN_NAME = re.compile(r"[A-Za-z0-9_/~][A-Za-z0-9_./~:+-]*\Z")
 """Names that mean the same in YAML with and without quotes; others cannot be put into a list as they stand."""
+
+
+_BOOLEANS = ("true", "false")
 
 
 class OfferedName(NamedTuple):
@@ -101,6 +105,8 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
             *(OfferedName(f"tag:{tag}", "what bears this tag") for tag in sorted(_list_tags(architecture))),
             *(OfferedName(f"owner:{each.id}", _shorten_text(each.title)) for each in architecture.partners.values()),
         ),
+        **_list_declared_properties(architecture),
+        "media": tuple(_list_media(architecture)),
         "distros": tuple(OfferedName(name, "") for name in KNOWN_DISTROS),
         "chapters": tuple(OfferedName(name, "a chapter that archgen writes") for name in GENERATED_CHAPTERS),
     }
@@ -140,6 +146,28 @@ def _list_inputs(components: Iterable[Component]) -> Iterator[OfferedName]:
             if name not in seen_names:
                 seen_names.add(name)
                 yield OfferedName(name, _shorten_text(f"input of {component.title}"))
+
+
+def _list_declared_properties(architecture: Architecture) -> dict[str, tuple[OfferedName, ...]]:
+    """Return the declared properties, and for each that has choices these, below `choices:` and its id."""
+    declared = architecture.properties.values()
+    choices = {
+        f"choices:{each.id}": tuple(OfferedName(choice, "") for choice in each.choices or _BOOLEANS)
+        for each in declared
+        if each.choices or each.type == "boolean"
+    }
+    return {"properties": tuple(OfferedName(each.id, _shorten_text(each.title)) for each in declared), **choices}
+
+
+def _list_media(architecture: Architecture) -> Iterator[OfferedName]:
+    """Yield the words for media: those that the project uses, then those that archgen knows."""
+    own_words = {port.medium for port in architecture.list_ports()} | {
+        link.protocol for link in architecture.links.values() if link.protocol
+    }
+    own_words.add(architecture.project.middleware)
+    for word in dict.fromkeys((*sorted(own_words - {ROS}), DIGITAL, *MEDIUM_NAMES)):
+        meaning = name_medium(word) if name_medium(word) != word else ""
+        yield OfferedName(word, "used in this project" if word in own_words and not meaning else meaning)
 
 
 def _list_tags(architecture: Architecture) -> set[str]:

@@ -6,15 +6,14 @@ the number (`value`) and its unit (`unit`): ns, Hz, B or bit/s.
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link
-from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.node import Node
 from archgen.model.port_media import ROS, is_physical, word_of_medium
 from archgen.model.requirement import Requirement
+from archgen.views.carrier_record import record_carriers, record_endpoints
 from archgen.views.lookup import Lookup
 from archgen.views.parameter_record import record_effective, record_operation, record_parameter, record_values
 from archgen.views.promise_record import record_life, record_words
@@ -65,7 +64,7 @@ def make_record(lookup: Lookup) -> Record:
             if is_shown(architecture.inputs[e.input].component) or is_shown(architecture.outputs[e.output].component)
         ],
         "nodes": {node.id: _record_node(lookup, node) for node in lookup.shown_nodes()},
-        "topics": _record_topics(lookup),
+        **record_carriers(lookup),
         "types": {
             t.name: record_type(t, architecture.interfaces) | record_annotations(t) for t in architecture.types.values()
         },
@@ -332,7 +331,7 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             "callback_groups": {name: list(members) for name, members in node.callback_groups.items()},
             "reentrant": node.reentrant or None,
             "derived": None if node.written else True,
-            "endpoints": [_record_endpoint(endpoint) for endpoint in lookup.endpoints_of.get(node.id, ())],
+            "endpoints": record_endpoints(lookup, node.id),
             # The key is "" for a node that implements no component; the record calls it "node".
             "timing": drop_unknown(
                 {component or "node": record_timing(timing) for component, timing in node.timing.items()}
@@ -346,45 +345,3 @@ def _record_node(lookup: Lookup, node: Node) -> dict[str, object]:
             **record_annotations(node),
         }
     )
-
-
-def _record_endpoint(endpoint: Endpoint) -> dict[str, object]:
-    return drop_unknown(
-        {
-            "use": endpoint.use,
-            "name": endpoint.name,
-            "own_name": endpoint.own_name,
-            "flow": endpoint.flow,
-            "message": endpoint.message,
-            "type": endpoint.type,
-            "port": endpoint.port,
-            "internal": endpoint.internal or None,
-            "sources": list(endpoint.sources),
-            "qos": _record_qos(endpoint.qos) if endpoint.flow == "topic" else None,
-        }
-    )
-
-
-def _record_qos(qos: Qos) -> dict[str, object]:
-    durations = {key: record_quantity(getattr(qos, key), "ns") for key in ("deadline", "lifespan", "lease_duration")}
-    # All other fields, so a new field of Qos gets into the record without a line here.
-    plain_fields = {k: v for k, v in asdict(qos).items() if k not in {*durations, "at", "written"}}
-    return drop_unknown(plain_fields | durations)
-
-
-def _record_topics(lookup: Lookup) -> list[dict[str, object]]:
-    return [
-        drop_unknown(
-            {
-                "name": topic.name,
-                "flow": topic.flow,
-                "messages": list(topic.messages),
-                "types": list(topic.types),
-                "writers": list(dict.fromkeys(endpoint.node for endpoint in topic.writers)),
-                "readers": list(dict.fromkeys(endpoint.node for endpoint in topic.readers)),
-                "size": record_quantity(topic.size, "B"),
-            }
-        )
-        for topic in lookup.architecture.topics.values()
-        if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
-    ]

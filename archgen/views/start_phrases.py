@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
-from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitReason
+from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitEnd, WaitReason
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 from archgen.model.node import Node
@@ -28,32 +28,19 @@ class NamedWait:
     """All for which a step waits for one other: until when (`ready`, `ended`, `started`), and why."""
 
     awaited: str
-    until: str
+    until: WaitEnd
     reasons: tuple[str, ...]
     waits: tuple[Wait, ...]
 
 
-def name_waits(step: StartStep, steps: Mapping[str, StartStep]) -> list[NamedWait]:
+def name_waits(step: StartStep) -> list[NamedWait]:
     """Return what a step waits for, each other step once, what is needed most first."""
-    waits_by_step: dict[str, list[Wait]] = {}
-    for wait in step.waits:
-        waits_by_step.setdefault(wait.awaited, []).append(wait)
     return [
         NamedWait(
-            awaited,
-            find_end(waits, steps[awaited]),
-            tuple(dict.fromkeys(describe_reason(wait) for wait in waits)),
-            tuple(waits),
+            each.awaited, each.until, tuple(dict.fromkeys(describe_reason(wait) for wait in each.waits)), each.waits
         )
-        for awaited, waits in waits_by_step.items()
+        for each in step.awaited
     ]
-
-
-def find_end(waits: Sequence[Wait], awaited: StartStep) -> str:
-    """Return until when a step is awaited: a manager only needs that what it manages was started."""
-    if awaited.once:
-        return "ended"
-    return "started" if all(wait.reason == "manages" for wait in waits) else "ready"
 
 
 def describe_reason(wait: Wait) -> str:
@@ -115,6 +102,13 @@ def describe_ready(step: StartStep) -> str:
         return f"it has ended{within}"
     phrases = list(list_ready_phrases(step.ready))
     return f"{join_words(phrases)}{within}" if phrases else ""
+
+
+def describe_unknown(step: StartStep) -> str:
+    """Return why there is no command: it does not exist yet, somebody else starts it, or nobody says how."""
+    if step.status == "planned":
+        return "planned: there is nothing to start yet"
+    return "started by somebody else" if step.signals else "nothing says how it is started"
 
 
 def describe_state(step: StartStep) -> str:

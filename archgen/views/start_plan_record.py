@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
-from archgen.bringup.plan_shapes import DroppedWait, StartPlan, StartStep
+from archgen.bringup.plan_shapes import DroppedWait, RosLaunch, StartPlan, StartStep
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
-from archgen.views.record_values import drop_unknown, record_quantity
+from archgen.views.record_values import drop_unknown, record_quantity, to_plain
 from archgen.views.start_phrases import NamedWait, name_waits
 
 VERSION = 1
@@ -18,13 +18,12 @@ def record_plan(
     architecture: Architecture, plan: StartPlan, shown_ids: Collection[str] | None = None
 ) -> dict[str, object]:
     """Return a plan as plain data: all steps, or those shown with their numbers in the whole plan. Durations are in ns."""
-    steps = {step.id: step for step in plan.steps}
     return {
         "version": VERSION,
         "project": architecture.project.id,
         "phases": list(PHASES),
         "steps": [
-            {"number": number, **_record_step(step, steps)}
+            {"number": number, **_record_step(step)}
             for number, step in enumerate(plan.steps, start=1)
             if shown_ids is None or step.id in shown_ids
         ],
@@ -33,7 +32,7 @@ def record_plan(
     }
 
 
-def _record_step(step: StartStep, steps: Mapping[str, StartStep]) -> dict[str, object]:
+def _record_step(step: StartStep) -> dict[str, object]:
     ready = step.ready
     return drop_unknown(
         {
@@ -43,8 +42,12 @@ def _record_step(step: StartStep, steps: Mapping[str, StartStep]) -> dict[str, o
             "phase": step.phase,
             "host": step.host,
             "container": step.container,
+            "status": step.status,
+            "preparations": [list(words) for words in step.preparations],
             "command": list(step.command),
-            "waits": [_record_wait(wait) for wait in name_waits(step, steps)],
+            "ros": _record_launch(step.ros) if step.ros else None,
+            "log_file": step.log_file,
+            "waits": [_record_wait(wait) for wait in name_waits(step)],
             "ready": drop_unknown(
                 {
                     **{key: getattr(ready, key) for key in ("port", "file", "topic", "service", "log")},
@@ -52,6 +55,7 @@ def _record_step(step: StartStep, steps: Mapping[str, StartStep]) -> dict[str, o
                     "within": record_quantity(ready.within, "ns"),
                 }
             ),
+            "seconds_at_most": step.seconds_at_most,
             "once": step.once or None,
             "state": step.state,
             "transitions": [list(words) for words in step.transitions],
@@ -62,6 +66,23 @@ def _record_step(step: StartStep, steps: Mapping[str, StartStep]) -> dict[str, o
             "directory": step.directory,
             "user": step.user,
             "needs_rights": list(step.needs_rights),
+        }
+    )
+
+
+def _record_launch(launch: RosLaunch) -> dict[str, object]:
+    return drop_unknown(
+        {
+            "name": launch.name,
+            "namespace": launch.namespace,
+            "package": launch.package,
+            "executable": launch.executable,
+            "plugin": launch.plugin,
+            "container": launch.container,
+            "earlier_values": to_plain(launch.earlier_values),
+            "parameter_files": list(launch.parameter_files),
+            "own_values": to_plain(launch.own_values),
+            "value_commands": {name: list(words) for name, words in launch.value_commands.items()},
         }
     )
 

@@ -11,13 +11,14 @@ from pathlib import Path
 from archgen.analyses.size_counts import (
     ArchitectureSize,
     ProgressCounts,
+    count_declared_properties,
     count_mapped_connections,
     measure_progress,
     measure_size,
 )
 from archgen.model.architecture import Architecture
 from archgen.pipeline import check_project
-from archgen.views.tables.statistics_tables import format_figures
+from archgen.views.tables.statistics_tables import format_figures, make_statistics_tables
 
 Sketch = Callable[[str], Architecture]
 
@@ -161,3 +162,20 @@ def test_promises_and_what_is_going_away_are_counted_where_there_are_any() -> No
     assert (figures["promises"], figures["deprecated"]) == ("1", "3")
     plain = _architecture("groups: {g: {components: {a: {outputs: {o: T}}}}}\n")
     assert figures.keys() - {key for key, _, _ in format_figures(measure_size(plain))} >= {"promises", "deprecated"}
+
+
+def test_verified_requirements_and_declared_properties_are_counted() -> None:
+    architecture = _architecture(
+        "requirements: {R-1: One, R-2: {parent: R-1, verified_by: by hand}, R-3: Three}\n"
+        "properties: {sil: {of: [component], type: integer}, note: Note}\n"
+        "groups: {g: {properties: {note: x}, components: {a: {title: A, properties: {sil: 1, own: 2}}, b: {title: B}}}}\n"
+    )
+    figures = {key: count for key, _, count in format_figures(measure_size(architecture))}
+    assert (figures["verified"], figures["property_values"]) == ("2", "2")
+    counts = [(each.id, have, lack) for each, have, lack in count_declared_properties(architecture)]
+    assert counts == [("sil", 1, 1), ("note", 1, 0)]
+    table = make_statistics_tables(architecture)[-1]
+    assert [["".join(run.text for run in cell) for cell in row] for row in table.rows] == [
+        ["Sil", "1", "1"],
+        ["Note", "1", "0"],
+    ]

@@ -100,6 +100,71 @@ def test_steps_say_all_that_starts_them(derived: Derived) -> None:
     assert (steps["upload"].needs_rights, steps["upload"].once) == (("to change the system with ip",), True)
 
 
+def test_steps_say_what_a_generator_of_scripts_needs(derived: Derived) -> None:
+    plan = make_start_plan(derived(STACK + "hosts: {pc: PC}\n"))
+    steps = {step.id: step for step in plan.steps}
+    assert [(phase, [step.id for step in each]) for phase, each in plan.phases][:3] == [
+        ("network", ["upload"]),
+        ("simulators", ["stage"]),
+        ("core", ["manager"]),
+    ]
+    assert plan.hosts == (None,)
+    assert {step.id: step.log_file for step in plan.steps} == {name: f"{name}.log" for name in steps}
+    shown = {
+        step.id: ([(signal.kind, signal.target) for signal in step.signals], step.seconds_at_most)
+        for step in plan.steps
+        if step.signals
+    }
+    assert shown == {
+        "upload": ([("end", "")], None),
+        "stage": ([("port", "80")], "60"),
+        "laser": ([("topic", "/g/laser/scan")], "5"),
+    }
+    assert [(each.awaited, each.until, len(each.waits)) for each in steps["planner"].awaited] == [
+        ("box", "ready", 1),
+        ("maps", "ready", 1),
+        ("localiser", "ready", 1),
+        ("manager", "ready", 1),
+    ]
+    assert steps["stage"].ros is None
+    assert steps["localiser"].ros is not None
+    assert (steps["localiser"].ros.full_name, steps["localiser"].ros.package) == ("/n/localiser", "p")
+
+
+@pytest.mark.parametrize(
+    ("ready", "signals", "seconds"),
+    [
+        ("wait: 1500 ms", [("time", "1.5")], "62"),
+        ("port: 1, file: /a, log: up, within: 0.25 s", [("port", "1"), ("file", "/a"), ("log", "up")], "0.25"),
+        ("service: get, within: 2 min", [("service", "/get")], "120"),
+    ],
+)
+def test_how_long_one_waits_at_most(derived: Derived, ready: str, signals: list[tuple[str, str]], seconds: str) -> None:
+    (step,) = make_start_plan(
+        derived(f"nodes: {{a: {{kind: program, command: [a], start: {{ready: {{{ready}}}}}}}}}")
+    ).steps
+    assert ([(each.kind, each.target) for each in step.signals], step.seconds_at_most) == (signals, seconds)
+
+
+def test_what_is_awaited_is_up_started_or_at_its_end(derived: Derived) -> None:
+    plan = make_start_plan(
+        derived("""
+nodes:
+  clock: {kind: program, command: [c], start: {once: true, ready: {within: 9 s}}}
+  maps: {kind: lifecycle, package: p, executable: m, start: {by: manager, after: clock}}
+  manager: {package: q, executable: m}
+  last: {package: q, executable: l, start: manager}
+""")
+    )
+    assert {step.id: [(each.awaited, each.until) for each in step.awaited] for step in plan.steps} == {
+        "clock": [],
+        "maps": [("clock", "ended")],
+        "manager": [("maps", "started")],
+        "last": [("manager", "ready")],
+    }
+    assert plan.steps[0].seconds_at_most == "9"
+
+
 def test_ros_1_has_commands_of_its_own(derived: Derived) -> None:
     plan = make_start_plan(
         derived("""

@@ -93,6 +93,8 @@ def test_the_json_has_all_that_starts_a_step() -> None:
         "phase": "simulators",
         "host": "sim_pc",
         "command": ["stage", "worlds/office.world"],
+        "log_file": "stage.log",
+        "seconds_at_most": "20",
         "ready": {
             "port": 6665,
             "log": "physics running",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
 import pytest
 import yaml
@@ -38,7 +39,7 @@ def test_check_says_in_which_variants_a_finding_holds(run: Run, robot: Path) -> 
     ran = run("check", robot)
     assert "unfed-input" in ran.out
     assert "(in the variant `broken`)" in ran.out
-    assert "in the variant" not in run("check", "--variant", "base,simulation", robot).out
+    assert "(in the variant" not in run("check", "--variant", "base,simulation", robot).out
     found = json.loads(run("check", "--format", "json", "--variant", "broken", robot).out)["diagnostics"]
     assert [each["variants"] for each in found if each["rule"] == "unfed-input"] == [["broken"]]
     found = json.loads(run("check", "--format", "sarif", robot).out)["runs"][0]["results"]
@@ -89,3 +90,37 @@ def test_variants_are_compared(run: Run, robot: Path, tmp_path: Path) -> None:
     assert "package `bridge` → `gazebo`" in ran.out
     ran = run("diff", robot, later)
     assert "variant `simulation`: changes `nodes.lidar.package: bridge` → `nodes.lidar.package: gazebo`" in ran.out
+
+
+def test_a_variant_is_added_where_the_others_stand(run: Run, robot: Path) -> None:
+    ran = run("new", "variant", "night", "-C", robot, "--of", "quiet", "--title", "At night")
+    assert ran.status == 0, ran.err
+    assert yaml.safe_load(robot.read_text(encoding="utf-8"))["variants"]["night"] == {
+        "title": "At night",
+        "of": "quiet",
+    }
+    assert run("list", "-C", robot, "--variant", "night").status == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("base",), "is what the project itself is called"),
+        (("quiet",), "there is a variant 'quiet' already"),
+        (("Night",), "is no id"),
+        (("night", "--of", "quite"), "did you mean `quiet`?"),
+        (("night", "--without", "lidra"), "did you mean `lidar`?"),
+    ],
+)
+def test_a_variant_that_cannot_be_is_not_added(run: Run, robot: Path, words: tuple[str, ...], said: str) -> None:
+    ran = run("new", "variant", *words, "-C", robot)
+    assert (ran.status, said in ran.err) == (2, True), ran.err
+    assert robot.read_text(encoding="utf-8") == ROBOT
+
+
+def test_test_reports_have_the_variants_of_a_finding_as_data(run: Run, robot: Path) -> None:
+    report = ET.fromstring(run("check", "--format", "junit", robot).out)  # noqa: S314 - of our own making
+    cases = [each for each in report.iter("testcase") if "(in the variant `broken`)" in each.get("name", "")]
+    assert cases
+    for case in cases:
+        assert [(each.get("name"), each.get("value")) for each in case.iter("property")] == [("variant", "broken")]

@@ -122,8 +122,10 @@ review:
   accepted:
     {a.b: agreed, a.c: {key: qos}, a.d: {reason: moved, key: from}, a.e: [{reason: two}, {reason: three, key: qos}]}
   backends: [wiki]
+  passes: [tag_cameras]
 """)[0].review
     assert (review.main, str(review.breaking), review.backends) == ("trunk", "warning", ("wiki",))
+    assert review.passes == ("tag_cameras",)
     assert [(c.element, c.reason, c.key, c.at.column) for c in review.accepted] == [
         ("a.b", "agreed", None, 6),
         ("a.d", "moved", "from", 36),

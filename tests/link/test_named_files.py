@@ -41,7 +41,7 @@ requirements: {R-1: {urls: {a: "mailto:x@y.eu", b: gone.pdf}}}
     outside = "lies outside the project's folder | copy it into the project, or write its address on the web"
     absent = "is not there | write its path from the project's folder; an address on the web begins with `https://`"
     assert found == [
-        "5:62 g: the file `docs/moter.dbc` is not there | did you mean `motor.dbc`?",
+        "5:62 g: the file `docs/moter.dbc` is not there | did you mean `docs/motor.dbc`?",
         f"5:81 g: the file `../secret` {outside}",
         f"9:46 g.c: the file `a/../../secret` {outside}",
         f"10:50 g.c.inner: the file `gone.pdf` {absent}",

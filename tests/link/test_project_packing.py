@@ -307,6 +307,19 @@ START = st.fixed_dictionaries(
         "by": IDS,
     },
 )
+STEP = st.fixed_dictionaries({"from": IDS, "to": IDS}, optional={"say": WORDS})
+USE_CASE = st.one_of(
+    WORDS,
+    st.none(),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "title": WORDS,
+            "actors": st.dictionaries(IDS, st.one_of(WORDS, st.none()), max_size=2),
+            "steps": st.lists(STEP, max_size=3),
+        },
+    ),
+)
 PROJECTS = st.fixed_dictionaries(
     {"archgen": st.just(1)},
     optional={
@@ -360,6 +373,7 @@ PROJECTS = st.fixed_dictionaries(
         "properties": st.dictionaries(
             IDS, st.one_of(WORDS, st.fixed_dictionaries({}, optional={"range": st.lists(st.integers(), max_size=3)}))
         ),
+        "use_cases": st.dictionaries(IDS, USE_CASE, max_size=2),
         "glossary": st.dictionaries(WORDS, WORDS),
         "requirements": st.dictionaries(
             IDS,

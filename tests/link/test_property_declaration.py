@@ -73,7 +73,7 @@ groups:
     assert annotations.properties == {"version": "1.10", "done": "true", "due": "2027-03-01"}
     assert annotations.hints == {"orca": {"x": 1.1, "y": [1, True]}}
     assert annotations.property_places["version"].column == 43
-    assert annotations.hint_places["orca"].line == 5
+    assert annotations.hint_places["orca",].line == 5
     ports = architecture.components["g.b"].inputs
     assert (ports["hints"].annotations.hints, ports["properties"].external) == ({"p": {"from": "a"}}, "y")
 

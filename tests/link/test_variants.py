@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from archgen import pipeline
+from archgen.findings.variant_findings import phrase_absence
 from archgen.pipeline import CheckedProject
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_writer import write_yaml
@@ -278,3 +279,59 @@ def test_a_variant_on_a_thousand_others_is_not_judged(tmp_path: Path) -> None:
     checked = check(tmp_path, variants, "archgen: 1\ngroups: {g: {components: {a: A}}}\nnodes: {a: a}\n")
     assert list(checked.variants) == []
     assert "too-large" in {each.rule for each in checked.findings}
+
+
+def test_what_starts_after_what_is_gone_or_is_activated_by_it_names_it_no_more(tmp_path: Path) -> None:
+    robot = """\
+archgen: 1
+groups: {g: {components: {m: {outputs: {x: T}, tags: [gone]}, a: {outputs: {y: T}, node: {package: p, executable: a, kind: lifecycle, start: {after: [m, b], by: m}}}, b: {outputs: {z: T}}}}}
+types: {T: std_msgs/msg/String}
+nodes:
+  manager: {implements: m, package: nav2_lifecycle_manager, executable: lifecycle_manager}
+  other: {implements: b, kind: lifecycle, start: {state: active, by: manager, after: [manager, a]}}
+  last: {kind: lifecycle, start: {by: manager, after: manager}}
+"""
+    packed = pack(check(tmp_path, "  v: {without: 'tag:gone'}\n", robot).variants["v"])
+    assert packed["groups"]["g"]["components"]["a"]["node"]["start"] == {"after": ["b"]}
+    assert packed["nodes"]["other"]["start"] == {"state": "active", "after": ["a"]}
+    assert packed["nodes"]["last"].get("start") is None
+
+
+@pytest.mark.parametrize(
+    ("variants", "words"),
+    [
+        ("a b c d", "in every variant)"),
+        ("a b c", "in every variant but `d`)"),
+        ("a b", "in the variants `a` and `b`)"),
+        ("d", "in the variant `d`)"),
+    ],
+)
+def test_the_shorter_list_of_variants_is_told(tmp_path: Path, variants: str, words: str) -> None:
+    lines = "".join(
+        f"  {name}: {{{'without: tag:hardware' if name in variants.split() else 'title: V'}}}\n" for name in "abcd"
+    )
+    (finding,) = (
+        each for each in check(tmp_path, lines).findings if each.rule == "unfed-input" and "level" in each.message
+    )
+    assert finding.message.endswith(words)
+    assert finding.variants == tuple(variants.split())
+    assert finding.absent_variants == tuple(name for name in "abcd" if name not in finding.variants)
+
+
+@pytest.mark.parametrize(
+    ("removing", "note"),
+    [
+        ("a", "it does not hold in the variant `a`"),
+        ("a b c", "of the variants it holds in `d` only"),
+        ("a b", "of the variants it holds in `c` and `d`"),
+        ("a b c d", "it holds in no variant"),
+    ],
+)
+def test_where_a_finding_of_the_project_does_not_hold_is_a_note(tmp_path: Path, removing: str, note: str) -> None:
+    lines = "".join(
+        f"  {name}: {{{'without: drive' if name in removing.split() else 'title: V'}}}\n" for name in "abcd"
+    )
+    robot = "archgen: 1\ngroups: {driving: {components: {drive: {outputs: {log: T}}, other: {inputs: {log: {from: drive.log, optional: true}}}}}}\ntypes: {T: std_msgs/msg/String}\n"
+    checked = check(tmp_path, lines, robot)
+    found = [each for each in checked.findings if each.rule == "missing-detail" and "driving.drive" in each.message]
+    assert [phrase_absence(each) for each in found] == ([note] if removing != "a b c d" else [])

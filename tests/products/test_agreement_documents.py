@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import zipfile
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -26,6 +27,7 @@ from tests import hostile
 from tests.agreeing import DUO, checked, written
 from tests.emit.docx import inspection, judges
 from tests.repositories import commit, git, repository
+from tests.running import QUICK_START
 
 NU = Path(__file__).parents[1] / "judges" / "node_modules" / "vnu-jar" / "build" / "dist" / "vnu.jar"
 
@@ -38,20 +40,27 @@ def evil(text: str) -> dict[str, object]:
     return data
 
 
-@pytest.fixture(scope="module", params=["duo", "ramcip", *hostile.TEXTS])
+KINDS = ("duo", "ramcip", *hostile.TEXTS)
+
+
+@pytest.fixture(scope="module", params=KINDS)
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> PartnerAgreement:
-    folder = tmp_path_factory.mktemp("agreement")
-    if request.param == "ramcip":
+    return make_agreement(request.param, tmp_path_factory.mktemp("agreement"))
+
+
+def make_agreement(kind: str, folder: Path) -> PartnerAgreement:
+    """Make the agreement of a small project, of the case study or of hostile texts."""
+    if kind == "ramcip":
         return agreement_documents.make_project_agreement(
             pipeline.check_project(resources.resource_path("example_ramcip")), "sssa", "tum", None, "r1"
         )
-    if request.param == "duo":
+    if kind == "duo":
         earlier = read_version(
             None, written(folder / "before", DUO.replace("30 Hz", "20 Hz").replace("info: sensor", "x: sensor"))
         )
         return agreement_documents.make_project_agreement(checked(folder / "after"), "north", "south", earlier, "r1")
-    found = checked(folder, hostile.written(evil(hostile.TEXTS[request.param])))
-    return agreement_documents.make_project_agreement(found, "p", "q", None, hostile.TEXTS[request.param][:200])
+    found = checked(folder, hostile.written(evil(hostile.TEXTS[kind])))
+    return agreement_documents.make_project_agreement(found, "p", "q", None, hostile.TEXTS[kind][:200])
 
 
 class Page(HTMLParser):
@@ -92,18 +101,33 @@ def test_the_page_stands_by_itself(made: PartnerAgreement) -> None:
     assert "This picture could not be drawn" not in html
 
 
-def test_the_nu_checker_finds_nothing(made: PartnerAgreement, tmp_path: Path) -> None:
+def judge_pages(pages: Sequence[Path]) -> list[str]:
+    """Return what the Nu checker says against pages, of all at once: Java takes longer to begin than to read one."""
     java = shutil.which("java")
     assert java, "this test needs a Java (Debian: `default-jre-headless`)"
     assert NU.exists(), "this test needs the Nu checker (`npm ci` in tests/judges)"
-    page = tmp_path / "a.html"
-    page.write_bytes(agreement_documents.render_agreement_html(made, OutputOptions()))
-    command = [java, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", str(page)]
+    command = [java, *QUICK_START, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", *map(str, pages)]
     done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
     messages = [
         m for m in json.loads(done.stderr)["messages"] if m["type"] == "error"
     ]  # texts need not be in Unicode's NFC
-    assert [f"{m.get('lastLine')}: {m['message']}" for m in messages] == []
+    return [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in messages]
+
+
+def test_the_nu_checker_finds_nothing(tmp_path: Path) -> None:
+    pages = [tmp_path / f"{kind}.html" for kind in KINDS]
+    for page in pages:
+        agreement = make_agreement(page.stem, tmp_path / page.stem)
+        page.write_bytes(agreement_documents.render_agreement_html(agreement, OutputOptions()))
+    assert judge_pages(pages) == []
+
+
+def test_the_nu_checker_finds_a_fault_on_any_page(tmp_path: Path) -> None:
+    for name, body in (("sound", "<p>a</p>"), ("faulty", "<p id=a>a</p><p id=a>b</p>")):
+        page = f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>T</title></head><body>{body}</body></html>'
+        (tmp_path / f"{name}.html").write_text(page, encoding="utf-8")
+    (said,) = judge_pages([tmp_path / "sound.html", tmp_path / "faulty.html"])
+    assert "faulty.html:1: Duplicate ID" in said
 
 
 def test_word_opens_it(made: PartnerAgreement, tmp_path: Path) -> None:

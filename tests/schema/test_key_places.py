@@ -44,6 +44,12 @@ def _component(text: str) -> str:
         ("policy: {p: {title: P}}", "did you mean `policies`?"),
         ("groups: {g: {wheels: {role: sink}}}", "it looks like a component: indent it below `components:` of `g`"),
         (_component("wheels: {role: sink}"), "it looks like a component: begin it in the column of `lidar`"),
+        ("variants: {v: {changes: {project: {title: T}}}}", "no variant changes `project`: it says what the project is"),
+        ("variants: {v: {changes: {components: {a: A}}}}", "components are changed in their group: `groups: {GROUP: "),
+        ("variants: {v: {changes: {without: lidar}}}", "`without` says something of the variant: begin it in the column"),
+        ("variants: {v: {changes: {package: urg}}}", "write it as `nodes: {NODE: {package: ...}}`"),
+        ("policies: {p: {forbid: {from: a, to: b, of: c}}}", "a flow has two ends: `forbid: {from: ..., to: ...}`; `of` "),
+        ("policies: {p: {require: {of: a, inputs_from: b, from: c}}}", "`require` asks something of elements: `require: "),
         ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),
     ],
 )  # fmt: skip

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.pipeline import check_project
+from archgen.pipeline import UnknownVariantError, check_project
 from archgen.products import project_outputs
 from archgen.products.comparison_documents import compare_since
 from archgen.products.output_options import OutputOptions
@@ -226,5 +226,27 @@ def test_a_selector_that_names_nothing_any_more_leaves_the_last_state(robot: Pat
 def test_a_selector_that_names_nothing_at_the_start_is_an_error(robot: Path) -> None:
     live = LiveSite(robot, OutputOptions(selector_text="g.nose"))
     with pytest.raises(SelectionError, match="nose"):
+        live.start()
+    live.stop()
+
+
+def test_a_variant_is_served_until_it_is_gone(robot: Path) -> None:
+    variants = "variants: {dark: {changes: {groups: {g: {title: In the dark}}}}}\n"
+    (robot / "archgen.yaml").write_text(f"{ROBOT}{variants}")
+    live = LiveSite(robot, OutputOptions(), variants=("dark",))
+    live.start()
+    try:
+        assert "In the dark" in read_text(live, "groups/g.html")
+        (robot / "archgen.yaml").write_text(ROBOT)
+        live.refresh()
+        assert "no variant named `dark`" in live.status.errors[0]["message"]
+        assert "In the dark" in read_text(live, "groups/g.html")
+    finally:
+        live.stop()
+
+
+def test_a_variant_that_is_not_there_is_not_served(robot: Path) -> None:
+    live = LiveSite(robot, OutputOptions(), variants=("bright",))
+    with pytest.raises(UnknownVariantError):
         live.start()
     live.stop()

@@ -227,13 +227,18 @@ def test_news_come_when_a_file_has_changed(server: SiteServer, live_site: LiveSi
 
 
 def serve(project: Path, *words: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(  # noqa: S603 - our own command line
-        [sys.executable, "-m", "archgen", "serve", str(project), *words],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
-    )
+    # Where the tests run in the background, they ignore what Ctrl-C sends, and so would what they start.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return subprocess.Popen(  # noqa: S603 - our own command line
+            [sys.executable, "-m", "archgen", "serve", str(project), *words],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        )
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_the_verb_serves_and_ends_cleanly_when_it_is_interrupted(robot: Path) -> None:

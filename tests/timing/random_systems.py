@@ -10,11 +10,11 @@ import json
 import random
 from dataclasses import dataclass, field
 
+from archgen.derivation import derive_low_level
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
-from archgen.transform import transform_architecture
 from tests.linking import link_table
 from tests.timing.random_places import Places, Tree
 
@@ -30,7 +30,7 @@ def architecture(text: str) -> Architecture:
     table, _ = merge_documents([document])
     linked, problems = link_table(table)
     assert not problems, (problems, text)
-    return transform_architecture(linked)
+    return derive_low_level(linked)
 
 
 def random_text(seed: int) -> str:

@@ -44,6 +44,56 @@ def test_both_directions_those_of_the_first_partner_first(tmp_path: Path) -> Non
     assert keys(tmp_path, "south", "north") == [*taken, given]
 
 
+USE_CASES = """use_cases:
+  UC-1:
+    title: Tidying up
+    actors: {cook: The cook}
+    steps:
+      - {from: cook, to: cook, say: waits}
+      - {from: camera, to: finder, say: shows the table}
+      - {from: finder, to: planner, say: tells what lies there}
+      - {from: finder, to: planner.plan, say: asks for a way}
+      - {from: planner, to: arm, say: moves it}
+  UC-2: {title: Moving, steps: [{from: planner, to: arm}]}
+"""
+
+
+def test_the_steps_of_use_cases_that_cross_from_one_to_the_other(tmp_path: Path) -> None:
+    project = checked(tmp_path, DUO.replace("groups:\n", f"{USE_CASES}groups:\n", 1))
+    (table,) = [
+        block
+        for block in section(make_agreement(view(project), "north", "south").outline, "Use cases").blocks
+        if isinstance(block, Table)
+    ]
+    assert table.caption == "Steps of Tidying up"
+    assert [[text(cell) for cell in row][:5] for row in table.rows] == [
+        ["3", "Finder", "Planner", "tells what lies there", "Found objects, Plan on request"],
+        ["4", "Finder", "Planner", "asks for a way", "Plan on request"],
+    ]
+    outline = make_agreement(view(checked(tmp_path)), "north", "south").outline
+    assert "Use cases" not in {each.title for each in outline.sections}
+    # West's node moves the arm.
+    west = section(make_agreement(view(project), "west", "north").outline, "Use cases")
+    assert [block.caption for block in west.blocks if isinstance(block, Table)] == [
+        "Steps of Tidying up",
+        "Steps of Moving",
+    ]
+
+
+def test_what_of_one_waits_for_what_of_the_other_at_the_start(tmp_path: Path) -> None:
+    source = DUO.replace(
+        "planner_node: {implements: planner,", "planner_node: {implements: planner, start: {ready: 2 s},"
+    )
+    table = section(made(tmp_path, source=source).outline, "Start-up").blocks[1]
+    assert isinstance(table, Table)
+    assert [[text(cell) for cell in row][:5] for row in table.rows] == [
+        ["finder_node", "South Vision", "planner_node", "North Robotics", "2 s have passed"],
+        ["calibration", "North Robotics", "camera_driver", "South Vision", "it is started"],
+    ]
+    assert [text(row[5]) for row in table.rows] == ["calls moving.planner.plan", "reads seeing.camera.image"]
+    assert "Start-up" not in {each.title for each in made(tmp_path / "plain").outline.sections}
+
+
 def test_the_partner_of_a_node_answers_too(tmp_path: Path) -> None:
     """West's node implements north's arm: what runs between arm and planner is between west and north."""
     assert keys(tmp_path, "west", "north") == [

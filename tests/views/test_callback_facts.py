@@ -9,7 +9,7 @@ import pytest
 from archgen.cli.show_command import format_card
 from archgen.views.elements.element_card import find_elements, make_card
 from archgen.views.elements.implementation_level import make_node_blocks
-from archgen.views.pages.context_pages import make_context_pages
+from archgen.views.pages.host_pages import make_host_pages
 from archgen.views.shapes import Facts
 from tests.agreeing import checked, text, view
 
@@ -50,7 +50,7 @@ def test_cards_show_it(tmp_path: Path, name: str, lines: list[str]) -> None:
 
 def test_pages_show_it(tmp_path: Path) -> None:
     lookup = view(checked(tmp_path, ROBOT))
-    sections = [page.section for page in make_context_pages(lookup, tuple)]
+    sections = [page.section for page in make_host_pages(lookup, tuple)]
     facts = {
         f"{section.anchor} {name}": text(value)
         for section in sections

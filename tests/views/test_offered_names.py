@@ -88,3 +88,29 @@ def test_a_title_is_one_short_line_without_control_characters(derived: Derived) 
 def test_only_names_that_need_no_quotes_are_plain() -> None:
     names = [OfferedName(word, "") for word in ("a.b", "R-1", "/scan", "~/x", "a: b", "- a", "a b", "#x", "@x", "")]
     assert [name for name, _ in keep_plain_names(names)] == ["a.b", "R-1", "/scan", "~/x"]
+
+
+def test_media_of_the_project_stand_before_the_known_ones(derived: Derived) -> None:
+    text = ROBOT.replace("state: Robot state", "state: {type: Robot state, medium: ourbus}")
+    text += "links: {bus: {connects: [pc, lidar], protocol: EtherCAT}}\n"
+    names = list_offered_names(derived(text))["media"]
+    assert names[:4] == (
+        OfferedName("ethercat", "EtherCAT"),
+        OfferedName("ourbus", "used in this project"),
+        OfferedName("physical", "used in this project"),
+        OfferedName("digital", ""),
+    )
+    assert OfferedName("mqtt", "MQTT") in names
+    assert len({name for name, _ in names}) == len(names)
+
+
+def test_declared_properties_stand_with_their_choices(derived: Derived) -> None:
+    declared = "properties: {sil: Safety level, maturity: {choices: [idea, product]}, safe: {type: boolean}}\n"
+    names = list_offered_names(derived(ROBOT + declared))
+    assert names["properties"] == (
+        OfferedName("sil", "Safety level"),
+        OfferedName("maturity", "Maturity"),
+        OfferedName("safe", "Safe"),
+    )
+    choices = {kind: [name for name, _ in each] for kind, each in names.items() if kind.startswith("choices:")}
+    assert choices == {"choices:maturity": ["idea", "product"], "choices:safe": ["true", "false"]}

@@ -99,6 +99,17 @@ def test_what_is_too_much_for_a_picture_is_counted(derived: Derived) -> None:
     assert graph.notes == ("5 later steps not drawn: the tables have all of them.",)
 
 
+def test_of_many_waits_those_that_are_needed_most_are_named_and_the_rest_is_counted(derived: Derived) -> None:
+    names = [f"p{at}" for at in range(11)]
+    nodes = ", ".join(f"{name}: {{kind: program, command: [p], start: {{phase: core}}}}" for name in names)
+    last = f"last: {{kind: program, command: [p], start: {{phase: core, after: [{', '.join(names)}]}}}}"
+    table = make_start_blocks(make_lookup(derived(f"nodes: {{{nodes}, {last}}}")))[1]
+    assert isinstance(table, Table)
+    waits = plain(table.rows[-1][3])
+    assert [name for name in names if f"{name} (as written)" in waits] == names[:8]
+    assert waits.endswith("and for 3 others that are needed no more than these: archgen start names them")
+
+
 def test_contradictions_stand_below_the_tables(derived: Derived) -> None:
     *_, lead, lines = make_start_blocks(
         make_lookup(derived("nodes: {a: {kind: program, start: b}, b: {kind: program, start: a}}"))

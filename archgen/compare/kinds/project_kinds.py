@@ -33,6 +33,7 @@ def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, ob
         "main": review.main,
         "breaking": review.breaking and str(review.breaking),
         "backends": unordered_values(review.backends),
+        "passes": unordered_values(review.passes),
         **{f"accepted.{name}": "; ".join(texts) for name, texts in _group_accepted(review).items()},
     }
 

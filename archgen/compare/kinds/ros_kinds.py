@@ -28,9 +28,9 @@ from archgen.compare.kinds.shared_keys import (
 from archgen.compare.kinds.start_keys import START_KEYS, read_start
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
+from archgen.derivation import ros_names
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.node import Node, PortUse, Qos
-from archgen.transform import ros_names
 
 _DEFAULT_QOS = Qos()
 _QOS_NAMES = tuple(each.name for each in fields(Qos) if each.name not in {"profile", "written", "at"})

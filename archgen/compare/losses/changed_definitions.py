@@ -51,6 +51,9 @@ def _medium_change(context: ChangeContext, output_id: str) -> tuple[list[int], s
     if old_port is None or new_port is None or old_port.medium == new_port.medium:
         return [], ""
     indices = context.change_indices("output", output_id, "medium")
+    if not indices and context.before.project.middleware != context.after.project.middleware:
+        # What says nothing of its medium goes over the project's.
+        indices = context.change_indices("project", context.after.project.id, "middleware")
     return indices, f"{describe_carried(new_port)} instead of {describe_carried(old_port)}"
 
 

@@ -93,6 +93,7 @@ def change_record(architecture_change: Change, origin: TypeKey | None = None) ->
                 "category": partner_break.category,
                 "why": partner_break.reason,
                 "agreed": partner_break.agreement,
+                **({"variants": list(partner_break.variants)} if partner_break.variants else {}),
             }
             for partner_break in architecture_change.breaks
         ],
@@ -102,6 +103,7 @@ def change_record(architecture_change: Change, origin: TypeKey | None = None) ->
         ],
         "text": architecture_change.text,
         **({"type": origin.component_type} if origin else {}),
+        **({"variants": list(architecture_change.variants)} if architecture_change.variants else {}),
         "parts": [change_record(part) for part in architecture_change.parts],
     }
 

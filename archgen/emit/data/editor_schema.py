@@ -38,8 +38,10 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "input": ("sources",),
     "input.frame": ("frames",),
     "input.from": ("sources",),
-    "link": ("hosts",),
-    "link.connects": ("hosts",),
+    "input.medium": ("media",),
+    "link": ("hosts", "implemented"),
+    "link.connects": ("hosts", "implemented"),
+    "link.protocol": ("media",),
     "message_part": ("types",),
     "node": ("implemented",),
     "node.container": ("containers",),
@@ -50,8 +52,10 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "operation.response": ("types",),
     "output": ("types",),
     "output.frame": ("frames",),
+    "output.medium": ("media",),
     "owners": ("partners",),
     "port_list": ("inputs",),
+    "project.middleware": ("media",),
     "promise.frame": ("frames",),
     "resource": ("hosts",),
     "resource.host": ("hosts",),
@@ -72,6 +76,7 @@ _OFFERS: Mapping[str, tuple[str, ...]] = {
     "topic_use.message": ("topic_messages",),
     "trigger": ("inputs",),
     "type": ("topic_messages", "call_messages"),
+    "type_input.medium": ("media",),
     "type.frame": ("frames",),
     "type.message": ("topic_messages", "call_messages"),
     "type_name": ("types",),
@@ -151,6 +156,11 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     for section in _SECTIONS:
         _offer_keys(definitions[section], names[section])
     _offer_keys(definitions["timing_uses"], names["resources"])
+    _offer_keys(definitions["properties"], names["properties"])
+    for name, part in definitions["properties"]["properties"].items():
+        if choices := names.get(f"choices:{name}"):
+            _inline_reference(part, definitions)
+            part["anyOf"] = [{}, _list_words(choices)]
     for part in list(_walk_parts(schema)):
         _explain_part(part, keeps_examples=any(part is definitions[name] for name in _OFFERED_EXAMPLES))
         if part is not schema:

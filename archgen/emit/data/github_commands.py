@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data.repository_path import path_in_repository
+from archgen.findings.variant_findings import phrase_absence
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -39,6 +40,8 @@ def _place_properties(diagnostic: Diagnostic, folder: str) -> dict[str, str | in
 def _command_text(diagnostic: Diagnostic) -> str:
     lines = [diagnostic.message]
     lines += [f"{label.span}: {label.text}" for label in diagnostic.labels if label.span.file]
+    absence = phrase_absence(diagnostic)
+    lines += [absence] if absence else []
     lines += [f"help: {diagnostic.help}"] if diagnostic.help else []
     # GitHub's escape for a line end.
     return "%0A".join(_escape_data(line) for line in lines)

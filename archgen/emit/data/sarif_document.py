@@ -17,6 +17,7 @@ from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.source_span import Span
 from archgen.emit.data.repository_path import path_in_repository
 from archgen.findings import rule_pages
+from archgen.findings.variant_findings import phrase_absence
 from archgen.resources import HOME_URL
 
 if TYPE_CHECKING:
@@ -142,6 +143,8 @@ def _message_text(diagnostic: Diagnostic, labels: Iterable[tuple[Label, object]]
         f"[{_BRACKET_PATTERN.sub(_BRACKET_ESCAPED, make_visible(label.text or str(label.span)))}]({number})"
         for number, (label, _) in enumerate(labels, 1)
     ]
+    absence = phrase_absence(diagnostic)
+    lines += [_plain_text(absence[:1].upper() + absence[1:])] if absence else []
     lines += [f"Help: {_plain_text(diagnostic.help)}"] if diagnostic.help else []
     return "\n".join(lines)
 

@@ -29,7 +29,12 @@ _FEW_MESSAGES = 12
 _HEAD_LENGTHS = {"action": 12.0}
 """How long the head of an arrow is, where it is not that of most."""
 _HEAD_LENGTH = 6.0
-_BOX_STYLES = {"actor": "external", "component": "component", "composed": "composed", "unknown": "external"}
+_BOX_STYLES: dict[str, Literal["external", "component", "composed"]] = {
+    "actor": "external",
+    "component": "component",
+    "composed": "composed",
+    "unknown": "external",
+}
 
 
 _ARROW_STYLES: dict[MessageStyle, Literal["data", "physical", "service", "action", "internal"]] = {
@@ -70,7 +75,7 @@ def _make_head(lifeline: Lifeline) -> Box:
     """Return who takes part as the box that stands for it in all pictures; who stands outside is dashed."""
     style = _BOX_STYLES[lifeline.kind]
     colour = lifeline.colour if style != "external" else None
-    return Box("", lifeline.title, style=style, colour=colour, ref=lifeline.ref, tooltip=lifeline.tooltip)  # type: ignore[arg-type]
+    return Box("", lifeline.title, style=style, colour=colour, ref=lifeline.ref, tooltip=lifeline.tooltip)
 
 
 def _style_text(message: SequenceMessage, resolve_link: LinkResolver) -> DotAttributes:

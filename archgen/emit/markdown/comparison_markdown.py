@@ -15,6 +15,7 @@ from archgen.emit.markdown.comment_sentences import ElementNames, shorten_name, 
 from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
+from archgen.model.variant import BASE_NAME
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.chain_rows import ChainRow
@@ -230,7 +231,16 @@ def _add_findings(comment: LimitedComment, group: FindingGroup) -> None:
 def _finding_item(finding: Diagnostic) -> str:
     place_note = f" ({write_code(str(finding.span))})" if finding.span.file else ""
     severity = comparison_document.severity_of(finding)
-    return f"- {severity} {write_code(finding.rule)}: {write_sentence(finding.message)}{place_note}"
+    item = f"- {severity} {write_code(finding.rule)}: {write_sentence(finding.message)}{place_note}"
+    return f"{item}\n  - {_write_holders(finding)}" if finding.variants else item
+
+
+def _write_holders(finding: Diagnostic) -> str:
+    """Write in which variants a finding holds, or in which it does not, whichever are fewer."""
+    absent_names = (*(() if BASE_NAME in finding.variants else (BASE_NAME,)), *finding.absent_variants)
+    is_rare = len(finding.variants) <= len(absent_names)
+    names = ", ".join(write_code(name) for name in (finding.variants if is_rare else absent_names))
+    return f"holds in: {names}" if is_rare else f"does not hold in: {names}"
 
 
 def _add_picture(comment: LimitedComment, graph: Graph | None) -> None:

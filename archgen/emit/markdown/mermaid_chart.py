@@ -86,6 +86,11 @@ def _write_box(box: Box, names: Mapping[str, str]) -> str:
 def _write_arrow(arrow: Arrow, names: dict[str, str]) -> str:
     line = "-.->" if arrow.is_made else _ARROW_SIGNS.get(arrow.style, "-->")
     text = arrow.label or (str(arrow.count) if arrow.count > 1 else "")
+    if arrow.medium:
+        # Mermaid has no head with a square behind it: a round end says the same.
+        line = f"{line.removesuffix('>')}o" if line.endswith("->") else "==o" if line == "==>" else line
+        medium = f"({arrow.medium})"
+        text = text if medium in text else "\n".join(filter(None, (text, medium)))
     label = "<br>".join(_label_text(line) for line in text.split("\n")) if text else ""
     return f"{names[arrow.tail]} {line}" + (f'|"{label}"|' if label else "") + f" {names[arrow.head]}"
 

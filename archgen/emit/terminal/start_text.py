@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
 from archgen.diagnostics.safe_text import make_visible
@@ -25,7 +25,7 @@ def format_plan(title: str, plan: StartPlan, shown_ids: Collection[str] | None =
         in_phase = [each for each in numbered if each[1].phase == phase]
         lines += ["", f"Phase {phase}"] if in_phase else []
         for number, step in in_phase:
-            lines += map(make_visible, _describe_step(number, step, steps))
+            lines += map(make_visible, _describe_step(number, step))
     dropped = [
         start_phrases.describe_dropped(each, steps)
         for each in plan.dropped
@@ -38,19 +38,23 @@ def format_plan(title: str, plan: StartPlan, shown_ids: Collection[str] | None =
     return lines
 
 
-def _describe_step(number: int, step: StartStep, steps: Mapping[str, StartStep]) -> Iterator[str]:
+def _describe_step(number: int, step: StartStep) -> Iterator[str]:
     place = f" on {step.host}" if step.host else ""
     loaded = f" in {step.container}" if step.kind == "composable" and step.container else ""
     yield f"{number:4}  {step.id}, {start_phrases.KIND_WORDS[step.kind]}{loaded}{place}"
+    for words in step.preparations:
+        yield f"{_INDENT}run first: {shlex.join(words)}"
     # As one line, to be copied: quoted for a POSIX shell, so that nothing in it is expanded.
-    yield _INDENT + (f"run: {shlex.join(step.command)}" if step.command else "nothing says how it is started")
+    yield _INDENT + (f"run: {shlex.join(step.command)}" if step.command else start_phrases.describe_unknown(step))
     for words in step.transitions:
         yield f"{_INDENT}run: {shlex.join(words)}"
+    for name, words in step.ros.value_commands.items() if step.ros else ():
+        yield f"{_INDENT}parameter {name}: the output of {shlex.join(words)}"
     for phrase in start_phrases.describe_process(step):
         yield f"{_INDENT}{phrase}"
     for right in step.needs_rights:
         yield f"{_INDENT}needs rights {right}"
-    for wait in start_phrases.name_waits(step, steps):
+    for wait in start_phrases.name_waits(step):
         until = {"ended": " until it has ended", "started": " until it is started"}.get(wait.until, "")
         yield f"{_INDENT}waits for {wait.awaited}{until} ({'; '.join(wait.reasons)})"
     state = start_phrases.describe_state(step)

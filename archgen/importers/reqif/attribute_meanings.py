@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 
 from archgen.importers.reqif.reqif_document import ReqifDocument, ReqifObject
@@ -53,17 +54,31 @@ def fold_attribute_name(name: str) -> str:
     return folded.removeprefix("reqif") or folded
 
 
-def read_meanings(document: ReqifDocument, entry: ReqifObject) -> tuple[dict[str, str], list[str]]:
-    """Return an object's values by what they mean, and the names of its attributes that mean nothing here."""
+@dataclass(frozen=True, slots=True)
+class ReadMeanings:
+    """An object's values by what they mean; those of an enumeration with several values one by one; other attributes."""
+
+    values: dict[str, str]
+    chosen: dict[str, list[str]]
+    unknown_names: list[str]
+
+
+def read_meanings(document: ReqifDocument, entry: ReqifObject) -> ReadMeanings:
+    """Return what an object's attributes mean."""
     values: dict[str, tuple[int, str]] = {}
+    chosen: dict[str, list[str]] = {}
     unknown_names: list[str] = []
-    choices = {key: ", ".join(document.names.get(each, each) for each in ids) for key, ids in entry.choices.items()}
-    for definition, text in (*entry.values.items(), *choices.items()):
+    choices = {key: [document.names.get(each, each) for each in ids] for key, ids in entry.choices.items()}
+    texts = {key: ", ".join(words) for key, words in choices.items()}
+    for definition, text in (*entry.values.items(), *texts.items()):
         name = document.names.get(definition, "")
         folded = fold_attribute_name(name)
         meaning = MEANING_BY_NAME.get(folded)
         if meaning is None:
             unknown_names.append(name or definition)
         elif meaning not in values or _RANKS[folded] < values[meaning][0]:
-            values[meaning] = (_RANKS[folded], text)
-    return {meaning: text for meaning, (_, text) in values.items()}, unknown_names
+            # A blank at the end of a prefix stands between it and the number.
+            values[meaning] = (_RANKS[folded], text if meaning == "prefix" else text.strip())
+            chosen[meaning] = choices.get(definition, [])
+    found_values = {meaning: text for meaning, (_, text) in values.items()}
+    return ReadMeanings(found_values, {key: words for key, words in chosen.items() if words}, unknown_names)

@@ -188,7 +188,7 @@ class _ReqifParser:
             if self._choices:
                 current.choices[self._definition] = self._choices
             elif self._value and self._value.strip():
-                current.values[self._definition] = self._value.strip()
+                current.values[self._definition] = self._value
             self._value = None
 
     def _take_reference(self, local: str, text: str) -> None:

@@ -6,10 +6,17 @@ import hashlib
 import re
 
 from archgen.model.element_ids import MAX_ID_LENGTH, spell_in_ascii
+from archgen.syntax.yaml_writer import needs_quotes
 
 _VALID = re.compile(r"[A-Za-z][A-Za-z0-9._-]*\Z")
 _OTHER_SIGNS = re.compile(r"[^A-Za-z0-9._-]+")
 _DIGEST_LENGTH = 8
+
+
+def join_prefix(foreign_id: str, prefix: str) -> str:
+    """Return the other tool's id as it shows it, on one line: its prefix, which may end in a blank, stands in front."""
+    name, prefix = foreign_id.strip(), prefix.lstrip()
+    return " ".join((name if name.startswith(prefix.rstrip()) else f"{prefix}{name}").split())
 
 
 def make_requirement_id(foreign_id: str, prefix: str, identifier: str) -> str:
@@ -17,13 +24,12 @@ def make_requirement_id(foreign_id: str, prefix: str, identifier: str) -> str:
 
     `prefix` stands in front of it unless it does already; without a foreign id the object's own `identifier` is taken.
     """
-    name = foreign_id.strip() or identifier.strip()
-    if prefix and not name.startswith(prefix.strip()):
-        name = f"{prefix.strip()}{name}"
+    name = join_prefix(foreign_id.strip() or identifier, prefix)
     made_id = _OTHER_SIGNS.sub("-", spell_in_ascii(name)).strip("-._")
     if not made_id or (not name.isascii() and not re.search(r"[A-Za-z0-9]", made_id)):
         return f"R-{_digest(name)}"
-    if not made_id[0].isalpha():
+    # YAML readers take `on`, `no` and the like for something else than text.
+    if not made_id[0].isalpha() or needs_quotes(made_id):
         made_id = f"R-{made_id}"
     if len(made_id) > MAX_ID_LENGTH:
         made_id = f"{made_id[: MAX_ID_LENGTH - _DIGEST_LENGTH - 1].rstrip('-._')}-{_digest(name)}"

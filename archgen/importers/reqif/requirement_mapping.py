@@ -10,11 +10,19 @@ from typing import Any, Literal
 from archgen.importers.reqif.attribute_meanings import (
     HEADING_SORTS,
     PART_RELATIONS,
+    ReadMeanings,
     fold_attribute_name,
     read_meanings,
 )
+from archgen.importers.reqif.known_requirements import KnownRequirements, make_identity_hints
+from archgen.importers.reqif.parent_circles import cut_circles
 from archgen.importers.reqif.reqif_document import ReqifDocument, ReqifObject
-from archgen.importers.reqif.requirement_ids import is_requirement_id, make_distinct_id, make_requirement_id
+from archgen.importers.reqif.requirement_ids import (
+    is_requirement_id,
+    join_prefix,
+    make_distinct_id,
+    make_requirement_id,
+)
 
 OWN_TOOL = "archgen"
 REQUIREMENT_TYPE, USE_CASE_TYPE, VERIFICATION_TYPE = "archgen requirement", "archgen use case", "archgen verification"
@@ -50,16 +58,18 @@ class ImportedRequirements:
     unread_attributes: Counter[str] = field(default_factory=Counter)
     """How many objects have each attribute that is not taken."""
     unread_relations: Counter[str] = field(default_factory=Counter)
+    closing_relations: tuple[tuple[str, str], ...] = ()
+    """What is not taken, as (part, parent), since it would make a requirement a part of itself."""
 
 
-def take_requirements(document: ReqifDocument) -> ImportedRequirements:
-    """Return the requirements of a document, in the order of its specifications."""
-    return _RequirementTaker(document).take()
+def take_requirements(document: ReqifDocument, known: KnownRequirements | None = None) -> ImportedRequirements:
+    """Return the requirements of a document, in the order of its specifications; known ones keep their ids."""
+    return _RequirementTaker(document, known or KnownRequirements()).take()
 
 
 class _RequirementTaker:
-    def __init__(self, document: ReqifDocument) -> None:
-        self._document = document
+    def __init__(self, document: ReqifDocument, known: KnownRequirements) -> None:
+        self._document, self._known = document, known
         self._result = ImportedRequirements()
         self._id_by_object: dict[str, str] = {}
         self._verifier_by_object: dict[str, str] = {}
@@ -73,8 +83,13 @@ class _RequirementTaker:
             self._account("not taken", entry, reason="another object has its identifier")
         self._take_relations()
         self._take_hierarchy()
+        parents = {name: body["parent"] for name, body in self._result.requirements.items() if "parent" in body}
+        self._result.closing_relations = cut_circles(parents)
+        for name, _ in self._result.closing_relations:
+            if not parents[name]:
+                self._result.requirements[name].pop("parent", None)
         for body in self._result.requirements.values():
-            body |= {key: list(value) for key, value in body.items() if isinstance(value, dict)}
+            body |= {key: list(body[key]) for key in ("parent", "verified_by", "use_cases") if key in body}
         return self._result
 
     def _order_objects(self) -> list[ReqifObject]:
@@ -98,7 +113,8 @@ class _RequirementTaker:
 
     def _take_object(self, entry: ReqifObject) -> None:
         type_name = self._document.names.get(entry.type_id, "")
-        values, unknown_names = read_meanings(self._document, entry)
+        meanings = read_meanings(self._document, entry)
+        values = meanings.values
         name = values.get("id", "")
         if type_name == VERIFICATION_TYPE:
             self._verifier_by_object[entry.id] = _fold(values.get("name", "") or entry.long_name)
@@ -117,9 +133,9 @@ class _RequirementTaker:
                 "left out", entry, reason=reason, name=" ".join(filter(None, [name, self._headings[entry.id]]))
             )
         else:
-            self._take_requirement(entry, values)
+            self._take_requirement(entry, meanings)
             derived_names = _DERIVED_ATTRIBUTES if type_name == REQUIREMENT_TYPE else frozenset()
-            self._result.unread_attributes.update(set(unknown_names) - derived_names)
+            self._result.unread_attributes.update(set(meanings.unknown_names) - derived_names)
 
     @staticmethod
     def _is_heading(values: dict[str, str]) -> bool:
@@ -127,7 +143,8 @@ class _RequirementTaker:
             return True
         return bool(values.get("heading")) and not values.get("text") and not values.get("name")
 
-    def _take_requirement(self, entry: ReqifObject, values: dict[str, str]) -> None:
+    def _take_requirement(self, entry: ReqifObject, meanings: ReadMeanings) -> None:
+        values = meanings.values
         text, name = values.get("text", ""), _fold(values.get("name", ""))
         foreign_id, description = values.get("id", ""), values.get("description", "")
         if not (text or name or description):
@@ -137,7 +154,9 @@ class _RequirementTaker:
         if not foreign_id and not entry.id:
             self._account("not taken", entry, reason="it has no id", name=name)
             return
-        made_id = make_requirement_id(foreign_id, values.get("prefix", ""), entry.id)
+        prefix = values.get("prefix", "")
+        shown_id = join_prefix(foreign_id, prefix) if foreign_id else ""
+        made_id = self._known.find(entry.id, shown_id) or make_requirement_id(foreign_id, prefix, entry.id)
         if made_id in self._result.requirements:
             made_id = make_distinct_id(made_id, entry.id)
         if made_id in self._result.requirements:
@@ -147,17 +166,21 @@ class _RequirementTaker:
         sort = values.get("sort", "")
         if "kind" not in values and sort.casefold() not in _PLAIN_SORTS:
             values["kind"] = sort
-        body |= {key: _make_word(values[key]) for key in ("kind", "priority") if _make_word(values.get(key, ""))}
+        body |= {key: word for key in ("kind", "priority") if (word := _make_word(_pick_first(meanings, key)))}
         body |= {"rationale": values["rationale"]} if values.get("rationale") else {}
         body |= {"source": _fold(values["source"])} if values.get("source") else {}
-        if tags := [each for tag in values.get("tags", "").split(",") if (each := _make_word(tag))]:
-            body["tags"] = tags
+        tags = meanings.chosen.get("tags") or values.get("tags", "").split(",")
+        if words := list(dict.fromkeys(word for tag in tags if (word := _make_word(tag)))):
+            body["tags"] = words
+        if self._document.source_tool != OWN_TOOL:
+            body["hints"] = make_identity_hints(entry.id, shown_id, made_id)
         self._result.requirements[made_id] = {
             key: value for key, value in body.items() if not (key == "title" and value == made_id)
         }
         self._id_by_object[entry.id] = made_id
-        renamed = foreign_id and made_id != foreign_id
-        self._account("taken", entry, made_id, f"`{_fold(foreign_id)}` is no id here" if renamed else "", foreign_id)
+        reasons = [f"`{shown_id}` is no id here"] if shown_id not in {"", made_id} else []
+        reasons += _list_left_values(meanings)
+        self._account("taken", entry, made_id, "; ".join(reasons), foreign_id)
 
     def _take_relations(self) -> None:
         for relation in self._document.relations:
@@ -206,6 +229,20 @@ def _describe(name: str, text: str, more: str) -> dict[str, Any]:
         name = name if len(name) <= _MAX_TITLE else f"{name[: _MAX_TITLE - 3].rstrip()}..."
     description = "\n\n".join(part for part in (text, more) if part and _fold(part) != name)
     return {"title": name, **({"description": description} if description else {})}
+
+
+def _pick_first(meanings: ReadMeanings, key: str) -> str:
+    """Return the value of an attribute that takes one word here: of an enumeration with several, the first."""
+    return (meanings.chosen.get(key) or [meanings.values.get(key, "")])[0]
+
+
+def _list_left_values(meanings: ReadMeanings) -> list[str]:
+    """Say which values of enumerations are left out, since only one fits."""
+    return [
+        f"its {key} is `{_fold(words[0])}`, not also {', '.join(f'`{_fold(word)}`' for word in words[1:])}"
+        for key in ("kind", "priority")
+        if len(words := meanings.chosen.get(key, [])) > 1
+    ]
 
 
 def _append(body: dict[str, Any], key: str, value: str) -> None:

@@ -59,9 +59,9 @@ def make_bound_type(name: str, types: Mapping[str, ConceptualType]) -> Conceptua
         message=None,
         fields=None if generic_type.fields is None else _bind_fields(generic_type.fields, stands_for),
         part_fields={part: _bind_fields(fields, stands_for) for part, fields in generic_type.part_fields.items()},
-        request=_bind_name(generic_type.request, stands_for),
-        response=_bind_name(generic_type.response, stands_for),
-        feedback=_bind_name(generic_type.feedback, stands_for),
+        request=bind_name(generic_type.request, stands_for),
+        response=bind_name(generic_type.response, stands_for),
+        feedback=bind_name(generic_type.feedback, stands_for),
         generic=(),
         # Nothing declares it: it is used.
         at=NO_SPAN,
@@ -71,12 +71,12 @@ def make_bound_type(name: str, types: Mapping[str, ConceptualType]) -> Conceptua
 
 def _bind_fields(fields: tuple[DataField, ...], stands_for: Mapping[str, str]) -> tuple[DataField, ...]:
     return tuple(
-        replace(field, type=f"{_bind_name(field.element_type, stands_for)}{field.array}") if field.type else field
+        replace(field, type=f"{bind_name(field.element_type, stands_for)}{field.array}") if field.type else field
         for field in fields
     )
 
 
-def _bind_name(name: str | None, stands_for: Mapping[str, str]) -> str | None:
+def bind_name(name: str | None, stands_for: Mapping[str, str]) -> str | None:
     """Return a name with what the type parameters in it stand for: `List<T>` is `List<Pose>`."""
     if not name:
         return name

@@ -62,7 +62,7 @@ def resolve_implements(root: MappingNode, resolver: ReferenceResolver) -> dict[s
 
 
 def declare_nodes(root: MappingNode, context: NodeContext, implemented: ImplementingNodes) -> dict[str, Node]:
-    """Declare every node that is written, by id. Nodes that archgen derives are added later, by `transform`."""
+    """Declare every node that is written, by id. Nodes that archgen derives are added later, by `derivation`."""
     return {
         name: _declare_node(name, entry, context, implemented)
         for name, entry, _ in mapping_values.iterate_elements(root, "nodes")

@@ -143,6 +143,7 @@ def declare_review(root: MappingNode) -> ReviewSettings:
             if isinstance(item, MappingNode) and (reason := mapping_values.get_text(item, "reason"))
         ),
         backends=mapping_values.get_texts(body, "backends"),
+        passes=mapping_values.get_texts(body, "passes"),
     )
 
 

@@ -19,6 +19,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 
 _TYPE_KEYS = frozenset({"is", "same_as"})
 _USE_KEYS = ("publishes", "subscribes", "serves", "calls")
+_START_REFERENCES = frozenset({"after", "by"})
 _LEAST_ENDS = 2
 """A link between fewer ends joins nothing."""
 
@@ -103,7 +104,10 @@ class ElementRemover:
         ):
             inner = self._prune_parts(mapping_values.get_mapping(body, "components"), component_id)
             entries["components"] = _with_value(entries["components"], inner)
-        if all(entries[key] is body.entries[key] for key in entries) and body is part.value:
+        if "node" in entries:
+            entries["node"] = self._prune_start(entries["node"], ())
+        is_same = len(entries) == len(body.entries) and all(entries[key] is body.entries[key] for key in entries)
+        if is_same and body is part.value:
             return part
         return _with_value(part, MappingNode(entries, body.span, body.declares))
 
@@ -213,30 +217,39 @@ class ElementRemover:
         yield from self._outline.inputs.get(component_id, ())
         yield from self._outline.outputs.get(component_id, ())
 
-    def _prune_start(self, node: MappingEntry, gone_nodes: Collection[str]) -> MappingEntry:
-        """Return a node that starts after nothing that is gone."""
-        body = mapping_values.get_body(node)
+    def _prune_start(self, holder: MappingEntry, gone_nodes: Collection[str]) -> MappingEntry:
+        """Return what has a `start` so that it waits for nothing, and is activated by nothing, that is gone."""
+        body = mapping_values.get_body(holder)
         start = mapping_values.get_mapping(body, "start")
-        scalars = mapping_values.get_scalars(start, "after")
+        pruned = {
+            entry.key: kept
+            for entry in start
+            if (kept := self._prune_targets(entry, gone_nodes) if entry.key in _START_REFERENCES else entry)
+        }
+        if len(pruned) == len(start.entries) and all(pruned[entry.key] is entry for entry in start):
+            return holder
+        laid = _with_value(body.entries["start"], MappingNode(pruned, start.span))
+        entries = {key: laid if key == "start" else entry for key, entry in body.entries.items()}
+        if not pruned:
+            del entries["start"]
+        return _with_value(holder, MappingNode(entries, body.span, body.declares))
+
+    def _prune_targets(self, entry: MappingEntry, gone_nodes: Collection[str]) -> MappingEntry | None:
+        """Return a key that names nodes and components without what is gone; None where nothing else is named."""
+        items = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
         kept = [
-            scalar
-            for scalar in scalars
-            if scalar.text not in gone_nodes
-            and not (
-                self.removed.may_be_named(scalar.text)
-                and self._is_removed(
-                    self._resolver.names.resolve_path(scalar.text, ("node", "component")).unique_element
-                )
-            )
+            item for item in items if not (isinstance(item, ScalarNode) and self._is_gone_target(item.text, gone_nodes))
         ]
-        if len(kept) == len(scalars):
-            return node
-        after = _with_value(start.entries["after"], SequenceNode([*kept], start.entries["after"].value.span))
-        start_entries = {key: after if key == "after" else entry for key, entry in start.entries.items()}
-        if not kept:
-            del start_entries["after"]
-        laid = _with_value(body.entries["start"], MappingNode(start_entries, start.span))
-        return _with_value(node, MappingNode({**body.entries, "start": laid}, body.span, body.declares))
+        if len(kept) == len(items):
+            return entry
+        return _with_value(entry, SequenceNode(kept, entry.value.span)) if kept else None
+
+    def _is_gone_target(self, text: str, gone_nodes: Collection[str]) -> bool:
+        if text in gone_nodes:
+            return True
+        return self.removed.may_be_named(text) and self._is_removed(
+            self._resolver.names.resolve_path(text, ("node", "component")).unique_element
+        )
 
     def _prune_links(self, section: MappingEntry, gone_hosts: frozenset[str]) -> MappingEntry:
         kept: dict[str, MappingEntry] = {}

@@ -19,6 +19,8 @@ from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
 from archgen.views.agreement.signature_record import write_signature_table
+from archgen.views.agreement.start_section import write_start_section
+from archgen.views.agreement.use_case_section import write_use_case_section
 from archgen.views.shapes import (
     Block,
     Column,
@@ -65,8 +67,10 @@ def outline_agreement(content: AgreementContent) -> Outline:
                 for section in _direction_section(content, section_writer, direction)
             ),
             *_removed_section(content),
+            *write_use_case_section(content),
             *write_frame_section(content),
             *write_setting_section(content),
+            *write_start_section(content),
             *write_budget_section(content),
             write_open_points_section(content),
             _signatures_section(content),

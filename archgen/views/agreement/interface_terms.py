@@ -162,11 +162,20 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interfa
         yield "Meaning", inline_text.to_inlines(interface.output.description)
     if interface.output and (frame_name := lookup.architecture.frame_of(interface.output)):
         yield "Frame", inline_text.to_inlines(Text(frame_name, code=True))
+    yield from _list_declared_properties(lookup, interface)
     if interface.flow != "physical" and not interface.medium:
         yield "Message", _message_runs(lookup, interface)
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)
     if other_components:
         yield "Also read by", inline_text.join_lines(_other_reader(lookup, component) for component in other_components)
+
+
+def _list_declared_properties(lookup: Lookup, interface: PartnerInterface) -> Iterator[interface_timing.TermFact]:
+    """Yield the properties of an output that the project declares: what it says freely is no term."""
+    own_properties = interface.output.annotations.properties if interface.output else {}
+    for declared in lookup.architecture.properties.values():
+        if declared.id in own_properties:
+            yield declared.title, inline_text.to_inlines(own_properties[declared.id])
 
 
 def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:

@@ -11,9 +11,9 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture, UseCase
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Container
-from archgen.model.node import Node, Topic
+from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
-from archgen.model.port_media import uses_ros, word_of_medium
+from archgen.model.port_media import ROS, name_medium, name_on_medium, uses_ros, word_of_medium
 from archgen.views import inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_lines
@@ -351,7 +351,7 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         ),
     ]
     lines = tuple(
-        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {endpoint.name} ({endpoint.message or '?'})"
+        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}"
         for endpoint in lookup.endpoints_of.get(node.id, ())
     )
     lists = (
@@ -360,6 +360,13 @@ def _node_card(lookup: Lookup, node: Node) -> ElementCard:
         ("findings", tuple(_format_findings(lookup, node.id))),
     )
     return ElementCard("node", node.id, node.title, node.at, _known_facts(facts), lists)
+
+
+def _describe_endpoint(endpoint: Endpoint) -> str:
+    """Return the name of what a node uses with its message; over another medium than ROS, with its type."""
+    if endpoint.medium == ROS:
+        return f"{endpoint.name} ({endpoint.message or '?'})"
+    return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
 
 
 def _topic_card(lookup: Lookup, topic: Topic) -> ElementCard:

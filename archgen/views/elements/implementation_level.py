@@ -6,6 +6,7 @@ import shlex
 
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
+from archgen.model.port_media import ROS
 from archgen.views import element_references, inline_text
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
@@ -139,17 +140,22 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
     rows = tuple(
         (
             inline_text.to_inlines(_USE_LABELS[endpoint.use]),
-            inline_text.to_inlines(inline_text.topic_link(endpoint.name), *_internal_mark(endpoint)),
-            inline_text.to_inlines(element_references.message_link(endpoint.message))
-            if endpoint.message
-            else inline_text.UNKNOWN_INLINES,
+            (*inline_text.name_carrier(endpoint), *_internal_mark(endpoint)),
+            _name_content(endpoint),
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            inline_text.format_qos_cell(endpoint.qos) if endpoint.flow == "topic" else (),
+            inline_text.format_qos_cell(endpoint.qos) if endpoint.flow == "topic" and endpoint.medium == ROS else (),
         )
         for endpoint in sorted(endpoints, key=lambda e: _USE_ORDER[e.use])
     )
     columns = (Column("Use", 0.7), Column("Name", 1.9), Column("Message", 2.0), Column("Port", 0.8), Column("QoS", 1.3))
     return Table(f"table:endpoints/{node.id}", f"{node.id}: topics, services and actions", columns, rows)
+
+
+def _name_content(endpoint: Endpoint) -> Inlines:
+    """Return the message of an endpoint; over another medium than ROS, the type."""
+    if endpoint.medium != ROS and endpoint.type:
+        return inline_text.type_link(endpoint.type)
+    return (element_references.message_link(endpoint.message),) if endpoint.message else inline_text.UNKNOWN_INLINES
 
 
 def _internal_mark(endpoint: Endpoint) -> Inlines:

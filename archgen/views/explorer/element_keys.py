@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
+from archgen.model.counted_outputs import list_deprecated_kinds
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
@@ -18,7 +19,7 @@ from archgen.model.port_media import list_medium_words
 from archgen.model.property_conditions import find_component_properties, find_node_properties
 from archgen.model.requirement_tree import add_above
 from archgen.model.selector_evaluation import SelectorEvaluator
-from archgen.model.selector_keys import SelectorHit
+from archgen.model.selector_keys import SelectorHit, find_component_status, list_participants
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]
@@ -31,6 +32,10 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
     types = _list_types(architecture)
     rules = _list_rules(lookup)
     variants = find_changed_by_variants(architecture)
+    use_cases: dict[str, list[str]] = defaultdict(list)
+    for use_case_id, participants in list_participants(architecture).items():
+        for component_id in participants:
+            use_cases[component_id].append(use_case_id)
     return {
         component.id: tuple(
             dict.fromkeys(
@@ -40,6 +45,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("type", name) for name in types[component.id]),
                     *(("medium", word) for port in _list_ports(component) for word in list_medium_words(port)),
                     *((("role", component.role),) if component.role else ()),
+                    *((("status", status),) if (status := find_component_status(architecture, component)) else ()),
                     *(("requirement", name) for name in _list_requirements(architecture, component)),
                     *_list_behaviours((component.timing,)),
                     *(("finding", rule) for rule in rules[component.id]),
@@ -48,6 +54,8 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("parameter", name) for name in component.parameters),
                     *_list_properties(find_component_properties(architecture, component)),
                     *(("variant", name) for name, hit in variants.items() if component.id in hit.components),
+                    *(("deprecated", kind) for kind in list_deprecated_kinds(architecture, component)),
+                    *(("use_case", name) for name in use_cases.get(component.id, ())),
                 )
             )
         )
@@ -63,6 +71,7 @@ def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Ke
                 *(("tag", tag) for tag in shell.tags),
                 *(("owner", owner) for owner in shell.owners),
                 *((("role", shell.role),) if shell.role else ()),
+                *((("status", shell.status),) if shell.status else ()),
                 *(("requirement", name) for name in _list_requirements(architecture, shell)),
                 *_list_properties(shell.annotations.properties),
             )

@@ -151,8 +151,17 @@ class _MapMaker:
         for name in used_requirements:
             if name in architecture.requirements:
                 yield ("requirement", name, f"{name} {architecture.requirements[name].title}")
+        yield from self._list_property_names()
         yield from (("period", step, words) for step, words in rate_phrases.PERIOD_STEP_WORDS.items())
         yield from (("progress", str(number), step) for number, step in enumerate(PROGRESS_STEPS))
+
+    def _list_property_names(self) -> Iterator[Row]:
+        """Yield the titles of declared properties that anything on the map has, each with its choices in their order."""
+        used_names = {value.partition("=")[0] for key, value in self.key_numbers if key == "property"}
+        for declared in self.lookup.architecture.properties.values():
+            if declared.id in used_names:
+                yield ("property", declared.id, declared.title)
+                yield from ((f"property:{declared.id}", choice, choice) for choice in declared.choices)
 
     def group_row(self, group: Group) -> Row:
         """Return the row of a group."""

@@ -7,10 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
-from archgen.model.port_media import label_of_medium
+from archgen.model.port_media import label_of_medium, name_on_medium
 from archgen.views.explorer.map_shapes import Row
 from archgen.views.graphs.component_flows import flow_style, list_flows
 from archgen.views.lookup import Lookup
+from archgen.views.port_warnings import warn_of_outputs
 from archgen.views.search.search_entry import join_words
 
 _OPTIONAL, _MADE = 1, 2
@@ -34,12 +35,12 @@ def make_flow_tables(
     topics: dict[str, int] = {}
     links = tuple(_list_link_rows(architecture, nodes, topics))
     return {
-        "outputs": tuple(_port_row(port, components, types) for port in outputs),
+        "outputs": tuple((*_port_row(port, components, types), warn_of_outputs(lookup, (port,))) for port in outputs),
         "inputs": tuple((*_port_row(port, components, types), _mark_input(port)) for port in inputs),
         "rims": tuple(_list_rim_rows(architecture, shells, types, {"input": input_numbers, "output": output_numbers})),
         "flows": flows,
         "extra": tuple(_list_extra_steps(architecture, components, flows, outputs, inputs)),
-        "topics": tuple((f"topic:{name}", name, architecture.topics[name].flow) for name in topics),
+        "topics": tuple(_make_carrier_rows(architecture, topics)),
         "links": links,
     }
 
@@ -87,11 +88,9 @@ def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Number
             if output in outputs and architecture.outputs[output].component == producer
         )
         if numbers and connection.input in inputs:
-            yield (
-                _STYLES.index(flow_style(architecture, _first_output(architecture, connection.outputs, producer))),
-                inputs[connection.input],
-                numbers,
-            )
+            style = flow_style(architecture, _first_output(architecture, connection.outputs, producer))
+            row = (_STYLES.index(style), inputs[connection.input], numbers)
+            yield (*row, flow.medium) if flow.medium else row
 
 
 def _first_output(architecture: Architecture, output_ids: tuple[str, ...], producer: str) -> str:
@@ -103,7 +102,7 @@ def _list_extra_steps(
 ) -> Iterator[Row]:
     """Yield the steps that selectors take and no flow shows: from components of which no output is known yet, ..."""
     known_steps = set()
-    for style, reader, numbers in flows:
+    for style, reader, numbers, *_ in flows:
         for number in numbers:  # type: ignore[attr-defined]
             ends = (outputs[number].component, inputs[reader].component)  # type: ignore[call-overload]
             known_steps.add(ends)
@@ -118,13 +117,22 @@ def _list_extra_steps(
 def _list_link_rows(architecture: Architecture, nodes: Numbers, topics: dict[str, int]) -> Iterator[Row]:
     """Yield what runs between two shown nodes over a topic, a call from client to server; add to `topics` which."""
     seen_links = set()
-    for topic in architecture.topics.values():
+    for key, topic in architecture.list_carriers():
         for writer in topic.writers:
             for reader in topic.readers:
                 # As in `model.flow_graph`: of a shared topic only what the reader's input names.
                 if (topic.shared and writer.port not in reader.sources) or writer.node == reader.node:
                     continue
                 ends = (writer.node, reader.node) if topic.flow == "topic" else (reader.node, writer.node)
-                if ends[0] in nodes and ends[1] in nodes and (*ends, topic.name) not in seen_links:
-                    seen_links.add((*ends, topic.name))
-                    yield (nodes[ends[0]], nodes[ends[1]], topics.setdefault(topic.name, len(topics)))
+                if ends[0] in nodes and ends[1] in nodes and (*ends, key) not in seen_links:
+                    seen_links.add((*ends, key))
+                    yield (nodes[ends[0]], nodes[ends[1]], topics.setdefault(key, len(topics)))
+
+
+def _make_carrier_rows(architecture: Architecture, keys: Iterable[str]) -> Iterator[Row]:
+    """Yield the rows of topics, and of what runs over other media: these have no page."""
+    carriers = dict(architecture.list_carriers())
+    for key in keys:
+        carrier = carriers[key]
+        row = (f"topic:{key}", name_on_medium(carrier), carrier.flow)
+        yield (*row, label) if (label := label_of_medium(carrier)) else row

@@ -33,11 +33,11 @@ class ExplorerMap:
     | `components` | anchor, id, title, group, line, summary, keys, period, progress, severity, place, written in |
     | `shells` | anchor, id, title, group, shell around, components directly inside, line, summary, keys, severity, place, written in |
     | `nodes` | anchor, id, title, components, group, host, line, summary, keys, period, severity, places, written in |
-    | `topics` | anchor, name, flow |
+    | `topics` | anchor, name, flow, and the medium where it is no ROS |
     | `outputs` | component, name, type, note |
     | `inputs` | component, name, type, note, marks (1 optional, 2 joined by autoconnect) |
     | `rims` | shell, is it an output, name, type, note, marks, ports behind it, outputs that feed it: of composed components |
-    | `flows` | style, input, outputs: between components |
+    | `flows` | style, input, outputs, and the medium where it is no ROS: between components |
     | `extra` | tail, head: what feeds a component of which no output is known yet |
     | `links` | tail, head, topic: between nodes |
     | `chains` | anchor, id, title, status, words, components, nodes |

@@ -16,6 +16,7 @@ from archgen.model.port_media import is_physical, label_of_medium, nature_of
 from archgen.views.graph_shapes import Arrow
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
+_MAX_TYPE_LINES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +32,8 @@ class ComponentFlow:
     sentence: str
     medium: str = ""
     """How what it travels over is called, if that is data but no ROS."""
+    warning: str = ""
+    """What a reader should know before counting on it, in a few words."""
 
     @property
     def label(self) -> str:
@@ -78,9 +81,9 @@ def name_media(ports: Iterable[Input | Output]) -> str:
     return ", ".join(dict.fromkeys(label_of_medium(port) for port in ports if nature_of(port) == "other"))
 
 
-def add_medium(label: str, medium: str) -> str:
-    """Return the label beside an arrow with the medium on a line of its own."""
-    return "\n".join(filter(None, (label, f"({medium})" if medium else "")))
+def add_notes(label: str, *notes: str) -> str:
+    """Return the label beside an arrow with notes, such as its medium, on lines of their own."""
+    return "\n".join(filter(None, (label, *(f"({note})" for note in notes if note))))
 
 
 def flow_style(architecture: Architecture, output_id: str) -> FlowStyle:
@@ -114,7 +117,7 @@ def merge_flows(
             f"{tail}>{head}" + (f":{style}" if style != "data" else "") + (f":{medium}" if medium else ""),
             tail,
             head,
-            label=add_medium(_bundle_label(bundle), medium) if labels else "",
+            label=add_notes(_bundle_label(bundle), medium) if labels else "",
             style=style,
             count=len(bundle),
             optional=by_style and all(flow.optional for flow in bundle),
@@ -127,10 +130,18 @@ def merge_flows(
 
 
 def _bundle_label(bundle: list[ComponentFlow]) -> str:
-    """Return the types of a bundle, each on a line."""
-    return list_type_names(list(dict.fromkeys(name for flow in bundle for name in flow.types)))
+    """Return the types of a bundle, each on a line with what is to be known of what it comes from."""
+    names = list(dict.fromkeys(name for flow in bundle for name in flow.types))
+    if len(names) > _MAX_TYPE_LINES or not all(flow.types for flow in bundle):
+        return add_notes(list_type_names(names), *dict.fromkeys(flow.warning for flow in bundle))
+    warnings = {name: dict.fromkeys(flow.warning for flow in bundle if name in flow.types) for name in names}
+    return "\n".join(add_notes(name, *warnings[name]) for name in names)
 
 
 def list_type_names(names: Sequence[str]) -> str:
     """Return names of types, each on a line; of more than three the rest is counted."""
-    return "\n".join(names) if len(names) <= 3 else "\n".join([*names[:2], f"and {len(names) - 2} more types"])  # noqa: PLR2004
+    return (
+        "\n".join(names)
+        if len(names) <= _MAX_TYPE_LINES
+        else "\n".join([*names[:2], f"and {len(names) - 2} more types"])
+    )

@@ -17,10 +17,11 @@ from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import add_medium, flow_style, list_type_names, name_media, port_style
+from archgen.views.graphs.component_flows import add_notes, flow_style, list_type_names, name_media, port_style
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun, format_short_timing
 from archgen.views.lookup import Lookup
+from archgen.views.port_warnings import warn_of_outputs
 
 DrawnNeighbour = tuple[Box, Arrow]
 _CALLS = {"service", "action"}
@@ -134,7 +135,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
         f"{connection.target}>{port.id}",
         box.id,
         component.id,
-        add_medium(label, medium),
+        add_notes(label, medium, warn_of_outputs(lookup, outputs)),
         head_port=f"in {port.name}",
         style=style,
         optional=port.optional,
@@ -151,7 +152,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
 def _draw_outputs(lookup: Lookup, component: Component) -> Iterator[DrawnNeighbour]:
     for output in component.outputs.values():
         style = flow_style(lookup.architecture, output.id)
-        label = add_medium(output.type or "", name_media((output,)))
+        label = add_notes(output.type or "", name_media((output,)), warn_of_outputs(lookup, (output,)))
         if output.external is not None:
             yield _draw_external(lookup, output, component)
             label = ""

@@ -13,6 +13,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input
 from archgen.views.graphs.component_flows import ComponentFlow, FlowStyle, flow_style
 from archgen.views.lookup import Lookup
+from archgen.views.port_warnings import warn_of_outputs
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,7 @@ class _FlowPart:
     style: FlowStyle
     names: tuple[str, ...]
     types: tuple[str, ...]
+    warning: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +86,7 @@ class DrawnLevel:
         source, reader = first.source, first.reader
         types = tuple(dict.fromkeys(name for part in parts for name in part.types))
         names = ", ".join(dict.fromkeys(name for part in parts for name in part.names))
+        warning = ", ".join(dict.fromkeys(part.warning for part in parts if part.warning))
         return ComponentFlow(
             first.connection,
             *((reader, source) if first.style in {"service", "action"} else (source, reader)),
@@ -92,7 +95,9 @@ class DrawnLevel:
             first.port.optional,
             f"{self.find_component(source).title} · {names}"
             f"{' (' + ', '.join(types) + ')' if types else ''}"
-            f" → {self.find_component(reader).title} · {self._name_port(first.port.id, reader)}",
+            f" → {self.find_component(reader).title} · {self._name_port(first.port.id, reader)}"
+            f"{f' ({warning})' if warning else ''}",
+            warning=warning,
         )
 
     def _list_parts(self, port: Input, connection: Connection) -> Iterator[_FlowPart]:
@@ -114,7 +119,8 @@ class DrawnLevel:
             names = tuple(self._name_port(output.id, source, connection) for output in own_outputs)
             types = tuple(dict.fromkeys(output.type for output in own_outputs if output.type))
             style = flow_style(architecture, own_outputs[0].id)
-            yield _FlowPart(port, connection, source, reader, style, names, types)
+            warning = warn_of_outputs(self.lookup, own_outputs)
+            yield _FlowPart(port, connection, source, reader, style, names, types, warning)
 
     def _find_source(self, connection: Connection, producer: str) -> str:
         """Return the box that a connection comes from: of a closed component that gives on what it reads, itself."""

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from archgen.model.node import Endpoint, Topic
+from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import node_boxes
 from archgen.views.graphs.legend_keys import add_legend_keys
@@ -25,11 +26,12 @@ _MAX_LISTED_TOPICS = 8
 
 @dataclass(frozen=True, slots=True)
 class _TopicArrow:
-    """One arrow between a node (its id; of a neighbour with `<` or `>`, its side, before it) and a topic."""
+    """One arrow between a node (its id; of a neighbour with `<` or `>`, its side, before it) and a topic or channel."""
 
     node: str
     topic: str
     style: str
+    medium: str
     to_topic: bool
 
 
@@ -65,24 +67,26 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
 
 def _list_topic_arrows(lookup: Lookup, subject_ids: set[str]) -> Iterator[_TopicArrow]:
     endpoints = [each for subject in sorted(subject_ids) for each in lookup.endpoints_of.get(subject, ())]
-    for name in dict.fromkeys(endpoint.name for endpoint in endpoints):
-        topic = lookup.architecture.topics.get(name)
-        if topic is not None:
-            yield from _arrows_at_topic(topic, subject_ids)
+    carriers = dict(lookup.architecture.list_carriers())
+    for key in dict.fromkeys(key_of_carrier(endpoint) for endpoint in endpoints):
+        if key in carriers:
+            yield from _arrows_at_topic(key, carriers[key], subject_ids)
 
 
-def _arrows_at_topic(topic: Topic, subject_ids: set[str]) -> Iterator[_TopicArrow]:
+def _arrows_at_topic(key: str, topic: Topic, subject_ids: set[str]) -> Iterator[_TopicArrow]:
     """Yield the arrows at a topic: into it from publishers and clients, out of it to subscribers and servers."""
     entering, leaving = (topic.writers, topic.readers) if topic.flow == "topic" else (topic.readers, topic.writers)
     own_entering = [each for each in entering if each.node in subject_ids]
     own_leaving = [each for each in leaving if each.node in subject_ids]
     # Others that write are drawn only where the component reads, and the reverse: co-publishers are not its neighbours.
     for endpoint in entering if own_leaving else own_entering:
-        yield _TopicArrow(_place_node(endpoint, subject_ids, "<"), topic.name, _endpoint_style(endpoint), to_topic=True)
+        yield _make_arrow(key, endpoint, _place_node(endpoint, subject_ids, "<"), to_topic=True)
     for endpoint in leaving if own_entering else own_leaving:
-        yield _TopicArrow(
-            _place_node(endpoint, subject_ids, ">"), topic.name, _endpoint_style(endpoint), to_topic=False
-        )
+        yield _make_arrow(key, endpoint, _place_node(endpoint, subject_ids, ">"), to_topic=False)
+
+
+def _make_arrow(key: str, endpoint: Endpoint, node: str, *, to_topic: bool) -> _TopicArrow:
+    return _TopicArrow(node, key, _endpoint_style(endpoint), label_of_medium(endpoint), to_topic)
 
 
 def _place_node(endpoint: Endpoint, subject_ids: set[str], side: str) -> str:
@@ -98,10 +102,14 @@ def _endpoint_style(endpoint: Endpoint) -> str:
 def _find_stars(lookup: Lookup, topic_arrows: list[_TopicArrow]) -> dict[str, str]:
     """Find the neighbours all of whose topics go to the same nodes. Map each such topic to its common name."""
     star_of_topic: dict[str, str] = {}
-    for neighbour in dict.fromkeys(end.node for end in topic_arrows if end.node[0] == "<" and end.style == "data"):
+    for neighbour in dict.fromkeys(end.node for end in topic_arrows if end.node[0] == "<" and _is_ros_data(end)):
         node = neighbour[1:]
-        published = {e.name for e in lookup.endpoints_of.get(node, ()) if e.use == "publishes" and not e.internal}
-        drawn_topics = {end.topic for end in topic_arrows if end.node == neighbour and end.style == "data"}
+        published = {
+            key_of_carrier(e)
+            for e in lookup.endpoints_of.get(node, ())
+            if e.use == "publishes" and not e.internal and e.medium == ROS
+        }
+        drawn_topics = {end.topic for end in topic_arrows if end.node == neighbour and _is_ros_data(end)}
         nodes_of_topic = {
             name: {end.node for end in topic_arrows if end.topic == name} for name in sorted(drawn_topics)
         }
@@ -113,11 +121,16 @@ def _find_stars(lookup: Lookup, topic_arrows: list[_TopicArrow]) -> dict[str, st
     return star_of_topic
 
 
+def _is_ros_data(end: _TopicArrow) -> bool:
+    return end.style == "data" and not end.medium
+
+
 def _draw_topics(
     lookup: Lookup, topic_arrows: list[_TopicArrow], star_of_topic: dict[str, str], subject_ids: set[str]
 ) -> Iterator[Box]:
+    carriers = dict(lookup.architecture.list_carriers())
     for name in dict.fromkeys(end.topic for end in topic_arrows):
-        topic = lookup.architecture.topics[name]
+        topic = carriers[name]
         if name not in star_of_topic:
             own_endpoints = [each for each in (*topic.writers, *topic.readers) if each.node in subject_ids]
             yield replace(node_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
@@ -148,7 +161,14 @@ def _draw_arrow(topic_arrow: _TopicArrow) -> Arrow:
     box = f"topic {topic_arrow.topic}"
     tail, head = (topic_arrow.node, box) if topic_arrow.to_topic else (box, topic_arrow.node)
     sentence = f"{topic_arrow.node.lstrip('<>')} {'to' if topic_arrow.to_topic else 'from'} {topic_arrow.topic}"
-    return Arrow(f"{tail}>{head}", tail, head, style=topic_arrow.style, flows=(sentence,))  # type: ignore[arg-type]
+    return Arrow(
+        f"{tail}>{head}",
+        tail,
+        head,
+        style=topic_arrow.style,  # type: ignore[arg-type]
+        flows=(sentence,),
+        medium=topic_arrow.medium,
+    )
 
 
 def _describe_implementation(title: str, subjects: list[str], topics: list[str]) -> str:

@@ -8,6 +8,7 @@ from typing import Literal
 
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node, Qos, Topic
+from archgen.model.port_media import ROS, label_of_carrier, name_medium, name_on_medium
 from archgen.views.graph_shapes import Box
 from archgen.views.graphs import element_boxes
 from archgen.views.inline_text import format_short_timing
@@ -59,6 +60,8 @@ def topic_box(topic: Topic, endpoints: Iterable[Endpoint] = ()) -> Box:
     """Return the box of a topic, service or action: name, message, and the quality of service where it is not the
     default.
     """
+    if topic.medium != ROS:
+        return _draw_channel(topic)
     qos = dict.fromkeys(said for endpoint in endpoints for said in [_describe_qos(endpoint.qos)] if said)
     message = topic.messages or (("message open",) if topic.flow == "topic" else ())
     return Box(
@@ -68,6 +71,15 @@ def topic_box(topic: Topic, endpoints: Iterable[Endpoint] = ()) -> Box:
         style=topic.flow,
         ref=f"topic:{topic.name}",
         tooltip="\n".join([topic.name, *topic.messages, *topic.types]),
+    )
+
+
+def _draw_channel(channel: Topic) -> Box:
+    """Return the box of what is no ROS: name, type, and the medium in brackets. It has no page."""
+    name, medium = name_on_medium(channel), f"({name_medium(channel.medium)})"
+    lines = (*channel.types[:3], medium)
+    return Box(
+        f"topic {channel.name}", name, lines, style=channel.flow, tooltip="\n".join((name, *channel.types, medium))
     )
 
 
@@ -83,12 +95,12 @@ def _describe_qos(qos: Qos) -> str:
 def list_node_flows(architecture: Architecture) -> tuple[NodeFlow, ...]:
     """Return all that runs between two nodes: each pair of a writer and a reader of a topic, once."""
     flows: dict[tuple[str, str, str], NodeFlow] = {}
-    for topic in architecture.topics.values():
+    for _, topic in architecture.list_carriers():
         for writer in topic.writers:
             for reader in topic.readers:
                 if writer.node == reader.node:
                     continue
                 ends = (writer.node, reader.node) if topic.flow == "topic" else (reader.node, writer.node)
-                sentence = f"{ends[0]} → {topic.name} → {ends[1]}"
+                sentence = f"{ends[0]} → {label_of_carrier(topic)} → {ends[1]}"
                 flows.setdefault((*ends, topic.name), NodeFlow(*ends, topic, sentence))
     return tuple(flows.values())

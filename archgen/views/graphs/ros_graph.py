@@ -9,6 +9,7 @@ from collections.abc import Collection, Sequence
 
 from archgen.frozen import replace
 from archgen.model.node import Node
+from archgen.model.port_media import label_of_medium
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes
 from archgen.views.graphs.graph_folding import fold_graph
@@ -69,19 +70,22 @@ def draw_home_frame(lookup: Lookup, home: str) -> Cluster:
 
 
 def _merge_node_flows(lookup: Lookup, node_flows: Sequence[NodeFlow], home_frames: dict[str, str]) -> tuple[Arrow, ...]:
-    bundles: dict[tuple[str, str, str], list[NodeFlow]] = {}
+    bundles: dict[tuple[str, str, str, str], list[NodeFlow]] = {}
     for each in node_flows:
         tail, head = home_frames[each.tail], home_frames[each.head]
         is_inside = tail == head
         style = "data" if each.topic.flow == "topic" else each.topic.flow
-        ends = (each.tail, each.head, style) if is_inside else (tail, head, "data")
+        medium = label_of_medium(each.topic)
+        ends = (each.tail, each.head, style, medium) if is_inside else (tail, head, "data", medium)
         bundles.setdefault(ends, []).append(each)
     return tuple(
         Arrow(
-            f"{tail}>{head}:{style}",
+            f"{tail}>{head}:{style}" + (f":{medium}" if medium else ""),
             tail,
             head,
             style=style,  # type: ignore[arg-type]
+            label=(f"({medium})" if len(bundle) == 1 else f"{len(bundle)} ({medium})") if medium else "",
+            medium=medium,
             count=len(bundle),
             # A frame may be a namespace, which has no hue, and a node may have the id of a group.
             colour=element_boxes.group_hue(lookup, tail)
@@ -89,5 +93,5 @@ def _merge_node_flows(lookup: Lookup, node_flows: Sequence[NodeFlow], home_frame
             else None,
             flows=tuple(each.sentence for each in bundle),
         )
-        for (tail, head, style), bundle in bundles.items()
+        for (tail, head, style, medium), bundle in bundles.items()
     )

@@ -11,6 +11,7 @@ from dataclasses import replace
 from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
+from archgen.model.port_media import label_of_medium
 from archgen.model.selector_evaluation import Selection
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes, ros_graph
@@ -181,7 +182,7 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
         if each.tail in node_ids or each.head in node_ids
     ]
     neighbour_ids = dict.fromkeys(end for each in node_flows for end in (each.tail, each.head) if end not in node_ids)
-    topics = dict.fromkeys(each.topic.name for each in node_flows)
+    topics = {each.topic.name: each.topic for each in node_flows}
     if len(node_ids) + len(neighbour_ids) + len(topics) > _SMALL_PICTURE[1]:
         return ros_graph.draw_nodes(lookup, graph_id, title, node_ids)
     all_nodes = lookup.architecture.nodes
@@ -200,14 +201,21 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
         for tail, head in ((each.tail, box), (box, each.head)):
             arrow_id = f"{tail}>{head}"
             sentences = (*arrows[arrow_id].flows, each.sentence) if arrow_id in arrows else (each.sentence,)
-            arrows[arrow_id] = Arrow(arrow_id, tail, head, style=style, flows=tuple(dict.fromkeys(sentences)))
+            arrows[arrow_id] = Arrow(
+                arrow_id,
+                tail,
+                head,
+                style=style,
+                flows=tuple(dict.fromkeys(sentences)),
+                medium=label_of_medium(each.topic),
+            )
     graph = Graph(
         graph_id,
         title,
         "flow",
         (
             *chosen_boxes,
-            *(node_boxes.topic_box(lookup.architecture.topics[topic]) for topic in topics),
+            *(node_boxes.topic_box(topic) for topic in topics.values()),
             *neighbour_boxes,
         ),
         tuple(arrows.values()),

@@ -1,16 +1,13 @@
-"""The site's pages around components and nodes: topics, types, use cases, hosts."""
+"""The site's pages around components and nodes: topics, types, use cases."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 
 from archgen.model.component import Component
-from archgen.model.deployment import Container, Host
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
-from archgen.model.parameter import format_parameter
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
 from archgen.views.elements.annotation_facts import list_annotation_facts
@@ -33,7 +30,6 @@ from archgen.views.shapes import (
 )
 from archgen.views.tables import architecture_tables, requirement_tables, type_fields
 from archgen.views.timing import element_timing
-from archgen.views.timing.host_waterfall import make_host_waterfall
 
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
 """Drops the figures that were not drawn."""
@@ -43,15 +39,11 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
-    """Make a page for each type, use case, host and container."""
+    """Make a page for each type and use case."""
     for conceptual_type in sorted(architecture_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
         yield _type_page(lookup, conceptual_type)
     for name in lookup.architecture.use_cases:
         yield _use_case_page(lookup, name, keep_drawn)
-    for host in lookup.architecture.hosts.values():
-        yield _host_page(lookup, host, keep_drawn)
-    for name in lookup.architecture.containers:
-        yield _container_page(lookup, name)
 
 
 def make_page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
@@ -76,20 +68,27 @@ def make_topic_pages(lookup: Lookup) -> Iterator[Page]:
 def shown_topics(lookup: Lookup) -> list[Topic]:
     """Return the topics, services and actions that a shown node uses."""
     # Each kind by name: nobody finds `/scan/front` by eye in the order of the files.
+    return _sort_shown(lookup, lookup.architecture.topics.values())
+
+
+def _sort_shown(lookup: Lookup, carriers: Iterable[Topic]) -> list[Topic]:
     return [
         topic
-        for topic in sorted(lookup.architecture.topics.values(), key=lambda each: (_FLOW_ORDER[each.flow], each.name))
+        for topic in sorted(carriers, key=lambda each: (_FLOW_ORDER[each.flow], each.name))
         if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
     ]
 
 
 def make_topic_tables(lookup: Lookup) -> Iterator[Table]:
-    """List topics, services and actions, each kind in a table of its own."""
+    """List topics, services and actions, each kind in a table of its own; then what nodes exchange over other media."""
     for flow, title in (("topic", "Topics"), ("service", "Services"), ("action", "Actions")):
         flow_topics = [topic for topic in shown_topics(lookup) if topic.flow == flow]
         table = architecture_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
         if table:
             yield table
+    channels = _sort_shown(lookup, lookup.architecture.channels.values())
+    if table := architecture_tables.make_topic_table(lookup, channels, "table:channels", "Over other media than ROS"):
+        yield table
 
 
 def _topic_page(lookup: Lookup, topic: Topic) -> Page:
@@ -244,82 +243,3 @@ def _use_case_page(lookup: Lookup, use_case_id: str, keep_drawn: FigureFilter) -
     blocks += [table] if table else []
     crumb = ("Requirements and use cases", "page:requirements")
     return make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")
-
-
-def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
-    architecture = lookup.architecture
-    order = host.scheduling or inline_text.format_core_orders(host)
-    facts = [
-        ("Cores", inline_text.count_to_inlines(host.cores)),
-        ("Scheduling", inline_text.to_inlines(order) if order else ()),
-        ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
-        *list_annotation_facts(lookup, host),
-        ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
-        (
-            "Links",
-            inline_text.join_inlines(
-                inline_text.to_inlines(Text(link.title, ref=f"link:{link.id}"))
-                for link in architecture.links.values()
-                if host.id in link.connects
-            ),
-        ),
-        (
-            "Containers",
-            inline_text.join_inlines(
-                inline_text.to_inlines(Text(container.title, ref=f"container:{container.id}"))
-                for container in architecture.containers.values()
-                if container.host == host.id
-            ),
-        ),
-    ]
-    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
-    blocks += [Markdown(host.description)] if host.description else []
-    waterfall = make_host_waterfall(lookup, lookup.timing, host.id) if lookup.timing else None
-    # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
-    blocks += keep_drawn(element_timing.make_load_blocks(lookup, host.id)) if waterfall is None else ()
-    blocks += make_node_table(lookup, [node for node in lookup.shown_nodes() if node.host == host.id], host_id=host.id)
-    section = Section(f"host:{host.id}", host.title, tuple(blocks))
-    return replace(make_page(section, "hosts", ("Hosts and containers", "page:hosts"), "Host"), waterfall=waterfall)
-
-
-def _name_resources(lookup: Lookup, host: Host) -> Iterator[str]:
-    """Yield the titles of a host's resources, each with its users."""
-    for resource in lookup.architecture.resources.values():
-        if resource.host == host.id:
-            users = ", ".join(node.id for node in lookup.architecture.nodes_using(resource.id))
-            yield f"{resource.title} (used by {users})" if users else resource.title
-
-
-def _list_program_facts(container: Container) -> Iterator[tuple[str, Inlines]]:
-    """Yield what is written of a container's own node and its program."""
-    if container.name is not None or container.namespace != "/":
-        yield "ROS name", inline_text.to_inlines(Text(container.full_name, code=True))
-    for name, text in (("Package", container.package), ("Executable", container.executable)):
-        if text:
-            yield name, inline_text.to_inlines(Text(text, code=True))
-    if container.parameters:
-        lines = (
-            inline_text.to_inlines(Text(f"{name}: {format_parameter(value)}", code=True))
-            for name, value in container.parameters.items()
-        )
-        yield "Parameters", inline_text.join_lines(lines)
-
-
-def _container_page(lookup: Lookup, container_id: str) -> Page:
-    container = lookup.architecture.containers[container_id]
-    facts = [
-        (
-            "Host",
-            inline_text.host_link(lookup.architecture, container.host),
-        ),
-        (
-            "Threads",
-            inline_text.to_inlines(str(container.threads)) if container.threads else inline_text.UNKNOWN_INLINES,
-        ),
-        *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
-        *_list_program_facts(container),
-    ]
-    nodes = make_node_table(lookup, [node for node in lookup.shown_nodes() if node.container == container_id])
-    crumb = ("Hosts and containers", "page:hosts")
-    section = Section(f"container:{container_id}", container.title, (Facts(tuple(facts)), *nodes))
-    return make_page(section, "containers", crumb, "Container")

@@ -9,6 +9,7 @@ from archgen.views.changes.site_changes import mark_page
 from archgen.views.lookup import Lookup
 from archgen.views.pages import (
     context_pages,
+    host_pages,
     matrix_pages,
     page_marks,
     page_places,
@@ -71,6 +72,7 @@ def _make_surrounding_pages(page_maker: PageMaker) -> Iterator[Page]:
     """Make the pages on what stands around the elements, one kind after the other."""
     lookup, edition = page_maker.lookup, page_maker.edition
     yield from context_pages.make_context_pages(lookup, page_maker.keep_drawn)
+    yield from host_pages.make_host_pages(lookup, page_maker.keep_drawn)
     yield from requirement_pages.make_requirement_pages(lookup)
     yield from page_maker.variant_pages()
     yield from matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation")

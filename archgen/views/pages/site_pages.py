@@ -17,6 +17,7 @@ from archgen.views.pages import (
     context_pages,
     dashboard,
     explorer_page,
+    host_pages,
     matrix_pages,
     page_marks,
     page_places,
@@ -60,6 +61,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         *page_maker.message_pages().make_pages(),
         *requirement_pages.make_requirement_pages(lookup),
         *context_pages.make_context_pages(lookup, page_maker.keep_drawn),
+        *host_pages.make_host_pages(lookup, page_maker.keep_drawn),
         *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags),
     ]
     implementation_pages = (

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.model.component import Component
 from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.port_media import ROS
 from archgen.views import inline_text
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.lookup import Lookup
@@ -104,9 +105,7 @@ def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[N
         (
             inline_text.to_inlines(Text(node.id, code=True)),
             inline_text.to_inlines(_USE_WORDS[endpoint.use]),
-            inline_text.to_inlines(
-                inline_text.topic_link(endpoint.name), *([Text(" internal", muted=True)] if endpoint.internal else [])
-            ),
+            (*inline_text.name_carrier(endpoint), *([Text(" internal", muted=True)] if endpoint.internal else [])),
             _message_cell(endpoint),
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
             _qos_cell(endpoint),
@@ -130,6 +129,8 @@ def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[N
 
 
 def _message_cell(endpoint: Endpoint) -> Inlines:
+    if endpoint.medium != ROS and endpoint.type:
+        return inline_text.type_link(endpoint.type)
     return (
         inline_text.to_inlines(Text(shorten_message(endpoint.message), code=True))
         if endpoint.message
@@ -145,7 +146,7 @@ def shorten_message(name: str) -> str:
 
 
 def _qos_cell(endpoint: Endpoint) -> Inlines:
-    if endpoint.flow != "topic":
+    if endpoint.flow != "topic" or endpoint.medium != ROS:
         return ()
     text = shorten_qos(endpoint.qos)
     return (Text(text, muted=not endpoint.qos.written),)

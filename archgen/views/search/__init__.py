@@ -19,6 +19,7 @@ def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEn
         *functional_entries.make_group_entries(lookup),
         *implementation_entries.make_node_entries(lookup),
         *implementation_entries.make_topic_entries(lookup),
+        *implementation_entries.make_channel_entries(lookup),
         *implementation_entries.make_type_entries(lookup),
         *functional_entries.make_requirement_entries(lookup),
         *functional_entries.make_chain_entries(lookup),

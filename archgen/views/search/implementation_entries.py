@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import Interface
-from archgen.model.port_media import name_medium
+from archgen.model.port_media import name_medium, name_on_medium
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.elements.promise_words import list_text_remarks
 from archgen.views.lookup import Lookup
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys, make_property_keys
 from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+from archgen.views.start_phrases import describe_start
 from archgen.views.used_messages import collect_messages
 
 
@@ -32,7 +33,7 @@ def make_node_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             ),
             (f"node:{node.id}",),
             (node.id, *([node.package] if node.package else []), *keys, *make_property_keys(node)),
-            to_plain_text(node.description, *node.parameters),
+            to_plain_text(node.description, *node.parameters, " ".join(node.command), describe_start(node)),
         )
 
 
@@ -50,6 +51,14 @@ def make_topic_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             join_words(", ".join(topic.messages), source, inline_text.count_noun(readers, reader_word)),
             (f"topic:{topic.name}",),
         )
+
+
+def make_channel_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield what nodes exchange over other media than ROS. It stands in a table and has no page of its own."""
+    for channel in lookup.architecture.channels.values():
+        writers = ", ".join(dict.fromkeys(writer.node for writer in channel.writers))
+        line = join_words(name_medium(channel.medium), ", ".join(channel.types), f"from {writers}")
+        yield SearchEntry(channel.flow, name_on_medium(channel), line, ("page:topics",), (channel.medium,))
 
 
 def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:

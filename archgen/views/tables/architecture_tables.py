@@ -5,7 +5,7 @@ Each function returns None where there would be no rows, because a `Table` witho
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
@@ -16,7 +16,7 @@ from archgen.model.deployment import Link
 from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
-from archgen.model.port_media import label_of_medium, name_medium
+from archgen.model.port_media import ROS, label_of_medium, name_medium
 from archgen.views import element_references, inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.functional_level import first_sentence
@@ -275,7 +275,7 @@ def make_link_table(lookup: Lookup) -> Table | None:
             inline_text.join_inlines(
                 (
                     *(inline_text.host_link(architecture, host) for host in link.connects),
-                    *(_device_link(lookup, device) for device in link.devices),
+                    *(device_link(lookup, device) for device in link.devices),
                 )
             ),
             *((inline_text.to_inlines(name_medium(link.protocol or "")),) if with_protocol else ()),
@@ -292,7 +292,7 @@ def make_link_table(lookup: Lookup) -> Table | None:
     return Table("table:links", caption, columns, rows, row_anchors=anchors) if rows else None
 
 
-def _device_link(lookup: Lookup, component_id: str) -> Inlines:
+def device_link(lookup: Lookup, component_id: str) -> Inlines:
     """Return the title of a component that is a device on a link, linked where it is shown."""
     component = find_component(lookup.architecture, component_id)
     if not lookup.scope.shows_component(component_id):
@@ -342,14 +342,13 @@ def waypoint_link(lookup: Lookup, kind: str, element_id: str) -> Inlines:
     return inline_text.port_link(architecture, output or architecture.shells[holder].outputs[name])
 
 
-def make_topic_table(lookup: Lookup, selected_topics: Iterable[Topic], anchor: str, caption: str) -> Table | None:
-    """List topics, services or actions with writers and readers."""
+def make_topic_table(lookup: Lookup, selected_topics: Sequence[Topic], anchor: str, caption: str) -> Table | None:
+    """List topics, services, actions or channels of other media with writers and readers."""
     nodes = lookup.architecture.nodes
     rows = tuple(
         (
-            inline_text.to_inlines(inline_text.topic_link(topic.name)),
-            inline_text.join_inlines((element_references.message_link(message),) for message in topic.messages)
-            or inline_text.UNKNOWN_INLINES,
+            inline_text.name_carrier(topic),
+            _carried_cell(topic),
             # A node may have several endpoints on a topic; it is named once.
             inline_text.join_inlines(
                 (inline_text.node_link(nodes[e]),) for e in dict.fromkeys(w.node for w in topic.writers)
@@ -360,8 +359,19 @@ def make_topic_table(lookup: Lookup, selected_topics: Iterable[Topic], anchor: s
         )
         for topic in selected_topics
     )
-    columns = (Column("Name", 1.5), Column("Message", 1.6), Column("From", 1.2), Column("To", 1.5))
+    content = Column("Message" if any(topic.medium == ROS for topic in selected_topics) else "Type", 1.6)
+    columns = (Column("Name", 1.5), content, Column("From", 1.2), Column("To", 1.5))
     return Table(anchor, caption, columns, rows) if rows else None
+
+
+def _carried_cell(topic: Topic) -> Inlines:
+    """Return the messages on a topic; over another medium, the types."""
+    texts = (
+        ((element_references.message_link(message),) for message in topic.messages)
+        if topic.medium == ROS
+        else map(inline_text.type_link, topic.types)
+    )
+    return inline_text.join_inlines(texts) or inline_text.UNKNOWN_INLINES
 
 
 def describe_severities(findings: Iterable[Diagnostic]) -> str:

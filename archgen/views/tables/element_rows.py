@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Connection, Input, Output
 from archgen.model.counted_outputs import find_counted_output
+from archgen.model.node import Topic
 from archgen.model.parameter_values import find_effective_parameters
-from archgen.model.port_media import nature_of, uses_ros, word_of_medium
+from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
 from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
@@ -42,6 +43,8 @@ def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list
             "composed_of",
             [str(len(set(each) - {c.id})) if c.children else "" for c, each in zip(components, leaves, strict=True)],
         )
+    if kind == "topics" and lookup.architecture.channels:
+        yield "medium", [word_of_medium(carrier) for carrier in _list_shown_carriers(lookup)]
     if kind == "connections":
         connections = architecture_tables.shown_connections(lookup)
         yield "through", [connection.shell_port or "" for connection in connections]
@@ -160,11 +163,19 @@ def _edge_rows(lookup: Lookup) -> Iterator[TextRow]:
 
 
 def _topic_rows(lookup: Lookup) -> Iterator[TextRow]:
-    for topic in lookup.architecture.topics.values():
-        if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers)):
-            writers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.writers))
-            readers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.readers))
-            yield (topic.name, topic.flow, ", ".join(topic.messages), writers, readers)
+    for topic in _list_shown_carriers(lookup):
+        writers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.writers))
+        readers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.readers))
+        yield (name_on_medium(topic), topic.flow, ", ".join(topic.messages), writers, readers)
+
+
+def _list_shown_carriers(lookup: Lookup) -> list[Topic]:
+    """Return topics, services, actions and channels of other media that a shown node uses."""
+    return [
+        carrier
+        for _, carrier in lookup.architecture.list_carriers()
+        if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*carrier.writers, *carrier.readers))
+    ]
 
 
 def _type_rows(lookup: Lookup) -> Iterator[TextRow]:

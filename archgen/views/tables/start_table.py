@@ -16,6 +16,8 @@ _LEAD = (
     "The steps of the start-up in an order in which they can be started one by one. A phase begins when all of the one before is "
     "up; within a phase, steps that do not wait for one another may start side by side."
 )
+_MAX_WAITS = 8
+"""So many steps are named for which one step waits, those that are needed most first; the rest is counted."""
 _COLUMNS = (
     Column("Step", 0.4, "right"),
     Column("What starts", 1.4),
@@ -99,9 +101,13 @@ def link_step(step: StartStep) -> Text:
 
 
 def _list_ways(step: StartStep) -> Iterator[Inlines]:
-    yield (Text(shlex.join(step.command), code=True),) if step.command else _muted("not known yet")
+    for words in step.preparations:
+        yield (Text(shlex.join(words), code=True),)
+    yield (Text(shlex.join(step.command), code=True),) if step.command else _muted(start_phrases.describe_unknown(step))
     for words in step.transitions:
         yield (Text(shlex.join(words), code=True),)
+    for name, words in step.ros.value_commands.items() if step.ros else ():
+        yield (Text(f"parameter {name}: the output of ", muted=True), Text(shlex.join(words), code=True))
     for phrase in start_phrases.describe_process(step):
         yield _muted(phrase)
     for right in step.needs_rights:
@@ -109,9 +115,13 @@ def _list_ways(step: StartStep) -> Iterator[Inlines]:
 
 
 def _list_waits(step: StartStep, steps: Mapping[str, StartStep]) -> Iterator[Inlines]:
-    for wait in start_phrases.name_waits(step, steps):
+    waits = start_phrases.name_waits(step)
+    for wait in waits[:_MAX_WAITS]:
         end = {"ended": "its end; ", "started": "its start; "}.get(wait.until, "")
         yield (link_step(steps[wait.awaited]), Text(f" ({end}{'; '.join(wait.reasons)})", muted=True))
+    rest = waits[_MAX_WAITS:]
+    if rest:
+        yield _muted(f"and for {len(rest)} others that are needed no more than these: archgen start names them")
 
 
 def _list_signs(step: StartStep) -> Iterator[Inlines]:

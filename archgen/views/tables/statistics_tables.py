@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts, measure_progress, measure_size
+from archgen.analyses.size_counts import (
+    ArchitectureSize,
+    ProgressCounts,
+    count_declared_properties,
+    measure_progress,
+    measure_size,
+)
 from archgen.diagnostics.common_wording import floor_percent
 from archgen.model.architecture import Architecture
 from archgen.views import inline_text
@@ -48,6 +54,8 @@ _FIGURE_LABELS = {
     "programs": "Programs that are no ROS",
     "promises": "Outputs with promises",
     "deprecated": "Deprecated outputs and types",
+    "verified": "Requirements that something verifies",
+    "property_values": "Values of declared properties",
 }
 """Titles of figures; the keys are fields of `Size`, read by name."""
 _RARE_FIGURES = frozenset(
@@ -61,6 +69,8 @@ _RARE_FIGURES = frozenset(
         "programs",
         "promises",
         "deprecated",
+        "verified",
+        "property_values",
     }
 )
 """Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""
@@ -91,9 +101,10 @@ def make_statistics_tables(architecture: Architecture) -> tuple[Table, ...]:
     size_table = Table(
         "table:size", "Size of the architecture", (Column("Figure", 3), Column("Value", 1, "right")), rows
     )
+    property_tables = tuple(filter(None, [_make_property_table(architecture)]))
     progress_rows = [row for row in measure_progress(architecture) if row.components]
     if not progress_rows:
-        return (size_table,)
+        return (size_table, *property_tables)
     columns = (
         Column("Of", 2),
         Column("Components", 0.9, "right"),
@@ -102,7 +113,20 @@ def make_statistics_tables(architecture: Architecture) -> tuple[Table, ...]:
     progress_table = Table(
         "table:progress", "Progress", columns, tuple(_progress_row(architecture, row) for row in progress_rows)
     )
-    return (size_table, progress_table)
+    return (size_table, progress_table, *property_tables)
+
+
+def _make_property_table(architecture: Architecture) -> Table | None:
+    """Return how many elements have each declared property, and how many of the kinds that it names lack it."""
+    rows = tuple(
+        (
+            inline_text.to_inlines(declared.title),
+            *((Text(str(count), sort_number=str(count)),) for count in (have, lack)),
+        )
+        for declared, have, lack in count_declared_properties(architecture)
+    )
+    columns = (Column("Property", 3), Column("Have it", 0.8, "right"), Column("Lack it", 0.8, "right"))
+    return Table("table:declared", "Declared properties", columns, rows) if rows else None
 
 
 def _progress_row(architecture: Architecture, row: ProgressCounts) -> tuple[Inlines, ...]:

@@ -305,6 +305,14 @@ def test_another_medium_is_another_wire(compared: Compared, old: str | None, new
     )
 
 
+def test_another_middleware_is_another_wire_of_what_says_nothing(compared: Compared) -> None:
+    before = NO_NODES.replace("{type: Persons, d", "{type: Persons, medium: mqtt, d")
+    edits = [("{id: robot}", "{id: robot, middleware: orocos}")]
+    assert losses(compared, before, edits) == [
+        "wire orsa: gives data over Orocos instead of a message as `sense.eye.rows`; `nav.plan.rows` of Orsa reads it"
+    ]
+
+
 def test_what_was_weak_before_is_no_weaker(compared: Compared) -> None:
     weak = ROBOT.replace("jitter: 1 ms", "outputs: {rows: {conditional: true, max_gap: 1 s}}")
     assert losses(compared, weak, [("outputs: {rows: {conditional: true, max_gap: 1 s}}", "jitter: 1 ms")]) == []

@@ -116,3 +116,16 @@ def test_examples_in_explanations_are_yaml_and_the_languages_own(schema_of: Call
         written = json.loads(json.dumps(written, default=str))
         kept = schema["$defs"][name].get("examples", [])
         assert kept + written == [example for example in examples if example not in ({}, [])], name
+
+
+def test_declared_properties_are_offered_with_their_choices_and_media(schema_of: Callable[[str], Any]) -> None:
+    text = (
+        "properties: {maturity: {title: How far, choices: [idea, product]}, mass: Mass}\nlinks: {l: {protocol: ourbus}}"
+    )
+    definitions = schema_of(text)["$defs"]
+    offered = definitions["properties"]["properties"]
+    assert list(offered) == ["maturity", "mass"]
+    assert offered["maturity"]["title"] == "How far"
+    assert [each["enum"] for each in offered["maturity"]["anyOf"] if "enum" in each] == [["idea", "product"]]
+    assert {"ourbus", "mqtt"} <= set(definitions["offered_media"]["enum"])
+    assert {"$ref": "#/$defs/offered_media"} in definitions["output"]["properties"]["medium"]["anyOf"]

@@ -44,11 +44,16 @@ def test_no_judge_finds_a_fault(outline: Outline, tmp_path: Path) -> None:
     assert judges.validated(path) == []
 
 
-def test_contents_show_the_pages_where_the_headings_are(tmp_path: Path) -> None:
-    outline = sample.outline(5, 5)
-    path = tmp_path / "report.docx"
-    path.write_bytes(report(outline))
-    pages = judges.pages(path)
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, list[str]]:
+    """Write a long report; give it with the text of each page that LibreOffice makes of it."""
+    path = tmp_path_factory.mktemp("printed") / "report.docx"
+    path.write_bytes(report(sample.outline(5, 5)))
+    return path.read_bytes(), judges.pages(path)
+
+
+def test_contents_show_the_pages_where_the_headings_are(printed: tuple[bytes, list[str]]) -> None:
+    _, pages = printed
     assert len(pages) > 20
     front = "\n".join(pages[1:5])
     shown = dict(re.findall(r"^ *([0-9A-Z][0-9.]* .+?)\.{3,} *(\d+)$", front, re.MULTILINE))
@@ -59,12 +64,10 @@ def test_contents_show_the_pages_where_the_headings_are(tmp_path: Path) -> None:
         assert int(page) in found, f"{heading} is said to be on page {page} and stands on {found}"
 
 
-def test_stored_page_numbers_are_close_to_the_real_ones(tmp_path: Path) -> None:
-    path = tmp_path / "report.docx"
-    data = report(sample.outline(5, 5))
-    path.write_bytes(data)
+def test_stored_page_numbers_are_close_to_the_real_ones(printed: tuple[bytes, list[str]]) -> None:
+    data, pages = printed
     stored = [int(page) for page in re.findall(r"PAGEREF .*?<w:t [^>]*>(\d+)</w:t>", document(data))]
-    shown = [int(page) for text in judges.pages(path) for page in re.findall(r"\.{4,} *(\d+) *$", text, re.MULTILINE)]
+    shown = [int(page) for text in pages for page in re.findall(r"\.{4,} *(\d+) *$", text, re.MULTILINE)]
     assert len(stored) == len(shown)
     # LibreOffice may have other fonts than Word, and Word other rules than LibreOffice: equal is not to be had.
     assert max(abs(one - other) for one, other in zip(stored, shown, strict=True)) <= 3

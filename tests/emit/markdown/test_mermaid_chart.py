@@ -39,3 +39,21 @@ def test_frames_stand_in_frames() -> None:
         "    end",
         "  end",
     ]
+
+
+def test_what_is_no_ros_has_a_round_end_and_its_medium_in_brackets() -> None:
+    boxes = (Box("a", "A"), Box("b", "B"))
+    arrows = (
+        Arrow("1", "a", "b", label="Pose\n(MQTT)", medium="MQTT"),
+        Arrow("2", "a", "b", medium="CAN", count=2),
+        Arrow("3", "a", "b", style="service", medium="REST"),
+        Arrow("4", "a", "b", style="action", medium="gRPC"),
+        Arrow("5", "a", "b", is_made=True, medium="x"),
+    )
+    assert list(write_flowchart(Graph("g", "G", "flow", boxes, arrows, kind="ros")))[3:] == [
+        '  n0 --o|"Pose<br>(MQTT)"| n1',
+        '  n0 --o|"2<br>(CAN)"| n1',
+        '  n0 -.-o|"(REST)"| n1',
+        '  n0 ==o|"(gRPC)"| n1',
+        '  n0 -.-o|"(x)"| n1',
+    ]

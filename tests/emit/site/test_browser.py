@@ -15,6 +15,7 @@ from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site as make_site
 from archgen.views import shapes
 from tests.browser_pages import OpenPage, judge_with_axe
+from tests.running import QUICK_START
 
 ROOT = Path(__file__).resolve().parents[3]
 JUDGES = ROOT / "tests" / "judges" / "node_modules"
@@ -100,6 +101,7 @@ def said_by_nu(folder: Path) -> list[str]:
     assert len(pages) > 350
     command = [
         java,
+        *QUICK_START,
         "-Xss4m",
         "-jar",
         jar,

@@ -346,7 +346,7 @@ def test_the_search_shows_what_it_found_on_the_map(visit: OpenPage) -> None:
     page = visit()
     page.keyboard.press("/")
     page.keyboard.type("fall detector")
-    expect(page.locator("#find-list")).to_have_attribute("aria-busy", "false", timeout=20_000)
+    expect(page.locator("#find-list")).to_have_attribute("aria-busy", "false")
     page.keyboard.press("Shift+Enter")
     expect(page.locator(".panel h2")).to_have_text("Fall Detector")
     expect(box(page, "Fall Detector")).to_be_visible()

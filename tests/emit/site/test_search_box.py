@@ -72,7 +72,7 @@ def search(page: Page, words: str) -> None:
     page.keyboard.press("/")
     page.keyboard.type(words)
     expect(page.get_by_role("combobox")).to_have_value(words)
-    expect(page.locator("#find-list")).to_have_attribute("aria-busy", "false", timeout=20_000)
+    expect(page.locator("#find-list")).to_have_attribute("aria-busy", "false")
 
 
 def titles(page: Page) -> list[str]:

@@ -19,7 +19,7 @@ from archgen.emit.text.template_filters import (
 )
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
-from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Section, Table, Text, shape_to_plain
+from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text, shape_to_plain
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
 HOME = ("Overview", "page:index")
@@ -229,3 +229,28 @@ def test_a_use_case_has_a_page_with_its_sequence() -> None:
 def test_what_is_no_sequence_is_not_drawn(given: object) -> None:
     with pytest.raises(TypeError, match="`mermaid_sequence` takes one of `sequences`"):
         draw_mermaid_sequence(given)
+
+
+def test_requirements_have_a_table_and_pages() -> None:
+    table = Table("table:requirements", "Requirements", (Column("Id"),), (((Text("R-1", ref="requirement:R-1"),),),))
+    section = Section("requirement:R-1", "R-1", (Paragraph((Text("It *stops*"),)),))
+    crumb = ("Requirements and use cases", "page:requirements")
+    pages = (
+        Page("index.html", "page:index", "Robot", "overview", Section("page:index", "Robot", ())),
+        Page(
+            "requirements.html",
+            "page:requirements",
+            "Requirements",
+            "overview",
+            Section("page:requirements", "R", (table,)),
+        ),
+        Page("requirements/r-1.html", "requirement:R-1", "R-1", "requirements", section, (HOME, crumb), "Requirement"),
+    )
+    backend = read_shipped_backend("wiki")
+    tree, diagnostics = text.render_backend(backend, {"pages": pages, "graphs": (), "sequences": ()})
+    assert diagnostics == ()
+    assert tree is not None
+    home, page = (tree.files[path].decode() for path in ("home.md", "requirements/r-1.md"))
+    assert "## Requirements\n" in home
+    assert "[R-1](requirements/r-1.md)" in home
+    assert "It \\*stops\\*" in page

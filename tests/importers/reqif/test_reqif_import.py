@@ -26,16 +26,23 @@ def take(path: Path) -> ImportedRequirements:
 
 def test_a_file_of_doors_becomes_requirements_in_the_order_of_its_specifications() -> None:
     assert take(DOORS).requirements == {
-        "R-2": {"title": "The robot stops in time.", "priority": "Must_have", "source": "System, Driving"},
+        "R-2": {
+            "title": "The robot stops in time.",
+            "priority": "Must_have",
+            "hints": {"reqif": {"identifier": "_2", "id": "2"}},
+            "source": "System, Driving",
+        },
         "Bremse-4": {
             "title": "It brakes hard.",
             "description": "It brakes **hard**.\n\n- on tiles\n- on carpet <b> & mats",
+            "hints": {"reqif": {"identifier": "_4", "id": "Bremse 4"}},
             "parent": ["Hoehe-3", "R-2"],
             "source": "System, Driving",
         },
         "Hoehe-3": {
             "title": "Door sills",
             "description": "It drives over sills.\n\nSee (picture sill.png)",
+            "hints": {"reqif": {"identifier": "_3", "id": "Höhe 3"}},
             "source": "Mechanics",
         },
     }
@@ -220,4 +227,4 @@ def test_a_tree_of_ten_thousand_levels_is_read(tmp_path: Path) -> None:
         f"<REQ-IF>{named}{objects}<SPECIFICATION>{opened}{closed}</SPECIFICATION></REQ-IF>", encoding="utf-8"
     )
     taken = take(tmp_path / "deep.reqif").requirements
-    assert taken["o9999"] == {"title": "T9999", "parent": ["o9998"]}
+    assert taken["o9999"] == {"title": "T9999", "hints": {"reqif": {"identifier": "o9999"}}, "parent": ["o9998"]}

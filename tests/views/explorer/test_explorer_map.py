@@ -20,6 +20,7 @@ partners: {acme: {title: ACME}}
 requirements: {R-1: {title: It sees, tags: [must]}}
 hosts: {pc: {title: Base Computer, cores: 4, tags: [big]}, spare: }
 types: {Cloud: {message: sensor_msgs/msg/PointCloud2}}
+properties: {maturity: {title: How far, choices: [idea, product]}, mass: Mass}
 chains: {c: {title: Seen, through: [sensing.camera, finding.finder], deadline: 1 s}}
 groups:
   sensing:
@@ -29,6 +30,8 @@ groups:
       camera:
         functionality: Sees **everything**
         tags: [safety]
+        status: adapted
+        properties: {maturity: idea, own: 1}
         inputs: {light: {external: Light, medium: physical}}
         outputs: {cloud: Cloud, extra: Cloud}
         timing: {behaviour: periodic, rate: 10 Hz}
@@ -104,8 +107,17 @@ def test_keys_are_those_that_selectors_find(tables: dict[str, list[Any]]) -> Non
         "medium:physical",
         "medium:digital",
         "medium:ros",
+        "status:adapted",
         "behaviour:periodic",
         "finding:unjustified-component",
+        "property:maturity=idea",
+        "property:own=1",
+    ]
+    names = [row for row in tables["names"] if row[0].startswith("property")]
+    assert names == [
+        ("property", "maturity", "How far"),
+        ("property:maturity", "idea", "idea"),
+        ("property:maturity", "product", "product"),
     ]
     assert {"tag:must", "requirement:R-1", "type:Cloud"} <= set(keys_of("components", "finding.finder", 6))
     assert keys_of("nodes", "eye", 8)[:4] == ["tag:big", "owner:acme", "host:pc", "package:eye_pkg"]

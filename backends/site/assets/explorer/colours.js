@@ -1,9 +1,13 @@
-// What boxes can be coloured and filtered by: partner, status, type, period, host, requirement, findings, progress.
+// What boxes can be coloured and filtered by: partner, status, type, period, host, requirement, findings, progress, declared properties.
 // A colour never says anything alone: the legend has the words, and the panel of each element too.
 "use strict";
 archgenExplorer.makeColours = function (model) {
   const TITLES = { group: "group", owner: "partner", status: "status", type: "type", period: "period", host: "host",
     requirement: "requirement", finding: "findings", progress: "progress" };
+  // A declared property is `property:sil`; its choices follow it in their order.
+  const PROPERTIES = [...model.names].filter(([name]) => /^property:[^:]+$/.test(name));
+  for (const [name, title] of PROPERTIES) TITLES[name] = title;
+  const choiceRank = (key, value) => [...model.names.keys()].indexOf(`${key}:${value}`);
   const STATUS_ORDER = ["planned", "adapted", "existing"];
   const STEPS = ["described", "typed", "mapped", "timed", "traced"];
   const PERIODS = [...model.names.keys()].filter((name) => name.startsWith("period:")).map((name) => name.slice(7));
@@ -19,6 +23,9 @@ archgenExplorer.makeColours = function (model) {
   // All values of a member, for filters; an empty list means that nothing is known.
   function valuesOf(member, key) {
     if (key === "owner") return keysOf(member, "owner");
+    if (key.startsWith("property:")) return listFigures(member, key.slice(9));
+    // What a component says of itself counts before what its nodes say.
+    if (key === "status" && keysOf(member, key).length) return keysOf(member, key);
     if (key === "status" || key === "host") return unique(nodesOf(member).flatMap((node) => keysOf(node, key)));
     if (key === "type") return unique(componentsOf(member).flatMap((each) => [...each.outputs, ...each.inputs].map((port) => model.types[port.type]?.name)));
     if (key === "period") return [member.period];
@@ -27,6 +34,8 @@ archgenExplorer.makeColours = function (model) {
     if (key === "progress") return STEPS.filter((_, at) => componentsOf(member).some((each) => !(each.progress & (1 << at))));
     return [];
   }
+
+  const listFigures = (member, name) => keysOf(member, "property").filter((text) => text.startsWith(name + "=")).map((text) => text.slice(name.length + 1));
 
   // The one value that gives a member its colour.
   function valueOf(member, key) {
@@ -43,7 +52,7 @@ archgenExplorer.makeColours = function (model) {
     finding: "nothing found", progress: "" };
 
   function titleOf(key, value) {
-    if (value === "") return NOTHING[key];
+    if (value === "") return NOTHING[key] ?? "not said";
     if (key === "progress") return /^\d$/.test(value) ? `${value} of ${STEPS.length} steps` : `not ${value} yet`;
     if (key === "finding") return SEVERITIES[value] ?? value;
     if (key === "requirement" && value === "serves one") return "serves a requirement";
@@ -81,6 +90,7 @@ archgenExplorer.makeColours = function (model) {
   function rank(key, a, b) {
     if ((a === "") !== (b === "")) return a === "" ? 1 : -1;
     if (key === "period") return PERIODS.indexOf(a) - PERIODS.indexOf(b);
+    if (key.startsWith("property:")) return choiceRank(key, a) - choiceRank(key, b) || (parseFloat(a) - parseFloat(b) || 0);
     return key === "progress" ? Number(a) - Number(b) : 0;
   }
 

@@ -12,9 +12,9 @@ const archgenExplorer = (function () {
     shells: ["address", "id", "title", "group", "around", "components", "line", "summary", "keys", "severity", "place", "written"],
     nodes: ["address", "id", "title", "components", "group", "host", "line", "summary", "keys", "period", "severity",
       "place", "hostPlace", "written"],
-    topics: ["address", "name", "flow"],
+    topics: ["address", "name", "flow", "medium"],
     types: ["name", "message"],
-    outputs: ["component", "name", "type", "note"],
+    outputs: ["component", "name", "type", "note", "warning"],
     inputs: ["component", "name", "type", "note", "marks"],
     rims: ["shell", "isOutput", "name", "type", "note", "marks", "ports", "sources"],
     chains: ["address", "id", "title", "status", "words", "components", "nodes"],
@@ -98,7 +98,7 @@ const archgenExplorer = (function () {
     model.readers = model.outputs.map(() => new Set());
     model.writers = model.inputs.map(() => new Set());
     model.sources = model.inputs.map(() => []);
-    model.flows = (tables.flows ?? []).map(([style, inputAt, outputs], number) => {
+    model.flows = (tables.flows ?? []).map(([style, inputAt, outputs, medium = ""], number) => {
       const input = model.inputs[inputAt];
       const writer = model.outputs[outputs[0]].component;
       const isCall = style > 1;
@@ -109,7 +109,8 @@ const archgenExplorer = (function () {
       if (isCall) addStep(steps, input.component, writer);
       const names = outputs.map((at) => model.outputs[at].name).join(", ");
       const types = [...new Set(outputs.map((at) => model.types[model.outputs[at].type]?.name).filter(Boolean))];
-      return { number, style: STYLES[style], tail: isCall ? input.component : writer, head: isCall ? writer : input.component,
+      const warning = [...new Set(outputs.map((at) => model.outputs[at].warning).filter(Boolean))].join(", ");
+      return { number, warning, style: STYLES[style], medium, tail: isCall ? input.component : writer, head: isCall ? writer : input.component,
         optional: input.optional, made: input.made, label: types.join(", ") || names, from: names, to: input.name, types, input, outputs,
         writers: outputs.map((at) => model.outputs[at]) };
     });
@@ -123,7 +124,7 @@ const archgenExplorer = (function () {
       const topic = model.topics[at];
       addStep(steps, tail, head);
       if (topic.flow !== "topic") addStep(steps, head, tail);
-      return { number, style: topic.flow === "topic" ? "data" : topic.flow, tail, head, optional: false, label: topic.name, topic,
+      return { number, style: topic.flow === "topic" ? "data" : topic.flow, medium: topic.medium ?? "", tail, head, optional: false, label: topic.name, topic,
         from: topic.name, to: "", types: [] };
     });
     model.nodeSteps = steps;

@@ -113,7 +113,7 @@ archgenExplorer.makeDrawing = function (map, layers) {
     const node = shape("g", { class: `arrow ${weight} ${arrow.style}${arrow.optional ? " optional" : ""}${arrow.made ? " made" : ""}`, "data-arrow": arrow.id },
       shape("path", { class: "hit", d: arrow.path }), shape("path", { class: "way", d: arrow.path }),
       ...(arrow.style === "physical" ? [shape("path", { class: "core", d: arrow.path })] : []),
-      shape("path", { class: "head", d: `M${x} ${y}l${back * 8} -4v8z` }));
+      shape("path", { class: "head", d: `M${x} ${y}l${back * 8} -4v8z${arrow.medium ? `m${back * 9} -4v8h${back * 7}v-8z` : ""}` }));
     const title = shape("title");
     title.textContent = arrow.tip;
     node.prepend(title);
@@ -145,7 +145,7 @@ archgenExplorer.makeDrawing = function (map, layers) {
     const taken = scene.boxes.filter((box) => !box.open && !box.hidden).map(({ x, y, width, height }) => [x, y, x + width, y + height]);
     const placed = [];
     for (const arrow of arrows) {
-      const lines = nameFlows(arrow.shownFlows).map((name) => layOut.cut(name, 150, "500 12px Inter, system-ui, sans-serif"));
+      const lines = [...nameFlows(arrow.shownFlows), ...nameMedia(arrow.shownFlows)].map((name) => layOut.cut(name, 150, "500 12px Inter, system-ui, sans-serif"));
       const width = Math.max(...lines.map((line) => layOut.measure(line, "500 12px Inter, system-ui, sans-serif"))) + 10;
       const height = lines.length * 15 + 4;
       const [x, y] = arrow.labelAt;
@@ -164,7 +164,15 @@ archgenExplorer.makeDrawing = function (map, layers) {
 
   function nameFlows(flows) {
     const names = [...new Set(flows.flatMap((flow) => (flow.types.length ? flow.types : [flow.label])))];
-    return names.length <= 2 ? names.map((name, at) => (at < names.length - 1 ? name + "," : name)) : [archgenExplorer.count(flows.length, "flow")];
+    const warnings = [...new Set(flows.map((flow) => flow.warning).filter(Boolean))].map((warning) => `(${warning})`);
+    const lines = names.length <= 2 ? names.map((name, at) => (at < names.length - 1 ? name + "," : name)) : [archgenExplorer.count(flows.length, "flow")];
+    return [...lines, ...warnings];
+  }
+
+  // As in the pictures: what is no ROS, in brackets.
+  function nameMedia(flows) {
+    const media = [...new Set(flows.map(({ medium }) => medium).filter(Boolean))];
+    return media.length ? [`(${media.join(", ")})`] : [];
   }
 
   function mark(box, name, isOn) {

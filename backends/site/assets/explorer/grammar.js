@@ -2,7 +2,7 @@
 // word by word; tests run both on one table of cases.
 "use strict";
 archgenExplorer.grammar = (function () {
-  const KEYS = ["tag", "owner", "status", "type", "medium", "role", "host", "package", "requirement", "behaviour", "finding", "node", "is", "library", "parameter", "property", "variant"];
+  const KEYS = ["tag", "owner", "status", "type", "medium", "role", "host", "package", "requirement", "behaviour", "finding", "node", "is", "library", "parameter", "property", "variant", "deprecated", "use_case"];
   const ALL_STEPS = -1;
   const MAX_STEP_DIGITS = 6;
   const FORMS = "a word is `x`, `+x`, `x+`, `2+x+1` or `x..y`, where x is a path or `key:value`";

@@ -8,7 +8,7 @@ archgenExplorer.makeLegend = function (actions) {
   function sample(name, path, head = true) {
     return shape("svg", { width: 34, height: 14, "aria-hidden": "true" }, shape("g", { class: name }, shape("path", { class: "way", d: path ?? "M1 7H25" }),
       ...(name.includes("physical") ? [shape("path", { class: "core", d: path ?? "M1 7H25" })] : []),
-      ...(head ? [shape("path", { class: "head", d: "M33 7l-8 -4v8z" })] : [])));
+      ...(head ? [shape("path", { class: "head", d: `M33 7l-8 -4v8z${name.includes("medium") ? "m-9 -4v8h-7v-8z" : ""}` })] : [])));
   }
 
   function entry(mark, text) {
@@ -24,6 +24,7 @@ archgenExplorer.makeLegend = function (actions) {
     if (has(({ optional }) => optional)) rows.push(entry(sample("arrow one optional"), "optional input"));
     if (has(({ made }) => made)) rows.push(entry(sample("arrow one made"), "joined by autoconnect"));
     if (has(({ style }) => style === "physical")) rows.push(entry(sample("arrow one physical"), "physical"));
+    if (has(({ medium }) => medium)) rows.push(entry(sample("arrow one medium"), "no ROS, but what stands in brackets"));
     if (has(({ style }) => style === "service" || style === "action")) rows.push(entry(sample("arrow one service"), "service or action"));
     const closed = scene.boxes.filter(({ opens, open }) => opens && !open);
     if (closed.length) {

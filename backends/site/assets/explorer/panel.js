@@ -102,7 +102,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
     const sourcesOf = (port) => port.sources ?? model.sources[port.number] ?? [];
     const typeOf = (port) => model.types[port.type]?.name ?? model.types[model.outputs[sourcesOf(port)[0]]?.type]?.name ?? "";
     const row = (port, direction, others, flowNote) => element("li", {}, element("span", { className: "muted", textContent: direction }),
-      element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.optional ? [" ", tag("optional")] : "", port.made ? [" ", tag("autoconnect")] : "",
+      element("div", {}, element("strong", { textContent: port.name }), " ", direction === "in" ? typeOf(port) : model.types[port.type]?.name ?? "", port.warning ? [" ", tag(port.warning)] : "", port.optional ? [" ", tag("optional")] : "", port.made ? [" ", tag("autoconnect")] : "",
         port.note ? element("div", { className: "muted", textContent: port.note }) : "",
         others.length ? element("div", {}, flowNote, others.flatMap((other, at) => [at ? ", " : "", pickButton(other, other.title), others.length === 1 && other.line ? element("span", { className: "muted", textContent: " · " + other.line }) : ""])) : ""));
     // The other end as it is called from here: of what lies in another composed component, that component.
@@ -124,7 +124,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
     const rows = own.slice(0, MAX_FLOWS).map((each) => {
       const [word, other] = each.tail === node.number ? ["to", each.head] : ["from", each.tail];
       return element("li", {}, element("span", { className: "muted", textContent: word === "to" ? "out" : "in" }),
-        element("div", {}, link(each.topic.address, each.topic.name), element("div", {}, word + " ", pickButton(model.nodes[other]))));
+        element("div", {}, link(each.topic.address, each.topic.name), each.topic.medium ? tag(each.topic.medium) : "", element("div", {}, word + " ", pickButton(model.nodes[other]))));
     });
     return section("Topics", count(own.length, "link"), element("ul", { className: "ports" }, rows));
   }
@@ -152,7 +152,7 @@ archgenExplorer.makePanel = function (model, root, actions) {
     const members = arrow.flows[0].topic ? model.nodes : model.components;
     const endOf = (flow, side) => flow.ends?.[side] ?? members[flow[side]];
     const rows = arrow.flows.slice(0, MAX_FLOWS).map((flow) => element("li", {},
-      element("div", {}, element("strong", { textContent: flow.label }), flow.optional ? [" ", tag("optional")] : "", flow.made ? [" ", tag("autoconnect")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : ""),
+      element("div", {}, element("strong", { textContent: flow.label }), flow.warning ? [" ", tag(flow.warning)] : "", flow.optional ? [" ", tag("optional")] : "", flow.made ? [" ", tag("autoconnect")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : "", flow.medium ? [" ", tag(flow.medium)] : ""),
       element("div", {}, pickButton(endOf(flow, "tail")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.from : flow.to}` }),
         " → ", pickButton(endOf(flow, "head")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.to : flow.from}` }))));
     open(count(arrow.flows.length, "flow"), `${arrow.tailTitle} → ${arrow.headTitle}`, "",

@@ -86,7 +86,7 @@ archgenExplorer.makeSelector = function (model) {
       onlyNodes: nodes.length > 0 && !components.size });
   }
 
-  const NODE_KEYS = new Set(["status", "host", "package", "node"]);
+  const NODE_KEYS = new Set(["host", "package", "node"]);
 
   function hitOfKey(key, value) {
     const pattern = key === "type" ? value.split(BLANKS).filter(Boolean).join(" ") : value;
@@ -95,8 +95,10 @@ archgenExplorer.makeSelector = function (model) {
     const has = (each) => each.keys.some((at) => wanted.has(at));
     const pick = (things) => things.filter(has).map((each) => each.number);
     const nodes = key === "node" ? model.nodes.filter((node) => fits(value, node.id)).map((node) => node.number) : pick(model.nodes);
-    return hitOf(NODE_KEYS.has(key) ? [] : pick(model.components), key === "type" ? [] : nodes,
-      { onlyNodes: NODE_KEYS.has(key), includesComponents: key !== "owner" });
+    const components = NODE_KEYS.has(key) ? [] : pick(model.components);
+    // Most statuses are those of nodes: where no component says this one, steps are between nodes.
+    return hitOf(components, key === "type" ? [] : nodes,
+      { onlyNodes: NODE_KEYS.has(key) || (key === "status" && !components.length), includesComponents: key !== "owner" });
   }
 
   function evaluateAtom(atom, problems) {

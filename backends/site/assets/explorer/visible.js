@@ -164,6 +164,7 @@ archgenExplorer.makeScene = (function () {
       arrow.optional = arrow.flows.every((flow) => flow.optional);
       arrow.made = arrow.flows.every((flow) => flow.made);
       arrow.style = arrow.flows.every((flow) => flow.style === arrow.flows[0].style) ? arrow.flows[0].style : "data";
+      arrow.medium = arrow.flows.every((flow) => flow.medium === arrow.flows[0].medium) ? arrow.flows[0].medium : "";
       arrow.picked = ask.pickedArrow === arrow.id;
     }
     return list;
@@ -186,7 +187,7 @@ archgenExplorer.makeScene = (function () {
       const outer = findRims(flow.input, reader).filter(({ sources }) => flow.outputs.some((at) => sources.includes(at)));
       const from = archgenExplorer.unique(flow.writers.flatMap((port) => nameAt(level, port, writer))).join(", ");
       const to = outer.length ? archgenExplorer.unique(outer.map(({ name }) => name)).join(", ") : nameAt(level, flow.input, reader)[0];
-      const key = [flow.style, ends.tail.id, ends.head.id, from, to].join("\n");
+      const key = [flow.style, flow.medium, ends.tail.id, ends.head.id, from, to].join("\n");
       const made = outer.length ? outer.every((rim) => rim.made) : flow.made, optional = outer.length ? outer.every((rim) => rim.optional) : flow.optional;
       const known = seen.get(key);
       if (known) {

@@ -42,7 +42,8 @@ archgenExplorer.describeScene = (function () {
   }
 
   function describeArrow(arrow) {
-    const labels = arrow.flows.slice(0, MAX_NAMED_FLOWS).map(({ label }) => label);
+    const labels = arrow.flows.slice(0, MAX_NAMED_FLOWS).map(({ label, medium, warning }) =>
+      [label, medium && `(${medium})`, warning && `(${warning})`].filter(Boolean).join(" "));
     const rest = arrow.flows.length - labels.length;
     [arrow.tailTitle, arrow.headTitle] = [nameFrom(arrow.tail, arrow.head), nameFrom(arrow.head, arrow.tail)];
     arrow.tip = [`${arrow.tailTitle} → ${arrow.headTitle}`, ...labels, rest ? `and ${rest} more` : ""].filter(Boolean).join("\n");

@@ -1,0 +1,141 @@
+"""Can each program and node be started as it is described: a port of its own, somebody who activates it, a way to start?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from archgen.bringup.start_plan import describes_start
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.start_up import NO_START
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from archgen.diagnostics.source_span import Span
+    from archgen.model.architecture import Architecture
+    from archgen.model.node import Node
+
+
+def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Two programs on one host are to listen on the same port.
+
+    Why: The second one that starts finds the port taken and ends, or the first one is taken for the second one.
+
+    Bad:
+        nodes:
+          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
+          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6665}}}
+        hosts: {sim_pc: {title: Simulation computer}}
+
+    Good:
+        nodes:
+          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
+          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6666}}}
+        hosts: {sim_pc: {title: Simulation computer}}
+    """
+    first_nodes: dict[tuple[str | None, int], Node] = {}
+    for node in architecture.nodes.values():
+        port = node.start.ready.port if node.start else None
+        if port is None:
+            continue
+        first = first_nodes.setdefault((node.host, port), node)
+        if first is not node:
+            place = f"on `{node.host}`" if node.host else "and on no host that is named"
+            yield Diagnostic(
+                "shared-port",
+                f"`{first.id}` and `{node.id}` are both to listen on the port {port} {place}",
+                _find_port_span(node),
+                labels=(Label(_find_port_span(first), f"`{first.id}`"),),
+                help="give one of them another port" + ("" if node.host else ", or each its host"),
+                element=node.id,
+            )
+
+
+def _find_port_span(node: Node) -> Span:
+    places = node.start.ready.places if node.start else {}
+    return places.get("port", node.at)
+
+
+def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A lifecycle node is started, and nobody says who activates it.
+
+    Why: A lifecycle node does nothing until it is configured and activated. It is asked as soon as the project says something
+    about its start-up.
+
+    Bad:
+        groups:
+          driving:
+            components:
+              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
+              planner: {inputs: {map: map_server.map}}
+        nodes:
+          map_server: {implements: map_server, kind: lifecycle, start: {phase: core}}
+          planner: planner
+
+    Good:
+        groups:
+          driving:
+            components:
+              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
+              planner: {inputs: {map: map_server.map}}
+        nodes:
+          map_server: {implements: map_server, kind: lifecycle, start: {phase: core, state: active}}
+          planner: planner
+    """
+    if not describes_start(architecture):
+        return
+    managers: dict[str, list[str]] = defaultdict(list)
+    for node in architecture.nodes.values():
+        if node.start and node.start.by:
+            managers[node.start.by.id].append(node.id)
+    usual = max(managers, key=lambda name: len(managers[name]), default=None)
+    for node in architecture.nodes.values():
+        if "lifecycle" in node.kinds and (node.start or NO_START).wanted_state is None:
+            by_help = f"`start: {{by: {usual}}}`" if usual else "`start: {by: NODE}` with the node that manages it"
+            yield Diagnostic(
+                "unactivated-node",
+                f"nobody activates the lifecycle node `{node.id}`",
+                node.kind_at,
+                help=f"write `start: {{state: active}}`, or {by_help}",
+                element=node.id,
+            )
+
+
+def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A program has no command and no package, and nothing shows that it is up.
+
+    Why: Nobody can start it, and nobody can wait for it. A program that is started elsewhere (a cloud service, another team's
+    computer) says by what one sees that it is up: `ready`.
+
+    Bad:
+        nodes:
+          fleet_server: {kind: program}
+          logger: {kind: program, command: [logger], start: fleet_server}
+
+    Good:
+        nodes:
+          fleet_server: {kind: program, start: {ready: {port: 8080}}}
+          logger: {kind: program, command: [logger], start: fleet_server}
+    """
+    if not describes_start(architecture):
+        return
+    for node in architecture.nodes.values():
+        has_command = bool(node.command or (node.package and node.executable))
+        is_known = has_command or node.status == "planned" or (node.start or NO_START).ready.has_sign
+        if node.is_program and node.written and not is_known:
+            yield Diagnostic(
+                "unstarted-program",
+                f"nothing says how the program `{node.id}` is started, nor how one sees that it is up",
+                node.kind_at,
+                help="write its `command`, or `start: {ready: ...}` where somebody else starts it; while it is not "
+                "decided, `status: planned`",
+                element=node.id,
+            )
+
+
+RULES = (
+    (shared_port, Severity.WARNING),
+    (unactivated_node, Severity.WARNING),
+    (unstarted_program, Severity.WARNING),
+)

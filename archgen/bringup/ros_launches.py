@@ -1,0 +1,76 @@
+"""What ROS is told where nodes and containers start: package and program, names, and the values of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from archgen.bringup.plan_shapes import RosLaunch
+from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
+from archgen.model.node import Node
+from archgen.model.parameter_values import canonical_name, find_declarations
+from archgen.model.ros_distro import is_ros_1
+
+_FLOAT_TYPES = frozenset({"float", "float[]"})
+
+
+def describe_node_launch(architecture: Architecture, node: Node) -> RosLaunch | None:
+    """Return what ROS is told of a node; None for a program that is none, and for a node with a command of its own."""
+    if node.command or node.is_program:
+        return None
+    container = architecture.containers.get(node.container or "")
+    ros_1 = is_ros_1(architecture.distro)
+    declarations = find_declarations(architecture, node)
+    float_names = {name for name, each in declarations.items() if each.type in _FLOAT_TYPES}
+
+    def give(values: Iterator[tuple[str, object]]) -> dict[str, object]:
+        named = ((canonical_name(name, ros_1=ros_1), value) for name, value in values if value is not None)
+        return {name: _write_as_float(value) if name in float_names else value for name, value in named}
+
+    own_values = give((each.name, each.value) for each in node.own_values)
+    commands = {canonical_name(name, ros_1=ros_1): words for name, words in node.parameter_commands.items()}
+    return RosLaunch(
+        name=node.name,
+        namespace=node.namespace,
+        package=node.package,
+        executable=node.executable,
+        plugin=node.plugin,
+        container=container.full_name if container else None,
+        earlier_values=give((each.name, each.value) for each in architecture.ros_parameters)
+        | give((name, each.value) for name, each in declarations.items()),
+        parameter_files=node.parameter_files,
+        file_values=give((each.name, each.value) for each in node.file_values),
+        own_values=own_values,
+        value_commands={name: words for name, words in commands.items() if name not in own_values},
+    )
+
+
+def describe_container_launch(architecture: Architecture, container: Container) -> RosLaunch:
+    """Return what ROS is told of a container: its own program, else ROS's."""
+    if is_ros_1(architecture.distro):
+        package, executable = container.package or "nodelet", container.executable or "nodelet"
+    else:
+        default = "component_container" if container.threads in {None, 1} else "component_container_mt"
+        package, executable = container.package or "rclcpp_components", container.executable or default
+    return RosLaunch(
+        name=container.name or container.id,
+        namespace=container.namespace,
+        package=package,
+        executable=executable,
+        own_values=dict(_flatten("", container.parameters)),
+    )
+
+
+def _flatten(prefix: str, values: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            yield from _flatten(f"{prefix}{key}.", value)
+        elif value is not None:
+            yield f"{prefix}{key}", value
+
+
+def _write_as_float(value: object) -> object:
+    """Return the whole numbers of a value as floats: ROS does not take `1` for a parameter that is a float."""
+    if isinstance(value, (list, tuple)):
+        return [_write_as_float(item) for item in value]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value

@@ -1,0 +1,177 @@
+"""Endpoints that read (subscribe, call): the inputs of a node's components, under the names of their sources."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from archgen.derivation import ros_names
+from archgen.derivation.writing_endpoints import DEFAULT_QOS, UNWRITTEN_USE, NodePart, filter_uses, flow_of_use
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.component import Input
+from archgen.model.message_types import flow_of
+from archgen.model.node import Endpoint, FlowKind, PortUse, UseKind
+from archgen.model.port_media import uses_ros
+
+NameAndFlow = tuple[str, FlowKind]
+
+
+@dataclass(frozen=True, slots=True)
+class WriterIndex:
+    """Writing endpoints by output and by name, and the outputs that feed each input."""
+
+    architecture: Architecture
+    shared_topics: frozenset[str]
+    by_output: Mapping[str, Sequence[Endpoint]]
+    by_name: Mapping[NameAndFlow, Sequence[Endpoint]]
+    outputs_by_input: Mapping[str, Sequence[str]]
+    """The ids of the outputs that feed an input, without those that are no ROS, by input id."""
+
+
+def index_writers(
+    architecture: Architecture, shared_topics: frozenset[str], writers: Iterable[Endpoint]
+) -> WriterIndex:
+    """Index all writing endpoints, before the reading ones are derived from them."""
+    by_output: dict[str, list[Endpoint]] = defaultdict(list)
+    by_name: dict[NameAndFlow, list[Endpoint]] = defaultdict(list)
+    for writer in writers:
+        by_name[writer.name, writer.flow].append(writer)
+        if writer.port:
+            by_output[writer.port].append(writer)
+    outputs_by_input: dict[str, list[str]] = defaultdict(list)
+    for edge in architecture.edges:
+        if uses_ros(architecture.outputs[edge.output]):
+            outputs_by_input[edge.input].append(edge.output)
+    return WriterIndex(architecture, shared_topics, dict(by_output), dict(by_name), dict(outputs_by_input))
+
+
+def derive_reading_endpoints(writer_index: WriterIndex, node_part: NodePart) -> Iterator[Endpoint]:
+    """Yield what a node reads for a component: one endpoint for each input and each topic, service or action."""
+    for port in node_part.component.inputs.values():
+        uses = filter_uses(node_part.uses_by_port.get(port.id, ()), {"subscribes", "calls"})
+        # A component's only node reads all of its inputs; several nodes read only what they list.
+        if uses_ros(port) and (uses or node_part.is_only_node):
+            yield from _InputReader(writer_index, node_part, port).derive_endpoints(uses)
+
+
+@dataclass(frozen=True, slots=True)
+class _InputReader:
+    """Derives the endpoints of one node for one input."""
+
+    writer_index: WriterIndex
+    node_part: NodePart
+    port: Input
+
+    def derive_endpoints(self, uses: Sequence[PortUse]) -> Iterator[Endpoint]:
+        """Yield the endpoints of the entries that the node lists for the input, and of what it need not list."""
+        arriving_writers = [
+            writer
+            for output in self.writer_index.outputs_by_input.get(self.port.id, ())
+            for writer in self._writers_of_output(output)
+        ]
+        writers_by_section: dict[UseKind, list[Endpoint]] = {
+            "subscribes": [writer for writer in arriving_writers if writer.flow == "topic"],
+            "calls": [writer for writer in arriving_writers if writer.flow != "topic"],
+        }
+        unnamed_sections = dict(writers_by_section) if self.node_part.is_only_node else {}
+        for use in uses:
+            # An entry in the wrong section is reported by `wrong-section`, and read as if it were in the right one.
+            section = use.use if writers_by_section[use.use] or not arriving_writers else _opposite_section(use.use)
+            unnamed_sections.pop(section, None)
+            yield from (
+                self._written_endpoints(use, writers_by_section[section])
+                if use.topics
+                else self._derived_endpoints(use, writers_by_section[section])
+            )
+        # An input may have both topics and services as sources: the only node also reads those it has no entry for.
+        for writers in unnamed_sections.values():
+            yield from self._derived_endpoints(UNWRITTEN_USE, writers) if writers else ()
+        if not uses and not arriving_writers:
+            yield from self._derived_endpoints(UNWRITTEN_USE, ())
+
+    def _writers_of_output(self, output_id: str) -> Sequence[Endpoint]:
+        """Return an output's writing endpoints; if no node writes it, the one that its only node would have."""
+        known_writers = self.writer_index.by_output.get(output_id)
+        if known_writers:
+            return known_writers
+        source_output = self.writer_index.architecture.outputs[output_id]
+        message = self.writer_index.architecture.message_of(source_output)
+        flow_kind = flow_of(message)
+        use: UseKind = "publishes" if flow_kind == "topic" else "serves"
+        return (
+            Endpoint(
+                "",
+                use,
+                ros_names.default_port_name(output_id),
+                flow_kind,
+                output_id,
+                source_output.component,
+                message,
+                source_output.type,
+            ),
+        )
+
+    def _derived_endpoints(self, use: PortUse, writers: Sequence[Endpoint]) -> Iterator[Endpoint]:
+        """Yield one endpoint for each topic that the sources are written on, or for the input's own default topic.
+
+        A source without any known output has no topic that could be named: nothing is read from it.
+        """
+        if writers:
+            writers_by_topic: dict[NameAndFlow, list[Endpoint]] = {}
+            for writer in writers:
+                writers_by_topic.setdefault((writer.name, writer.flow), []).append(writer)
+            for (name, flow_kind), topic_writers in writers_by_topic.items():
+                yield self._make_endpoint(use, name, flow_kind, topic_writers)
+        elif not self.port.from_written:
+            name = ros_names.default_port_name(self.port.id)
+            yield self._make_endpoint(use, name, flow_of_use(use.message or self._expected_message(), use), ())
+
+    def _written_endpoints(self, use: PortUse, writers: Sequence[Endpoint]) -> Iterator[Endpoint]:
+        """Yield one endpoint for each topic that the node names for the input."""
+        for topic in use.topics:
+            name = ros_names.resolve_ros_name(topic, self.node_part.node)
+            flow_kind = writers[0].flow if writers else flow_of_use(use.message or self._expected_message(), use)
+            # If no source is on this topic (`unaccounted-topic` reports it), message and type still come from them.
+            endpoint = self._make_endpoint(use, name, flow_kind, [w for w in writers if w.name == name] or writers)
+            yield replace(endpoint, name_written=True)
+
+    def _make_endpoint(self, use: PortUse, name: str, flow_kind: FlowKind, writers: Sequence[Endpoint]) -> Endpoint:
+        return Endpoint(
+            node=self.node_part.node.id,
+            use="subscribes" if flow_kind == "topic" else "calls",
+            name=name,
+            flow=flow_kind,
+            port=self.port.id,
+            component=self.node_part.component.id,
+            # What the node writes outranks what the sources send, and that what the input expects.
+            message=use.message or next((w.message for w in writers if w.message), None) or self._expected_message(),
+            type=self.port.type or next((w.type for w in writers if w.type), None),
+            qos=use.qos or DEFAULT_QOS,
+            own_name=use.own_name,
+            written=use is not UNWRITTEN_USE,
+            sources=self._arriving_outputs(name, flow_kind, writers),
+            at=use.at,
+            message_at=use.message_at,
+        )
+
+    def _arriving_outputs(self, name: str, flow_kind: FlowKind, writers: Sequence[Endpoint]) -> tuple[str, ...]:
+        """Return the ids of the outputs that arrive: all that are written on the topic, unless all nodes share it."""
+        # On a shared topic such as /tf every node writes: there only the input's own sources count.
+        direct_outputs = [writer.port for writer in writers if writer.name == name]
+        topic_outputs = (
+            []
+            if name in self.writer_index.shared_topics
+            else [w.port for w in self.writer_index.by_name.get((name, flow_kind), ())]
+        )
+        return tuple(dict.fromkeys(port for port in (*direct_outputs, *topic_outputs) if port))
+
+    def _expected_message(self) -> str | None:
+        """Return the message of the type that the input expects, None if unknown."""
+        mapped = self.writer_index.architecture.types.get(self.port.type or "")
+        return mapped.message if mapped else None
+
+
+def _opposite_section(section: UseKind) -> UseKind:
+    return "calls" if section == "subscribes" else "subscribes"

@@ -1,0 +1,142 @@
+"""Hold the hints of elements against what the project's own backends say of them: `hints_schema` in `backend.yaml`.
+
+Nothing of a backend is run. The schema is a small part of JSON Schema, without references and patterns, so that a
+stranger's costs no more time than it is long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.link import mapping_values
+from archgen.link.hint_schemas import HintFault, list_hint_faults
+from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements
+from archgen.model.architecture import Architecture
+from archgen.syntax.project_files import ProjectFiles, read_text_file
+from archgen.syntax.yaml_parser import parse_yaml
+from archgen.syntax.yaml_tree import MappingNode
+
+WRONG_HINT = Rule(
+    "wrong-hint",
+    Severity.ERROR,
+    """\
+A hint is not what the backend that it is for reads.
+
+Why: hints are data for other programs, and mean nothing to archgen. A backend of the project says in its `backend.yaml`, below
+`hints_schema`, which hints it reads, for each kind of element: a slip is found where it is written, and not in what is generated
+from it.
+
+Bad:
+
+    # file: archgen.yaml
+    archgen: 1
+    groups:
+      driving:
+        components:
+          motor: {functionality: Turns the wheel., hints: {orca: {tags: Car}}}
+    nodes: {motor: {implements: motor}}
+    # file: backends/orca/backend.yaml
+    id: orca
+    title: Orca
+    emitter: text
+    view: record
+    hints_schema:
+      component: {type: object, additionalProperties: false, properties: {tag: {type: string}}}
+
+Good:
+
+    # file: archgen.yaml
+    archgen: 1
+    groups:
+      driving:
+        components:
+          motor: {functionality: Turns the wheel., hints: {orca: {tag: Car}}}
+    nodes: {motor: {implements: motor}}
+    # file: backends/orca/backend.yaml
+    id: orca
+    title: Orca
+    emitter: text
+    view: record
+    hints_schema:
+      component: {type: object, additionalProperties: false, properties: {tag: {type: string}}}
+""",
+)
+_MAX_MANIFEST_LETTERS = 65_536
+_ANY_KIND = "any"
+"""The key of the schema for kinds of elements that have none of their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class _BackendHints:
+    """What a backend says of its hints: schemas by kind of element, and where."""
+
+    id: str
+    schemas: MappingNode
+    at: Span
+
+
+def find_wrong_hints(architecture: Architecture, files: ProjectFiles) -> Iterator[Diagnostic]:
+    """Report hints that a backend of the project does not read as they are written."""
+    _, folders, _ = next(iter(files.walk_folders("backends")), ("", [], []))
+    backends = dict.fromkeys(sorted(folders))
+    if not backends:
+        return
+    read_backends: dict[str, _BackendHints | None] = {}
+    judged_places: set[tuple[Span, str]] = set()
+    for each in list_annotated_elements(architecture):
+        annotations = each.element.annotations
+        for program, value in annotations.hints.items():
+            if program not in backends:
+                continue
+            if program not in read_backends:
+                read_backends[program] = _read_backend(files, program)
+            backend = read_backends[program]
+            if backend is not None:
+                for fault in _judge_hints(backend, each.kind, value):
+                    place = _find_place(annotations.hint_places, (program, *fault.path), each.element.at)
+                    # What instances have of their type is one slip.
+                    if (place, fault.words) not in judged_places:
+                        judged_places.add((place, fault.words))
+                        yield _report_fault(backend, each, fault, place)
+
+
+def _read_backend(files: ProjectFiles, program: str) -> _BackendHints | None:
+    """Return what a backend says of its hints; None where it says nothing, or `archgen build` refuses the manifest."""
+    path = f"backends/{program}/backend.yaml"
+    manifest = read_text_file(files, path) if files.has_path(path) else None
+    if manifest is None or manifest.problem or len(manifest.text) > _MAX_MANIFEST_LETTERS:
+        return None
+    document, _ = parse_yaml(path, manifest.text)
+    entry = document.root.entries.get("hints_schema") if document else None
+    if entry is None or not isinstance(entry.value, MappingNode):
+        return None
+    return _BackendHints(program, entry.value, entry.key_span)
+
+
+def _judge_hints(backend: _BackendHints, kind: str, value: object) -> Iterator[HintFault]:
+    schemas = mapping_values.get_mapping(backend.schemas, kind if kind in backend.schemas.entries else _ANY_KIND)
+    if kind in backend.schemas.entries or _ANY_KIND in backend.schemas.entries:
+        yield from list_hint_faults(schemas, value)
+    else:
+        kinds = ", ".join(f"`{each}`" for each in backend.schemas.entries)
+        yield HintFault((), f"is not read: the backend reads hints of {kinds or 'no element'}")
+
+
+def _find_place(places: Mapping[tuple[str | int, ...], Span], path: tuple[str | int, ...], whole: Span) -> Span:
+    """Return where a value is written, or the nearest one around it."""
+    return next((places[path[:end]] for end in range(len(path), 0, -1) if path[:end] in places), whole)
+
+
+def _report_fault(backend: _BackendHints, each: AnnotatedElement, fault: HintFault, place: Span) -> Diagnostic:
+    path = ".".join(map(str, (backend.id, *fault.path)))
+    return Diagnostic(
+        WRONG_HINT.name,
+        f"`hints.{path}` of the {each.kind.replace('_', ' ')} `{each.id}` {fault.words}",
+        place,
+        labels=(Label(backend.at, "what the backend reads"),),
+        help=fault.help,
+        element=each.owner_id,
+    )

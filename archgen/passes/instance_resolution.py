@@ -1,0 +1,83 @@
+"""The pass that writes instances out: every component says all that it has, and no type is left."""
+
+from __future__ import annotations
+
+from archgen.compose.project_expansion import Expansion
+from archgen.link import mapping_values
+from archgen.passes.pass_shape import Pass, PassWork
+from archgen.passes.tree_rebuilding import rebuild_tree
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+_TYPE_KEYS = frozenset({"is", "same_as"})
+
+
+def _resolve_instances(work: PassWork) -> None:
+    expansion = work.link().expansion
+    if expansion.is_plain:
+        return
+    sections = {key: entry for key, entry in work.tree.root.entries.items() if key != "component_types"}
+    written_groups = mapping_values.get_mapping(work.tree.root, "groups")
+    groups = {group.key: _write_group(group, expansion.parts.get(group.key, [])) for group in written_groups}
+    if groups:
+        section = work.tree.root.entries["groups"]
+        sections["groups"] = MappingEntry("groups", section.key_span, MappingNode(groups, written_groups.span))
+    if "libraries" in sections:
+        sections["libraries"] = _drop_library_types(sections["libraries"])
+    rebuild_tree(work.tree, MappingNode(sections, work.tree.root.span))
+
+
+def _write_group(group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]) -> MappingEntry:
+    body = mapping_values.get_body(group)
+    if "components" not in body.entries:
+        return group
+    written = body.entries["components"]
+    return MappingEntry(
+        group.key,
+        group.key_span,
+        MappingNode({**body.entries, "components": _write_components(written, dict(_key_parts(parts)))}, body.span),
+    )
+
+
+def _key_parts(parts: list[tuple[MappingEntry, Expansion]]) -> list[tuple[str, tuple[MappingEntry, Expansion]]]:
+    return [(part.key, (part, expansion)) for part, expansion in parts]
+
+
+def _write_components(written: MappingEntry, parts: dict[str, tuple[MappingEntry, Expansion]]) -> MappingEntry:
+    """Return `components` with everything in them written out."""
+    entries = {name: _write_component(part, expansion) for name, (part, expansion) in parts.items()}
+    return MappingEntry("components", written.key_span, MappingNode(entries, written.value.span))
+
+
+def _write_component(part: MappingEntry, expansion: Expansion) -> MappingEntry:
+    body = expansion.body
+    entries = {key: entry for key, entry in body.entries.items() if key not in _TYPE_KEYS}
+    if expansion.parts:
+        inner = MappingEntry("components", part.key_span, MappingNode({}, part.key_span))
+        entries["components"] = _write_components(inner, expansion.parts)
+    if not entries and not isinstance(part.value, MappingNode):
+        return part
+    return MappingEntry(part.key, part.key_span, MappingNode(entries, body.span))
+
+
+def _drop_library_types(section: MappingEntry) -> MappingEntry:
+    """Return the libraries with nothing but data types in them."""
+    libraries = {
+        library.key: MappingEntry(
+            library.key,
+            library.key_span,
+            MappingNode({e.key: e for e in library.value if e.key != "component_types"}, library.value.span)
+            if isinstance(library.value, MappingNode)
+            else library.value,
+        )
+        for library in (section.value if isinstance(section.value, MappingNode) else ())
+    }
+    return MappingEntry(section.key, section.key_span, MappingNode(libraries, section.value.span))
+
+
+RESOLVE_INSTANCES = Pass(
+    "resolve_instances",
+    "Writes out all that components have of their types; no component type is left.",
+    _resolve_instances,
+    needs=("no_component_sources",),
+    leaves=("no_instances",),
+)

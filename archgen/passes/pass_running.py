@@ -1,0 +1,88 @@
+"""Run passes one after the other, each with those before it that it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.element_origins import Origin, TreePath
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import dataclass
+from archgen.model.known_interfaces import Interfaces
+from archgen.passes.pass_registry import PASSES
+from archgen.passes.pass_shape import Pass, PassWork
+from archgen.passes.project_tree import ProjectTree
+from archgen.project import LoadedProject
+from archgen.syntax.yaml_tree import MappingNode
+
+
+@dataclass(frozen=True, slots=True)
+class TransformedProject:
+    """What passes made of a project: its tree, what everything in it was made from, and what was found on the way."""
+
+    root: MappingNode
+    provenance: Mapping[TreePath, Origin]
+    """The origins of what was made, by path; what is inside of it was made with it, unless it is named itself."""
+    findings: tuple[Diagnostic, ...]
+    passes: tuple[str, ...]
+    """The passes that ran, in order, those included that others needed."""
+
+
+class UnknownPassError(Exception):
+    """A pass is asked for that there is not."""
+
+    def __init__(self, name: str, known_names: Sequence[str]) -> None:
+        """Take the name, and those that there are."""
+        help_line = did_you_mean(name, known_names) or "`archgen transform --list` shows all"
+        super().__init__(f"no pass named `{name}`: {help_line}")
+
+
+def run_passes(
+    loaded_project: LoadedProject,
+    root: MappingNode,
+    names: Sequence[str],
+    interfaces: Interfaces,
+    known_passes: Mapping[str, Pass] = PASSES,
+) -> TransformedProject:
+    """Return what passes make of a merged project, which is not changed.
+
+    Raise `UnknownPassError` for a name that is none of `known_passes`.
+    """
+    work = PassWork(loaded_project, ProjectTree(root), interfaces)
+    ordered_passes = order_passes(names, known_passes)
+    for each in ordered_passes:
+        work.tree.maker = each.name
+        each.run(work)
+    return TransformedProject(
+        work.tree.root,
+        work.tree.provenance,
+        tuple(dict.fromkeys(work.findings)),
+        tuple(each.name for each in ordered_passes),
+    )
+
+
+def order_passes(names: Sequence[str], known_passes: Mapping[str, Pass] = PASSES) -> tuple[Pass, ...]:
+    """Return the passes of these names, each behind those that it needs and that have not run yet."""
+    held: set[str] = set()
+    ordered: list[Pass] = []
+    for name in names:
+        if name not in known_passes:
+            raise UnknownPassError(name, tuple(known_passes))
+        for each in _list_needed(known_passes[name], known_passes, held):
+            ordered.append(each)
+            held.difference_update(each.ends)
+            held.update(each.leaves)
+    return tuple(ordered)
+
+
+def _list_needed(wanted: Pass, known_passes: Mapping[str, Pass], held: set[str]) -> Iterator[Pass]:
+    """Yield a pass behind all that it needs and that does not hold."""
+    held = set(held)
+    for state in wanted.needs:
+        if state not in held:
+            giver = next(each for each in known_passes.values() if state in each.leaves)
+            for each in _list_needed(giver, known_passes, held):
+                yield each
+                held.difference_update(each.ends)
+                held.update(each.leaves)
+    yield wanted

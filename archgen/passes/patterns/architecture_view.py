@@ -1,0 +1,307 @@
+"""What rules see of a project: every component at any depth with all that it has from its type, and conceptual types.
+
+Worked out from the tree when it is asked for, and again after an edit of it, for what the edit touches alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from archgen.compose.library_types import list_libraries
+from archgen.diagnostics.element_origins import TreePath
+from archgen.model.generic_names import read_generic_name
+from archgen.passes.patterns.matching import IndexToken
+from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ScalarText, ViewValue
+from archgen.passes.patterns.type_layers import Layer, TypeLayers
+from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements
+from archgen.passes.patterns.view_index import ComponentIndex
+from archgen.passes.patterns.view_references import ViewReferences
+from archgen.passes.project_tree import ProjectTree
+from archgen.schema import fold_type_name
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
+
+_PORT_KEYS = ("inputs", "outputs")
+
+
+class ArchitectureView:
+    """The view of a tree that is edited: say what was edited with `note_edit`."""
+
+    def __init__(self, tree: ProjectTree) -> None:
+        """Take the tree of a merged project."""
+        self.tree = tree
+        self.elements: dict[str, ViewElement] = {}
+        self._keys: tuple[str, ...] | None = None
+        self._index = ComponentIndex(self.get_component)
+        self._bodies: dict[str, dict[str, ViewValue]] = {}
+        self._expanded: dict[str, MappingNode] = {}
+        self._users: dict[str, set[str]] = {}
+        self._resolved: dict[int, tuple[ScalarNode, PortReference]] = {}
+        self._component_types = TypeLayers(tree.root)
+        self._types: dict[str, dict[str, ViewValue]] | None = None
+        self.type_paths: dict[str, TreePath] = {}
+        self.references = ViewReferences(self.elements, self._list_outputs)
+        type_entries = self._component_types.entries
+        inherited_ids = {name: self._component_types.list_inherited(name) for name in type_entries}
+        for element in list_elements(tree.root, type_entries, inherited_ids):
+            self._add(element)
+        self.type_keys = {each.type_name: key for key, each in self.elements.items() if each.kind == "type"}
+        for key in self.elements:
+            self._resolve_sources(key)
+
+    # What rules ask.
+
+    def list_components(self) -> Sequence[str]:
+        """Return the paths of all components, in order."""
+        if self._keys is None:
+            self._keys = tuple(self.elements)
+        return self._keys
+
+    def get_component(self, path: str) -> dict[str, ViewValue] | None:
+        """Return what a component has, None where there is none."""
+        if path not in self.elements:
+            return None
+        if path not in self._bodies:
+            self._bodies[path] = self._make_body(self.elements[path])
+        return self._bodies[path]
+
+    def find_having(self, token: IndexToken) -> Sequence[str]:
+        """Return the paths of the components that the index knows by a token, in order."""
+        return self._index.find_having(token)
+
+    def count_having(self, token: IndexToken) -> int:
+        """Return how many components the index knows by a token."""
+        return self._index.count_having(token)
+
+    def list_types(self) -> Sequence[str]:
+        """Return the names of all conceptual types, in order."""
+        return tuple(self._read_types())
+
+    def get_type(self, name: str) -> dict[str, ViewValue] | None:
+        """Return what a conceptual type has, None where there is none."""
+        return self._read_types().get(name)
+
+    def is_a(self, name: str, wanted: str) -> bool:
+        """Whether a conceptual type is one, or made from a generic one; whether a component, or its type, is made from another."""
+        if name == wanted or read_generic_name(name).base == wanted:
+            return True
+        key = name if name in self.elements else self.type_keys.get(read_generic_name(name).base, "")
+        names = {each.type_name for each in self.list_layers(key)} if key in self.elements else set()
+        return any(each is not None and wanted in (each, self.type_keys.get(each)) for each in names)
+
+    # What edits ask.
+
+    def list_layers(self, key: str) -> list[Layer]:
+        """Return where a component has its values from: its own place, its type's, that type's type's, and so on."""
+        element = self.elements[key]
+        node = self._node_of(element)
+        body = node if isinstance(node, MappingNode) else MappingNode({}, self.tree.find_place(element.path))
+        own_type = element.type_name if element.kind == "type" else None
+        return self._component_types.list_layers(Layer(element.path, body, None), own_type)
+
+    def remember_reference(self, node: ScalarNode, reference: PortReference) -> None:
+        """Keep what a reference that a rule wrote means."""
+        self._resolved[id(node)] = (node, reference)
+
+    def find_reference(self, node: YamlNode) -> PortReference | None:
+        """Return what a reference in the tree means."""
+        found = self._resolved.get(id(node))
+        return found[1] if found else None
+
+    def write_type_name(self, name: str) -> str:
+        """Return the name of a component type as it is written, of the path that rules know it by."""
+        base = read_generic_name(name).base
+        element = self.elements.get(base)
+        is_type = element is not None and element.kind == "type"
+        return f"{element.type_name}{name[len(base) :]}" if element is not None and is_type else name
+
+    def note_edit(self, key: str, layer: Layer) -> None:
+        """Work out anew what an edit at a layer of a component touches."""
+        if layer.type_name is not None or self.elements[key].type_name is not None:
+            name = layer.type_name or self.elements[key].type_name
+            self._renew_type(str(name))
+        self._mark_stale(key)
+
+    def note_type_edit(self) -> None:
+        """Read the conceptual types again."""
+        self._types = None
+
+    def add_element(self, element: ViewElement) -> None:
+        """Take up a component that was written into the tree."""
+        if element.type_name is not None:
+            self._renew_type(element.type_name)
+            if element.kind == "type":
+                self.type_keys[element.type_name] = element.key
+        self._add(element)
+        self._resolve_sources(element.key)
+        self.references.forget_names()
+
+    def remove_element(self, key: str) -> None:
+        """Forget a component that was taken out of the tree, with all that stood in it."""
+        for inner in [each for each in self.elements if each == key or each.startswith(f"{key}.")]:
+            element = self.elements[inner]
+            self._mark_stale(inner)
+            del self.elements[inner]
+            self._keys = None
+            if element.kind == "type" and element.type_name:
+                del self.type_keys[element.type_name]
+            if element.type_name is not None:
+                self._renew_type(element.type_name)
+        self.references.forget_names()
+
+    # How it is worked out.
+
+    def _add(self, element: ViewElement) -> None:
+        self.elements[element.key] = element
+        self._keys = None
+        self._index.add(element.key)
+        self._mark_stale(element.key)
+
+    def _node_of(self, element: ViewElement) -> YamlNode | None:
+        if element.type_name is None:
+            return self.tree.get(element.path)
+        # The types of libraries name one another without their library: here they are as the project knows them.
+        entry = self._component_types.entries.get(element.type_name)
+        node = entry.value if entry else None
+        for inner_id in element.inner_ids:
+            components = node.get("components") if isinstance(node, MappingNode) else None
+            node = components.get(inner_id) if isinstance(components, MappingNode) else None
+        return node
+
+    def _expand(self, key: str) -> MappingNode:
+        """Return what a component has with all of its types laid under it."""
+        if key not in self._expanded:
+            layers = self.list_layers(key)
+            for layer in layers:
+                if layer.type_name is not None:
+                    self._users.setdefault(layer.type_name, set()).add(key)
+            element, own = self.elements[key], layers[0].node
+            is_type = element.kind == "type" and element.type_name in self._component_types.entries
+            self._expanded[key] = (
+                self._component_types.lay_type(str(element.type_name), own)
+                if is_type
+                else self._component_types.lay_instance(own, key)
+            )
+        return self._expanded[key]
+
+    def _list_outputs(self, key: str) -> Sequence[str]:
+        outputs = self._expand(key).get("outputs")
+        return tuple(outputs.entries) if isinstance(outputs, MappingNode) else ()
+
+    def _make_body(self, element: ViewElement) -> dict[str, ViewValue]:
+        expanded = self._expand(element.key)
+        body = ComponentBody({"kind": element.kind, "id": element.id})
+        body.path = element.key
+        if element.parent is not None:
+            body["in"] = element.parent
+        # What a type's ports give on from inside is inside of what is made from it, too.
+        moves = {
+            self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name
+        }
+        for entry in expanded:
+            body[entry.key] = self._read_value(entry.value, moves)
+        for key in ("is", "same_as"):
+            name = body.get(key)
+            base = read_generic_name(name).base if isinstance(name, str) else ""
+            if isinstance(name, str) and self.type_keys.get(base, base) != base:
+                body[key] = self.type_keys[base] + name[len(base) :]
+        return body
+
+    def _read_value(self, node: YamlNode, moves: Mapping[str, str]) -> ViewValue:
+        if isinstance(node, MappingNode):
+            return {entry.key: self._read_value(entry.value, moves) for entry in node}
+        if isinstance(node, SequenceNode):
+            return [self._read_value(item, moves) for item in node.items]
+        reference = self.find_reference(node)
+        if reference is None:
+            return read_scalar(node)
+        return _move_reference(reference, moves, node) if moves else reference
+
+    def _resolve_sources(self, key: str) -> None:
+        """Resolve what the ports of a component name in its own place: what its type writes is resolved there."""
+        own = self.list_layers(key)[0].node
+        for item in _list_items(own.get("from")):
+            self._resolve_item(item, key, is_output=False)
+        for port_key in _PORT_KEYS:
+            ports = own.get(port_key)
+            for port in ports if isinstance(ports, MappingNode) else ():
+                body = port.value if isinstance(port.value, MappingNode) else MappingNode({}, port.key_span)
+                for item in _list_items(body.get("from")):
+                    self._resolve_item(item, key, is_output=port_key == "outputs")
+                for item in _list_items(body.get("to")):
+                    self._resolve_target(item, key)
+
+    def _resolve_item(self, node: ScalarNode, key: str, *, is_output: bool) -> None:
+        if id(node) not in self._resolved:
+            reference = self.references.resolve(node.text, key, is_output=is_output, at=node)
+            if reference is not None:
+                self.remember_reference(node, reference)
+
+    def _resolve_target(self, node: ScalarNode, key: str) -> None:
+        """Resolve what an output is written to: an input of a component beside it."""
+        name, _, port = node.text.rpartition(".")
+        reader = f"{self.elements[key].parent}.{name}"
+        if name and reader in self.elements:
+            self._resolved[id(node)] = (node, PortReference(reader, port, at=node))
+
+    def _renew_type(self, name: str) -> None:
+        """Read a component type from the tree again, and what is made from it."""
+        self._component_types.renew_type(self.tree.root, name)
+        if name in self.type_keys:
+            self._mark_stale(self.type_keys[name])
+        for key in self._users.pop(name, ()):
+            self._mark_stale(key)
+
+    def _mark_stale(self, key: str) -> None:
+        self._bodies.pop(key, None)
+        self._expanded.pop(key, None)
+        self._index.mark_stale(key)
+        element = self.elements.get(key)
+        if element and element.kind == "type" and element.type_name in self._users:
+            for user in self._users.pop(element.type_name):
+                self._mark_stale(user)
+
+    def _read_types(self) -> dict[str, dict[str, ViewValue]]:
+        if self._types is None:
+            self._types, self.type_paths = {}, {}
+            sections: list[tuple[TreePath, YamlNode | None]] = [(("types",), self.tree.root.get("types"))]
+            for library in list_libraries(self.tree.root):
+                body = library.value
+                types = body.get("types") if isinstance(body, MappingNode) else None
+                sections.append((("libraries", library.key, "types"), types))
+            for path, section in sections:
+                for entry in section if isinstance(section, MappingNode) else ():
+                    name = fold_type_name(entry.key)
+                    if name not in self._types:
+                        value = self._read_value(entry.value, {})
+                        self._types[name] = value if isinstance(value, dict) else {}
+                        self.type_paths[name] = (*path, entry.key)
+        return self._types
+
+
+def _move_reference(reference: PortReference, moves: Mapping[str, str], node: YamlNode) -> PortReference:
+    at = node if isinstance(node, ScalarNode) else None
+    for type_key, key in moves.items():
+        if reference.holder == type_key:
+            return PortReference(key, reference.port, holder=key, at=at)
+        if reference.component.startswith(f"{type_key}."):
+            return PortReference(key + reference.component[len(type_key) :], reference.port, at=at)
+    return reference
+
+
+def _list_items(node: YamlNode | None) -> list[ScalarNode]:
+    items = node.items if isinstance(node, SequenceNode) else [node]
+    return [item for item in items if isinstance(item, ScalarNode) and item.value is not None]
+
+
+def read_scalar(node: ScalarNode) -> ScalarText | None:
+    """Return a scalar as rules see it: its text, None where nothing is written."""
+    if node.value is None:
+        return None
+    text = str(node.value).lower() if isinstance(node.value, bool) else node.text
+    return ScalarText(text, node.value, node.span)
+
+
+def find_instance(view: ArchitectureView, key: str) -> bool:
+    """Whether a component is made from a type, and seen with what it has from it alone."""
+    element = view.elements[key]
+    return element.kind == "component" and is_instance(view.list_layers(key)[0].node)

@@ -1,0 +1,305 @@
+"""Write what rules find to write: each value goes where the element that it belongs to is declared.
+
+A port of an instance is declared in its type, what it takes its data from at the instance; a type of a library stands in
+the library.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from archgen.diagnostics.element_origins import TreePath
+from archgen.passes.patterns.architecture_view import ArchitectureView, find_instance
+from archgen.passes.patterns.data_edits import are_inside, drop_data, make_data_node, merge_data
+from archgen.passes.patterns.edit_values import EditError, expand_value, fill_key, fill_pattern
+from archgen.passes.patterns.layer_choice import DataPath, choose_layer
+from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
+from archgen.passes.patterns.pattern_shapes import (
+    INNER_KEY,
+    Bindings,
+    ComponentBody,
+    PatternEntry,
+    PortReference,
+    ViewValue,
+)
+from archgen.passes.patterns.type_layers import Layer
+from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside
+from archgen.passes.patterns.view_words import VIRTUAL_KEYS
+from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
+from archgen.syntax.yaml_tree import ScalarNode, SequenceNode, YamlNode
+
+_ID = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_MAX_ID_LENGTH = 64
+_TYPE_KEYS = frozenset({"is", "same_as"})
+_PORT_SECTIONS = frozenset({"inputs", "outputs"})
+_ID_SECTIONS = frozenset({"inputs", "outputs", "operations"})
+
+
+class _Place(NamedTuple):
+    """Where a value of a component is written, and what it is made from."""
+
+    key: str
+    layer: Layer
+    path: DataPath
+    source: TreePath
+
+    @property
+    def target(self) -> TreePath:
+        """The path in the tree."""
+        return (*self.layer.path, *self.path)
+
+
+class TreeEditor:
+    """Applies edits of rules to the tree of a view, and tells the view."""
+
+    def __init__(self, view: ArchitectureView) -> None:
+        """Take the view of the tree."""
+        self._view = view
+        self._tree = view.tree
+        self.has_new_names = False
+        """Whether components or outputs came or went: references may be taken for others."""
+
+    def apply(self, edits: Sequence[RuleEdit], bindings: Bindings, origin: TreePath) -> bool:
+        """Write what a rule writes under some bindings; say whether that changed anything. Raise EditError.
+
+        `origin` is where what the rule found is written.
+        """
+        count = self._tree.edit_count
+        for edit in edits:
+            for entry in edit.pattern.components:
+                self._edit_component(edit.kind, entry, bindings, origin)
+            for entry in edit.pattern.types:
+                self._edit_type(edit.kind, entry, bindings, origin)
+        return self._tree.edit_count != count
+
+    def _edit_component(self, kind: EditKind, entry: PatternEntry, bindings: Bindings, origin: TreePath) -> None:
+        key, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
+        is_known = key in self._view.elements
+        if kind == "drop":
+            if is_known:
+                self._drop_component(key, value)
+            return
+        if value is not None and not isinstance(value, dict):
+            message = f"`{key}` is to be a component, and what is written of it is no mapping"
+            raise EditError(message)
+        if not is_known:
+            self._add_component(key, value or {}, origin)
+            return
+        element = self._view.elements[key]
+        form = {"type": COMPONENT_TYPE_FORM, "group": GROUP_FORM}.get(element.kind, COMPONENT_FORM)
+        expanded = expand_value(
+            {k: v for k, v in (value or {}).items() if k not in VIRTUAL_KEYS and k != INNER_KEY}, form
+        )
+        inner = value.get(INNER_KEY) if isinstance(value, ComponentBody) else None
+        for name, each in inner.items() if isinstance(inner, dict) else ():
+            if f"{key}.{name}" not in self._view.elements and not find_instance(self._view, key):
+                self._add_component(f"{key}.{name}", _copy_inner(each, key), origin)
+        for name, each in expanded.items() if isinstance(expanded, dict) else ():
+            self._write(kind, key, (name,), each)
+
+    def _drop_component(self, key: str, value: ViewValue) -> None:
+        """Take a component out, or something of it."""
+        if isinstance(value, dict):
+            for name, each in value.items():
+                self._drop(key, (name,), each)
+        elif value is None:
+            path = self._view.elements[key].path
+            self._tree.drop(path)
+            if not self._tree.get_mapping(path[:-1]):
+                self._tree.drop(path[:-1])
+            self._view.remove_element(key)
+            self.has_new_names = True
+
+    def _add_component(self, key: str, value: Mapping[str, ViewValue], origin: TreePath) -> None:
+        parent, dot, name = key.rpartition(".")
+        if not _ID.match(name) or len(name) > _MAX_ID_LENGTH:
+            message = f"`{name}` is no id, so nothing can be called so"
+            raise EditError(message, "`snake(...)` in `let` makes one of any text")
+        kind = str(value.get("kind", "component"))
+        is_group = not dot and kind == "group"
+        if dot and parent not in self._view.elements:
+            message = f"`{key}` is to stand in `{parent}`, which there is not"
+            raise EditError(message, "its path begins with that of what it stands in: `$outer.name`")
+        if dot and find_instance(self._view, parent):
+            message = f"`{key}` is to stand in an instance, which has what its type has"
+            raise EditError(message, f"write it into the type of `{parent}`: `kind: type` finds types")
+        type_name = self._view.elements[parent].type_name if dot else None if is_group else name
+        path = (
+            (*self._view.elements[parent].path, INNER_KEY, name)
+            if dot
+            else ("groups", name)
+            if is_group
+            else ("component_types", name)
+        )
+        form = COMPONENT_FORM if dot else GROUP_FORM if is_group else COMPONENT_TYPE_FORM
+        copied_from = value.path if isinstance(value, ComponentBody) else ""
+        body, sources = _split_sources({k: v for k, v in value.items() if k not in VIRTUAL_KEYS}, copied_from)
+        span = self._tree.find_place(origin)
+        self._tree.set(path, make_data_node(expand_value(body, form), span, copied_from), origin)
+        inner_ids = (*self._view.elements[parent].inner_ids, name) if dot else ()
+        element_kind: ElementKind = "component" if dot else "group" if is_group else "type"
+        element = ViewElement(key, name, element_kind, parent if dot else None, path, type_name, inner_ids)
+        self._view.add_element(element)
+        for inner in list_inside(self._tree.get(path), key, path, type_name, inner_ids, frozenset()):
+            self._view.add_element(inner)
+        self.has_new_names = True
+        for data_path, each in sources:
+            self._write("set", key, data_path, each)
+
+    def _edit_type(self, kind: EditKind, entry: PatternEntry, bindings: Bindings, origin: TreePath) -> None:
+        name, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
+        is_known = self._view.get_type(name) is not None
+        path: TreePath = self._view.type_paths.get(name, ("types", name))
+        if kind == "drop":
+            drop_data(self._view, path, value) if is_known else None
+        else:
+            expanded = expand_value(value, DATA_TYPE_FORM)
+            merge_data(self._view, kind, path, expanded, path if is_known else origin)
+        self._view.note_type_edit()
+
+    def _drop(self, key: str, path: DataPath, value: ViewValue) -> None:
+        """Take something out of all places that a component has it from."""
+        if isinstance(value, dict):
+            for name, each in value.items():
+                self._drop(key, (*path, name), each)
+            return
+        layers = self._view.list_layers(key)
+        # What a type is made from is the type's own.
+        for layer in layers[:1] if path[0] in _TYPE_KEYS else layers:
+            count = self._tree.edit_count
+            drop_data(self._view, (*layer.path, *path), value)
+            if self._tree.edit_count != count:
+                self.has_new_names |= path[0] == "outputs"
+                self._note(key, layer, path)
+
+    def _write(self, kind: EditKind, key: str, path: DataPath, value: ViewValue) -> None:
+        """Write a value at a path of a component: mappings key by key, where there is one already."""
+        present = _get(self._view.get_component(key), path)
+        if isinstance(value, dict) and isinstance(present, dict):
+            for name, each in value.items():
+                self._write(kind, key, (*path, name), each)
+            return
+        if path[0] in _ID_SECTIONS and len(path) > 1 and present is None and not _ID.match(path[1]):
+            message = f"`{path[1]}` is no id, so no port can be called so"
+            raise EditError(message, "`snake(...)` in `let` makes one of any text")
+        if present is not None and present == value:
+            return
+        layer = choose_layer(self._view, key, path, present)
+        place = _Place(key, layer, path, self._find_source(layer, path))
+        span = self._tree.find_place(place.source)
+        if path[-1] == "from" and (len(path) == 1 or path[0] in _PORT_SECTIONS):
+            self._write_sources(kind, place, value)
+        elif isinstance(value, dict) and path[0] in _PORT_SECTIONS:
+            self._write_port(kind, place, value)
+            return
+        elif kind == "add" and isinstance(value, list):
+            for item in value:
+                self._tree.append(place.target, make_data_node(item, span), place.source)
+        elif kind == "add" and present is not None:
+            message = f"`add` finds `{present}` at `{'.'.join(path)}` of `{key}`, and not `{value}`"
+            raise EditError(message, "`set` replaces it")
+        else:
+            node = make_data_node(self._name_types(path, value, layer), span)
+            self._tree.set(place.target, node, place.source)
+        self._note(key, layer, path)
+
+    def _write_port(self, kind: EditKind, place: _Place, value: Mapping[str, ViewValue]) -> None:
+        """Write a port that is new, or a section of new ports: first that it is there, then each of its keys."""
+        self._tree.set(place.target, make_data_node({}, self._tree.find_place(place.source)), place.source)
+        self._note(place.key, place.layer, place.path)
+        for name, each in value.items():
+            self._write(kind, place.key, (*place.path, name), each)
+
+    def _write_sources(self, kind: EditKind, place: _Place, value: ViewValue) -> None:
+        span = self._tree.find_place(place.source)
+        is_output = place.path[0] == "outputs"
+        type_name = place.layer.type_name
+        writer = self._view.type_keys.get(type_name, place.key) if type_name else place.key
+        nodes: list[ScalarNode] = []
+        for item in value if isinstance(value, list) else [value]:
+            reference = self._find_target(item, writer, is_output=is_output)
+            words = self._view.references.write(reference, writer, is_output=is_output)
+            if words is None:
+                message = f"`{reference}` cannot be named at `{writer}`: it lies outside of what is seen from there"
+                raise EditError(message, "lead it through the ports of what stands around")
+            node = ScalarNode(words, words, reference.span or span)
+            self._view.remember_reference(node, reference)
+            nodes.append(node)
+        if kind == "set":
+            self._tree.set(place.target, SequenceNode(list[YamlNode](nodes), span), place.source)
+        for node in nodes if kind == "add" else ():
+            self._tree.append(place.target, node, place.source)
+
+    def _find_target(self, item: ViewValue, writer: str, *, is_output: bool) -> PortReference:
+        if isinstance(item, PortReference):
+            return item
+        text = str(item) if isinstance(item, str) else ""
+        if text.startswith("self."):
+            shell = writer if is_output else self._view.elements[writer].parent
+            return PortReference(shell or "", text.removeprefix("self."), holder=shell or "")
+        if text in self._view.elements:
+            return PortReference(text, None)
+        component, _, port = text.rpartition(".")
+        if component not in self._view.elements:
+            message = f"`{text}` is no port and no component"
+            raise EditError(message, "a source is a path and a port: `$source.$port`, or `self.$port`")
+        return PortReference(component, port)
+
+    def _find_source(self, layer: Layer, path: DataPath) -> TreePath:
+        """Return the innermost thing on the way to a value that is written."""
+        for length in range(len(path), 0, -1):
+            if self._tree.get((*layer.path, *path[:length])) is not None:
+                return (*layer.path, *path[:length])
+        return layer.path
+
+    def _note(self, key: str, layer: Layer, path: DataPath) -> None:
+        if path[0] == "outputs":
+            self.has_new_names = True
+            self._view.references.forget_names()
+        self._view.note_edit(key, layer)
+
+    def _name_types(self, path: DataPath, value: ViewValue, layer: Layer) -> ViewValue:
+        """Return the name of a component type as it is written at a layer: in a library without its library."""
+        if path not in {("is",), ("same_as",)} or not isinstance(value, str):
+            return value
+        name = self._view.write_type_name(value)
+        return name.removeprefix(f"{layer.path[1]}.") if layer.path[0] == "libraries" else name
+
+
+def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:
+    """Return what stands inside of a component as a part of its copy."""
+    copy = ComponentBody(body if isinstance(body, dict) else {})
+    copy.path = holder
+    return copy
+
+
+def _split_sources(
+    body: dict[str, ViewValue], copied_from: str
+) -> tuple[dict[str, ViewValue], list[tuple[DataPath, ViewValue]]]:
+    """Return what a new component has without what its ports take data from, and that by path.
+
+    What a copy names inside of itself stays: it means the copy's own.
+    """
+    kept, sources = dict(body), list[tuple[DataPath, ViewValue]]()
+    if "from" in body and not are_inside(body["from"], copied_from):
+        sources.append((("from",), kept.pop("from")))
+    for side in ("inputs", "outputs"):
+        ports = kept.get(side)
+        if not isinstance(ports, dict):
+            continue
+        kept[side] = kept_ports = dict(ports)
+        for name, port in ports.items():
+            if isinstance(port, dict) and "from" in port and not are_inside(port["from"], copied_from):
+                kept_ports[name] = {key: each for key, each in port.items() if key != "from"}
+                sources.append(((side, name, "from"), port["from"]))
+    return kept, sources
+
+
+def _get(value: ViewValue, path: DataPath) -> ViewValue:
+    for key in path:
+        if not isinstance(value, dict) or key not in value:
+            return None
+        value = value[key]
+    return value

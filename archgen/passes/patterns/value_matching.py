@@ -1,0 +1,148 @@
+"""Match a pattern against one value: mappings, lists, texts, and the names of generic types. All work is counted in steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.model.generic_names import read_generic_name
+from archgen.passes.patterns.pattern_shapes import (
+    Bindings,
+    Constant,
+    ListPattern,
+    MappingPattern,
+    Pattern,
+    PatternEntry,
+    TextPattern,
+    Variable,
+    ViewValue,
+)
+from archgen.passes.patterns.text_matching import match_text, resolve_text
+
+
+class BudgetExceededError(Exception):
+    """Matching took more steps than it may take."""
+
+
+class MatchBudget:
+    """Counts the steps of matching down."""
+
+    def __init__(self, steps: int) -> None:
+        """Take how many steps there are."""
+        self.steps = steps
+        self.remaining = steps
+
+    def spend(self, steps: int = 1) -> None:
+        """Take steps away. Raise BudgetExceededError when there are none left."""
+        self.remaining -= steps
+        if self.remaining < 0:
+            raise BudgetExceededError
+
+
+def match_value(pattern: Pattern, value: ViewValue, bindings: Bindings, budget: MatchBudget) -> Iterator[Bindings]:
+    """Yield the bindings under which a value is what a pattern asks for."""
+    budget.spend()
+    if not isinstance(pattern, _BRANCHING_PATTERNS):
+        bound = _match_leaf(pattern, value, bindings)
+        if bound is not None:
+            yield bound
+    elif isinstance(pattern, ListPattern):
+        if isinstance(value, list) and (pattern.items or not value):
+            yield from _match_items(pattern.items, value, frozenset(), bindings, budget)
+    elif isinstance(value, dict):
+        yield from _match_entries(pattern.entries, value, bindings, budget)
+    elif isinstance(value, str):
+        yield from _match_term(pattern, value, bindings, budget)
+
+
+_BRANCHING_PATTERNS = (ListPattern, MappingPattern)
+"""Patterns that a value may match in several ways."""
+
+
+def _match_leaf(pattern: Pattern, value: ViewValue, bindings: Bindings) -> Bindings | None:
+    """Return the bindings under which a value is what a pattern asks for, None where it is not."""
+    if isinstance(pattern, Variable):
+        if pattern.name not in bindings:
+            return {**bindings, pattern.name: value}
+        return bindings if bindings[pattern.name] == value else None
+    if isinstance(pattern, Constant):
+        return bindings if pattern.text == value else None
+    if isinstance(pattern, TextPattern):
+        return match_text(pattern, value, bindings)
+    return bindings
+
+
+def _match_entries(
+    entries: tuple[PatternEntry, ...], mapping: dict[str, ViewValue], bindings: Bindings, budget: MatchBudget
+) -> Iterator[Bindings]:
+    while entries:
+        # Keys that are known first: they leave the fewest ways.
+        chosen, key = 0, None
+        for index, entry in enumerate(entries):
+            key = resolve_text(entry.key, bindings)
+            if key is not None:
+                chosen = index
+                break
+        entry, rest = entries[chosen], entries[:chosen] + entries[chosen + 1 :]
+        if key is None:
+            yield from _match_each_key(entry, rest, mapping, bindings, budget)
+            return
+        if key not in mapping:
+            return
+        if isinstance(entry.value, _BRANCHING_PATTERNS):
+            for bound in match_value(entry.value, mapping[key], bindings, budget):
+                yield from _match_entries(rest, mapping, bound, budget)
+            return
+        budget.spend()
+        matched = _match_leaf(entry.value, mapping[key], bindings)
+        if matched is None:
+            return
+        entries, bindings = rest, matched
+    yield bindings
+
+
+def _match_each_key(
+    entry: PatternEntry,
+    rest: tuple[PatternEntry, ...],
+    mapping: dict[str, ViewValue],
+    bindings: Bindings,
+    budget: MatchBudget,
+) -> Iterator[Bindings]:
+    for name, value in mapping.items():
+        for with_key in match_value(entry.key, name, bindings, budget):
+            for bound in match_value(entry.value, value, with_key, budget):
+                yield from _match_entries(rest, mapping, bound, budget)
+
+
+def _match_items(
+    items: tuple[Pattern, ...], values: list[ViewValue], taken: frozenset[int], bindings: Bindings, budget: MatchBudget
+) -> Iterator[Bindings]:
+    if not items:
+        yield bindings
+        return
+    for index, value in enumerate(values):
+        if index not in taken:
+            for bound in match_value(items[0], value, bindings, budget):
+                yield from _match_items(items[1:], values, taken | {index}, bound, budget)
+
+
+def _match_term(pattern: MappingPattern, text: str, bindings: Bindings, budget: MatchBudget) -> Iterator[Bindings]:
+    """Match `{Envelope: $t}` against the name of a type."""
+    generic_name = read_generic_name(text)
+    if len(pattern.entries) != 1 or not generic_name.arguments:
+        return
+    entry = pattern.entries[0]
+    arguments = entry.value.items if isinstance(entry.value, ListPattern) else (entry.value,)
+    if len(arguments) != len(generic_name.arguments):
+        return
+    for bound in match_value(entry.key, generic_name.base, bindings, budget):
+        yield from _match_arguments(arguments, generic_name.arguments, bound, budget)
+
+
+def _match_arguments(
+    patterns: tuple[Pattern, ...], names: tuple[str, ...], bindings: Bindings, budget: MatchBudget
+) -> Iterator[Bindings]:
+    if not patterns:
+        yield bindings
+        return
+    for bound in match_value(patterns[0], names[0], bindings, budget):
+        yield from _match_arguments(patterns[1:], names[1:], bound, budget)

@@ -1,0 +1,260 @@
+"""A merged project that passes edit: every value that they write knows what it was made from.
+
+Values that stay keep their spans. A value that is made carries the span of its source, so that a finding about it points
+at a line of the user's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.diagnostics.element_origins import Origin, TreePath
+from archgen.diagnostics.source_span import Span
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    PlainValue,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    copy_node,
+)
+
+PlainData = PlainValue | Mapping[str, "PlainData"] | Sequence["PlainData"]
+
+
+class ProjectTree:
+    """A project's tree, a copy of the one that it is made from, and the origins of what passes wrote into it."""
+
+    def __init__(self, root: MappingNode) -> None:
+        """Take the root of a merged project, which is not changed."""
+        copied_root = copy_node(root, root.span)
+        self.root = copied_root if isinstance(copied_root, MappingNode) else root
+        self.provenance: dict[TreePath, Origin] = {}
+        """What was made, by its path now; what is inside of it was made with it, unless it is named itself."""
+        self.edit_count = 0
+        """How many values were written or dropped."""
+        self.maker = ""
+        """The pass that edits at present."""
+
+    def get(self, path: TreePath) -> YamlNode | None:
+        """Return the value at a path, None where there is none."""
+        node: YamlNode | None = self.root
+        for step in path:
+            if isinstance(node, MappingNode) and isinstance(step, str):
+                node = node.get(step)
+            elif isinstance(node, SequenceNode) and isinstance(step, int) and 0 <= step < len(node.items):
+                node = node.items[step]
+            else:
+                return None
+        return node
+
+    def get_mapping(self, path: TreePath) -> Mapping[str, MappingEntry]:
+        """Return the entries of the mapping at a path, none where there is no mapping. Copy them before edits."""
+        node = self.get(path)
+        return node.entries if isinstance(node, MappingNode) else {}
+
+    def get_text(self, path: TreePath) -> str | None:
+        """Return the text of the scalar at a path, None where nothing is written."""
+        node = self.get(path)
+        return node.text if isinstance(node, ScalarNode) and node.value is not None else None
+
+    def find_place(self, path: TreePath) -> Span:
+        """Return where a value is written: its key, or the value itself in a list; of what is missing, what is around it."""
+        while path:
+            key = path[-1]
+            holder = self.get(path[:-1])
+            if isinstance(holder, MappingNode) and isinstance(key, str) and key in holder.entries:
+                return holder.entries[key].key_span
+            if (node := self.get(path)) is not None:
+                return node.span
+            path = path[:-1]
+        return self.root.span
+
+    def trace(self, path: TreePath) -> Origin:
+        """Return what the value at a path was made from: of what no pass made, itself."""
+        for length in range(len(path), 0, -1):
+            origin = self.provenance.get(path[:length])
+            if origin is not None:
+                if length == len(path) or not origin.is_moved:
+                    return origin
+                return Origin(origin.passes, self.find_place(path), (*origin.path, *path[length:]), is_moved=True)
+        return Origin((), self.find_place(path), path)
+
+    def set(self, path: TreePath, value: YamlNode | PlainData, source: TreePath) -> None:
+        """Write a value, made from what stands at `source`; mappings on the way to it are made. An equal value stays."""
+        node = self.make_node(value, source)
+        present = self.get(path)
+        if present is not None and have_same_content(present, node):
+            return
+        origin = self.make_origin(source)
+        holder, first_made = self._open_mapping(path[:-1], source)
+        key = path[-1]
+        if isinstance(key, int):
+            sequence = self.get(path[:-1])
+            if not isinstance(sequence, SequenceNode):
+                message = f"no list at {path[:-1]}"
+                raise TypeError(message)
+            sequence.items[key] = node
+        else:
+            present_entry = holder.entries.get(key)
+            key_span = present_entry.key_span if present_entry else self.find_place(source)
+            holder.entries[key] = MappingEntry(key, key_span, node)
+        self._forget_below(path)
+        self.provenance[first_made or path] = origin
+        self.edit_count += 1
+
+    def merge(self, path: TreePath, value: YamlNode | PlainData, source: TreePath) -> None:
+        """Write a mapping over the one at a path: mappings key by key, all else replaced."""
+        node = self.make_node(value, source)
+        present = self.get(path)
+        if isinstance(node, MappingNode) and node.entries and isinstance(present, MappingNode):
+            for entry in node:
+                self.merge((*path, entry.key), entry.value, source)
+        else:
+            self.set(path, node, source)
+
+    def append(self, path: TreePath, value: YamlNode | PlainData, source: TreePath) -> None:
+        """Add an item to the list at a path, which is made where there is none; an item that stands there stays alone.
+
+        A scalar in the place of a list is its first item.
+        """
+        item = self.make_node(value, source)
+        present = self.get(path)
+        if not isinstance(present, SequenceNode):
+            is_item = isinstance(present, ScalarNode) and present.value is not None
+            if is_item and present is not None and have_same_content(present, item):
+                return
+            if is_item and present is not None:
+                self._replace(path, SequenceNode([present], present.span))
+            else:
+                self.set(path, SequenceNode([item], item.span), source)
+                return
+            present = self.get(path)
+        if not isinstance(present, SequenceNode) or any(have_same_content(each, item) for each in present.items):
+            return
+        present.items.append(item)
+        self.provenance[*path, len(present.items) - 1] = self.make_origin(source)
+        self.edit_count += 1
+
+    def drop(self, path: TreePath) -> None:
+        """Take a key with its value out, or an item out of a list; what is not there needs nothing."""
+        holder, key = self.get(path[:-1]), path[-1]
+        if isinstance(holder, MappingNode) and isinstance(key, str) and key in holder.entries:
+            del holder.entries[key]
+        elif isinstance(holder, SequenceNode) and isinstance(key, int) and 0 <= key < len(holder.items):
+            del holder.items[key]
+        else:
+            return
+        self._forget_below(path)
+        self.provenance.pop(path, None)
+        if isinstance(key, int):
+            self._shift_items(path[:-1], key)
+        self.edit_count += 1
+
+    def drop_item(self, path: TreePath, text: str) -> None:
+        """Take the item of this text out of the list at a path; a scalar of this text goes with its key."""
+        node = self.get(path)
+        if isinstance(node, SequenceNode):
+            for number in range(len(node.items) - 1, -1, -1):
+                item = node.items[number]
+                if isinstance(item, ScalarNode) and item.text == text:
+                    self.drop((*path, number))
+        elif isinstance(node, ScalarNode) and node.text == text:
+            self.drop(path)
+
+    def mark(self, path: TreePath) -> None:
+        """Say that the pass made what stands at a path from itself: it is there, and follows from what is written."""
+        if path not in self.provenance:
+            self.provenance[path] = self.make_origin(path)
+
+    def make_node(self, value: YamlNode | PlainData, source: TreePath) -> YamlNode:
+        """Return plain data as a tree with the span of what it is made from; a tree stays as it is."""
+        if isinstance(value, (ScalarNode, SequenceNode, MappingNode)):
+            return value
+        source_node = self.get(source)
+        span = source_node.span if isinstance(source_node, ScalarNode) else self.find_place(source)
+        return make_node(value, span)
+
+    def make_origin(self, source: TreePath) -> Origin:
+        """Return the origin of what the pass that edits at present makes from what stands at `source`."""
+        traced = self.trace(source)
+        passes = traced.passes if self.maker in traced.passes[-1:] else (*traced.passes, self.maker)
+        return Origin(passes, traced.at, traced.path)
+
+    def _open_mapping(self, path: TreePath, source: TreePath) -> tuple[MappingNode, TreePath | None]:
+        """Return the mapping at a path, made where there is none, and the path of the outermost one that was made."""
+        node: YamlNode = self.root
+        first_made: TreePath | None = None
+        for length, step in enumerate(path, 1):
+            inner = self.get(path[:length])
+            if inner is None or (isinstance(inner, ScalarNode) and inner.value is None):
+                inner = MappingNode({}, self.find_place(source))
+                if isinstance(node, MappingNode) and isinstance(step, str):
+                    present = node.entries.get(step)
+                    node.entries[step] = MappingEntry(step, present.key_span if present else inner.span, inner)
+                    first_made = first_made or path[:length]
+            node = inner
+        if isinstance(node, SequenceNode):
+            return MappingNode({}, node.span), first_made
+        if not isinstance(node, MappingNode):
+            message = f"no mapping at {path}"
+            raise TypeError(message)
+        return node, first_made
+
+    def _replace(self, path: TreePath, node: YamlNode) -> None:
+        """Put a value in the place of another of the same content: its origin stays."""
+        holder, key = self.get(path[:-1]), path[-1]
+        if isinstance(holder, MappingNode) and isinstance(key, str):
+            holder.entries[key].value = node
+        elif isinstance(holder, SequenceNode) and isinstance(key, int):
+            holder.items[key] = node
+
+    def _forget_below(self, path: TreePath) -> None:
+        length = len(path)
+        for each in [each for each in self.provenance if len(each) > length and each[:length] == path]:
+            del self.provenance[each]
+
+    def _shift_items(self, path: TreePath, dropped: int) -> None:
+        """Move the origins of a list's items behind one that was dropped."""
+        length = len(path)
+        shifted: dict[TreePath, Origin] = {}
+        for each, origin in self.provenance.items():
+            step = each[length] if len(each) > length and each[:length] == path else None
+            is_behind = isinstance(step, int) and step > dropped
+            shifted[(*path, step - 1, *each[length + 1 :]) if is_behind and isinstance(step, int) else each] = origin
+        self.provenance = shifted
+
+
+def make_node(value: PlainData, span: Span) -> YamlNode:
+    """Return plain data as a tree in which everything has one span."""
+    if isinstance(value, Mapping):
+        return MappingNode({key: MappingEntry(key, span, make_node(each, span)) for key, each in value.items()}, span)
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return SequenceNode([make_node(each, span) for each in value], span)
+    text = value if isinstance(value, str) else "" if value is None else str(value).lower()
+    return ScalarNode(value, text, span)
+
+
+def have_same_content(first: YamlNode, second: YamlNode) -> bool:
+    """Whether two trees hold the same, wherever it is written."""
+    if isinstance(first, MappingNode) and isinstance(second, MappingNode):
+        return first.entries.keys() == second.entries.keys() and all(
+            have_same_content(entry.value, second.entries[entry.key].value) for entry in first
+        )
+    if isinstance(first, SequenceNode) and isinstance(second, SequenceNode):
+        return len(first.items) == len(second.items) and all(map(have_same_content, first.items, second.items))
+    if isinstance(first, ScalarNode) and isinstance(second, ScalarNode):
+        return first.text == second.text and (first.value is None) == (second.value is None)
+    return False
+
+
+def list_paths(node: YamlNode, path: TreePath = ()) -> Iterator[tuple[TreePath, YamlNode]]:
+    """Yield every value of a tree with its path, outer ones first."""
+    yield path, node
+    if isinstance(node, MappingNode):
+        for entry in node:
+            yield from list_paths(entry.value, (*path, entry.key))
+    elif isinstance(node, SequenceNode):
+        for number, item in enumerate(node.items):
+            yield from list_paths(item, (*path, number))

@@ -1,0 +1,92 @@
+"""Put a new tree in the place of one that passes edit: what stands elsewhere now is found again, and keeps its origin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.diagnostics.element_origins import Origin, TreePath
+from archgen.diagnostics.source_span import Span
+from archgen.passes.project_tree import ProjectTree
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, copy_node
+
+
+def rebuild_tree(tree: ProjectTree, new_root: MappingNode) -> None:
+    """Make a new root the tree's, made of entries of the old one and of others with their places."""
+    places = _OldPlaces(tree)
+    origins: dict[TreePath, Origin] = {}
+    _trace_mapping(new_root, (), (), places, origins)
+    copied_root = copy_node(new_root, new_root.span)
+    if isinstance(copied_root, MappingNode):
+        tree.root = copied_root
+    tree.provenance = origins
+    tree.edit_count += 1
+
+
+class _OldPlaces:
+    """Where everything stands in the old tree, by identity and, for what was copied since, by place and key."""
+
+    def __init__(self, tree: ProjectTree) -> None:
+        self._tree = tree
+        self._by_identity: dict[int, TreePath] = {}
+        self._by_place: dict[tuple[Span, str], TreePath] = {}
+        for path, entry in _list_entries(tree.root, ()):
+            self._by_identity[id(entry)] = path
+            self._by_identity.setdefault(id(entry.value), path)
+            self._by_place.setdefault((entry.key_span, str(path[-1])), path)
+
+    def find(self, entry: MappingEntry) -> TreePath | None:
+        """Return where an entry, or one made from it, stood."""
+        found = self._by_identity.get(id(entry)) or self._by_identity.get(id(entry.value))
+        # A leaf that is called otherwise now has the place of what it was made from.
+        return found or self._by_place.get((entry.key_span, entry.key.rpartition(".")[2]))
+
+    def make_origin(self, old_path: TreePath) -> Origin:
+        """Return the origin of what was moved by the pass that edits at present."""
+        origin = self._tree.make_origin(old_path)
+        traced = self._tree.trace(old_path)
+        return origin._replace(is_moved=not traced.passes or traced.is_moved)
+
+    def trace(self, old_path: TreePath) -> Origin:
+        """Return the origin of a value as it was before."""
+        return self._tree.trace(old_path)
+
+    def find_origin(self, old_path: TreePath) -> Origin | None:
+        """Return the origin that is written down of a value itself."""
+        return self._tree.provenance.get(old_path)
+
+    def find_item_origins(self, old_path: TreePath) -> Iterator[tuple[TreePath, Origin]]:
+        """Yield the origins inside of a list, by the rest of their paths."""
+        for path, origin in self._tree.provenance.items():
+            if len(path) > len(old_path) and path[: len(old_path)] == old_path:
+                yield path[len(old_path) :], origin
+
+
+def _list_entries(node: YamlNode, path: TreePath) -> Iterator[tuple[TreePath, MappingEntry]]:
+    if isinstance(node, MappingNode):
+        for entry in node:
+            inner_path = (*path, entry.key)
+            yield inner_path, entry
+            yield from _list_entries(entry.value, inner_path)
+    elif isinstance(node, SequenceNode):
+        for number, item in enumerate(node.items):
+            yield from _list_entries(item, (*path, number))
+
+
+def _trace_mapping(
+    node: MappingNode, path: TreePath, old_path: TreePath, places: _OldPlaces, origins: dict[TreePath, Origin]
+) -> None:
+    """Write down the origins of what stands in a mapping; `old_path` is where the mapping is taken to have stood."""
+    for entry in node:
+        inner_path, expected_path = (*path, entry.key), (*old_path, entry.key)
+        found_path = places.find(entry)
+        if found_path is not None and found_path != expected_path:
+            is_unmoved = found_path == inner_path
+            origins[inner_path] = places.trace(found_path) if is_unmoved else places.make_origin(found_path)
+        elif found_path is not None and (own_origin := places.find_origin(found_path)) is not None:
+            origins[inner_path] = own_origin
+        now_expected = found_path or expected_path
+        if isinstance(entry.value, MappingNode):
+            _trace_mapping(entry.value, inner_path, now_expected, places, origins)
+        elif isinstance(entry.value, (SequenceNode, ScalarNode)) and found_path is not None:
+            for rest, origin in places.find_item_origins(found_path):
+                origins[*inner_path, *rest] = origin

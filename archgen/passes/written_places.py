@@ -1,0 +1,85 @@
+"""Where in a tree the components stand that its instances are made from: in groups, in component types, in what is laid over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from archgen.compose.type_expressions import parse_type_expression
+from archgen.compose.type_table import list_generic_names
+from archgen.diagnostics.element_origins import TreePath
+from archgen.passes.project_tree import ProjectTree
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+MAX_DEPTH = 60
+"""So deep components are followed, as deep as they are written out."""
+
+
+class Holder(NamedTuple):
+    """What holds components: a group, a component type or a composed component, by its path."""
+
+    path: TreePath
+    entry: MappingEntry
+
+
+def list_holders(tree: ProjectTree) -> Iterator[Holder]:
+    """Yield all groups, component types and components, outer ones first; those of libraries last."""
+    yield from _list_section(tree, ("groups",))
+    yield from list_typed_holders(tree)
+
+
+def list_typed_holders(tree: ProjectTree) -> Iterator[Holder]:
+    """Yield all component types with what stands in them, those of libraries last."""
+    for path in list_type_sections(tree):
+        yield from _list_section(tree, path)
+
+
+def list_type_sections(tree: ProjectTree) -> list[TreePath]:
+    """Return the paths of the mappings that hold component types: the project's own, then those of its libraries."""
+    libraries = tree.get_mapping(("libraries",))
+    return [("component_types",), *(("libraries", name, "component_types") for name in libraries)]
+
+
+def find_type(tree: ProjectTree, name: str) -> TreePath | None:
+    """Return the path of a component type by the name under which the project knows it, None where there is none."""
+    library, dot, inner = name.partition(".")
+    path: TreePath = ("libraries", library, "component_types", inner) if dot else ("component_types", name)
+    return path if tree.get(path) is not None else None
+
+
+def find_type_of(tree: ProjectTree, path: TreePath) -> TreePath | None:
+    """Return the path of the type that a component, or a component type, at a path names; None where it names none."""
+    for key in ("same_as", "is"):
+        text = tree.get_text((*path, key))
+        expression = parse_type_expression(text) if text else None
+        if expression is not None:
+            # Types of a library see only one another.
+            prefix = f"{path[1]}." if path[0] == "libraries" else ""
+            return find_type(tree, prefix + expression.name)
+    return None
+
+
+def name_probe_type(path: TreePath, entry: MappingEntry) -> str:
+    """Return the name of the component type at a path as an instance of it writes it, generic names for themselves."""
+    name = f"{path[1]}.{entry.key}" if path[0] == "libraries" else entry.key
+    generic_names = list_generic_names(entry)
+    return f"{name}<{', '.join(generic_names)}>" if generic_names else name
+
+
+def _list_section(tree: ProjectTree, path: TreePath) -> Iterator[Holder]:
+    section = tree.get(path)
+    for entry in list(section) if isinstance(section, MappingNode) else ():
+        yield from _list_inside(Holder((*path, entry.key), entry))
+
+
+def _list_inside(holder: Holder) -> Iterator[Holder]:
+    yield holder
+    components = holder.entry.value.get("components") if isinstance(holder.entry.value, MappingNode) else None
+    if isinstance(components, MappingNode) and len(holder.path) < 2 * MAX_DEPTH:
+        for part in list(components):
+            yield from _list_inside(Holder((*holder.path, "components", part.key), part))
+
+
+def is_written(node: object) -> bool:
+    """Whether a node says something: an empty key does not."""
+    return node is not None and not (isinstance(node, ScalarNode) and node.value is None)

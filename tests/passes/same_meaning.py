@@ -1,0 +1,56 @@
+"""What must be equal of a project and of what passes made of it where they change only how it is written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from archgen.pipeline import CheckedProject, check_project, transform_project
+from archgen.syntax.yaml_writer import write_yaml
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+def write_project(folder: Path, text: str) -> CheckedProject:
+    """Write a project of one file and check it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "archgen.yaml").write_text(text, encoding="utf-8")
+    return check_project(folder)
+
+
+def list_findings(checked: CheckedProject) -> list[tuple[str, str, str]]:
+    """Return the findings with their places."""
+    return sorted((each.rule, each.message, str(each.span)) for each in checked.findings)
+
+
+def pack(checked: CheckedProject) -> str:
+    """Return a packed project."""
+    packed = checked.pack_project()
+    return write_yaml(packed.data, packed.comments)
+
+
+def transform_alike(checked: CheckedProject, *names: str) -> CheckedProject:
+    """Return what passes make of a project, which means the same, and of which they make the same again."""
+    transformed = transform_project(checked, names)
+    before, after = checked.architecture, transformed.architecture
+    assert after.edges == before.edges
+    assert list_findings(transformed) == list_findings(checked)
+    assert after.nodes == before.nodes
+    assert after.topics.keys() == before.topics.keys()
+    assert repr(transformed.analysis) == repr(checked.analysis)
+    assert pack(transform_project(transformed, names)) == pack(transformed)
+    return transformed
+
+
+def check_packed(transformed: CheckedProject, folder: Path) -> CheckedProject:
+    """Return what passes made, packed and read again: it is a project of its own that says and packs the same."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text = pack(transformed)
+    file = folder / "packed.yaml"
+    file.write_text(text, encoding="utf-8")
+    again = check_project(file)
+    assert again.architecture.edges == transformed.architecture.edges
+    assert sorted((each.rule, each.message) for each in again.findings) == sorted(
+        (each.rule, each.message) for each in transformed.findings
+    )
+    assert pack(again) == text
+    return again
