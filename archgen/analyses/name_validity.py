@@ -116,7 +116,7 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
                 names.append((use.own_name, use.at))
             yield from _find_invalid_names(node, kind, names, ros_1=ros_1)
         remapped = [(name, node.at) for pair in node.remaps.items() for name in pair]
-        yield from _find_invalid_names(node, "what `remaps` names", remapped, ros_1=ros_1)
+        yield from _find_invalid_names(node, "a topic in `remaps`", remapped, ros_1=ros_1)
     for container in architecture.containers.values():
         yield from _judge_container(container, ros_1=ros_1)
 

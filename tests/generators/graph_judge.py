@@ -39,7 +39,7 @@ def main() -> None:
     rclpy.init()
     judge = Node("archgen_judge", enable_rosout=False, start_parameter_services=False)
     end = time.monotonic() + WAITING_SECONDS
-    last: object = None
+    last: dict[str, dict[str, list[list[str]]]] | None = None
     while time.monotonic() < end:
         time.sleep(1)
         nodes = {f"{namespace.rstrip('/')}/{name}" for name, namespace in judge.get_node_names_and_namespaces()}

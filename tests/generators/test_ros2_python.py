@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -77,7 +78,7 @@ def generate(folder: Path, text: str, workspace: Path, status: int = 0) -> str:
     return (done.stdout + done.stderr).decode()
 
 
-def make_programs(folder: Path, text: str) -> tuple[dict[str, dict[str, object]], list[str]]:
+def make_programs(folder: Path, text: str) -> tuple[dict[str, dict[str, Any]], list[str]]:
     """Return the view by executable, and what was left out."""
     folder.mkdir(exist_ok=True)
     (folder / "archgen.yaml").write_text(text, encoding="utf-8")
@@ -90,13 +91,13 @@ def test_instances_of_one_type_are_one_program(tmp_path: Path) -> None:
     assert left_out == []
     assert list(programs) == ["cam", "det", "motor", "user"]
     motor = programs["motor"]
-    assert [(each["full_name"], each["remaps"]) for each in motor["nodes"]] == [  # type: ignore[attr-defined]
+    assert [(each["full_name"], each["remaps"]) for each in motor["nodes"]] == [
         ("/arm/m1", [{"own_name": "state", "name": "/g/m1/state"}]),
         ("/arm/m2", [{"own_name": "state", "name": "/g/m2/state"}]),
     ] or motor["nodes"]
-    (target,) = motor["subscriptions"]  # type: ignore[misc]
+    (target,) = motor["subscriptions"]
     assert (target["key"], target["topics"]) == ("target", {"m1": "/perception/found", "m2": "/perception/found"})
-    (joint,) = motor["parameters"]  # type: ignore[misc]
+    (joint,) = motor["parameters"]
     assert (joint["name"], joint["type"], joint["default"]) == ("joint", "string", None)
 
 
@@ -173,7 +174,7 @@ def test_no_text_breaks_out(text: str, tmp_path: Path) -> None:
             }
         },
         "types": {"T": {"message": "std_msgs/msg/String", "comment": text}},
-        "nodes": {"a": {"implements": "a", "publishes": {"o": {"topic": "/o", "own_name": text}}, "title": text}},
+        "nodes": {"a": {"implements": "a", "publishes": {"o": {"topic": "/o"}}, "title": text}},
     }
     generate(tmp_path / "p", yaml.safe_dump(project, allow_unicode=True), tmp_path / "w")
     files = list((tmp_path / "w").rglob("*.py"))
@@ -210,7 +211,7 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
     expected: dict[str, dict[str, set[tuple[str, str]]]] = {}
     try:
         for program in programs.values():
-            for node in program["nodes"]:  # type: ignore[attr-defined]
+            for node in program["nodes"]:
                 words = ["-r", f"__node:={node['name']}", "-r", f"__ns:={node['namespace']}"]
                 for remap in node["remaps"]:
                     words += ["-r", f"{remap['own_name']}:={remap['name']}"]
@@ -237,17 +238,17 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
     assert observed["qualities"]["/camera/image"] == [["cam", "BEST_EFFORT", "VOLATILE"]]
 
 
-def list_expected(program: dict[str, object], node_id: str) -> dict[str, set[tuple[str, str]]]:
+def list_expected(program: dict[str, Any], node_id: str) -> dict[str, set[tuple[str, str]]]:
     """Return what a node has in the model. One that waits to be configured has nothing yet."""
     uses = {"publishes": "publishers", "subscribes": "subscriptions", "serves": "services", "calls": "clients"}
     sections = {
         use: set[tuple[str, str]]()
         if program["is_lifecycle"]
-        else {(port["topics"][node_id], port["message"]) for port in program[section]}  # type: ignore[attr-defined]
+        else {(port["topics"][node_id], port["message"]) for port in program[section]}
         for use, section in uses.items()
     }
     if not program["is_lifecycle"]:
-        for port in program["action_clients"]:  # type: ignore[attr-defined]
+        for port in program["action_clients"]:
             name, message = port["topics"][node_id], port["message"]
             sections["subscribes"] |= {
                 (f"{name}/_action/feedback", f"{message}_FeedbackMessage"),

@@ -18,7 +18,27 @@ from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports
 
 _NANOSECONDS = 10**9
 _IMPORTED_CLASSES = frozenset(
-    ["ActionClient", "ActionServer", "Duration", "DurabilityPolicy", "ExternalShutdownException", "FloatingPointRange", "HistoryPolicy", "IntegerRange", "LifecycleNode", "LivelinessPolicy", "MultiThreadedExecutor", "Node", "Parameter", "ParameterDescriptor", "QoSProfile", "ReentrantCallbackGroup", "ReliabilityPolicy", "SetParametersResult", "TransitionCallbackReturn"]
+    [
+        "ActionClient",
+        "ActionServer",
+        "Duration",
+        "DurabilityPolicy",
+        "ExternalShutdownException",
+        "FloatingPointRange",
+        "HistoryPolicy",
+        "IntegerRange",
+        "LifecycleNode",
+        "LivelinessPolicy",
+        "MultiThreadedExecutor",
+        "Node",
+        "Parameter",
+        "ParameterDescriptor",
+        "QoSProfile",
+        "ReentrantCallbackGroup",
+        "ReliabilityPolicy",
+        "SetParametersResult",
+        "TransitionCallbackReturn",
+    ]
 )
 """What the modules of nodes import of rclpy: a message of this name is imported under another one."""
 
