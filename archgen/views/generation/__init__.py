@@ -17,6 +17,12 @@ def _make_interfaces(context: GenerationContext) -> GeneratedView:
     return interface_packages.make_view(context)
 
 
+def _make_plan(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import start_plan_view
+
+    return start_plan_view.make_view(context)
+
+
 def _make_programs(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import node_programs
 
@@ -25,6 +31,7 @@ def _make_programs(context: GenerationContext) -> GeneratedView:
 
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
+    "plan": _make_plan,
     "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
