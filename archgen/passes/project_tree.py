@@ -100,7 +100,8 @@ class ProjectTree:
             present_entry = holder.entries.get(key)
             key_span = present_entry.key_span if present_entry else self.find_place(source)
             holder.entries[key] = MappingEntry(key, key_span, node)
-        self._forget_below(path)
+        if isinstance(present, (MappingNode, SequenceNode)):
+            self._forget_below(path)
         self.provenance[first_made or path] = origin
         self.edit_count += 1
 

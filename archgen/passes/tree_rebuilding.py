@@ -27,6 +27,7 @@ class _OldPlaces:
 
     def __init__(self, tree: ProjectTree) -> None:
         self._tree = tree
+        self._item_origins = _index_items(tree.provenance)
         self._by_identity: dict[int, TreePath] = {}
         self._by_place: dict[tuple[Span, str], TreePath] = {}
         self._components_by_place: dict[Span, TreePath] = {}
@@ -62,11 +63,19 @@ class _OldPlaces:
         """Return the origin that is written down of a value itself."""
         return self._tree.provenance.get(old_path)
 
-    def find_item_origins(self, old_path: TreePath) -> Iterator[tuple[TreePath, Origin]]:
-        """Yield the origins inside of a list, by the rest of their paths."""
-        for path, origin in self._tree.provenance.items():
-            if len(path) > len(old_path) and path[: len(old_path)] == old_path:
-                yield path[len(old_path) :], origin
+    def find_item_origins(self, old_path: TreePath) -> list[tuple[TreePath, Origin]]:
+        """Return the origins inside of a list, by the rest of their paths."""
+        return self._item_origins.get(old_path, [])
+
+
+def _index_items(provenance: dict[TreePath, Origin]) -> dict[TreePath, list[tuple[TreePath, Origin]]]:
+    """Return the origins inside of lists by the path of the outermost list, with the rest of their paths."""
+    indexed: dict[TreePath, list[tuple[TreePath, Origin]]] = {}
+    for path, origin in provenance.items():
+        length = next((number for number, step in enumerate(path) if isinstance(step, int)), len(path))
+        if length < len(path):
+            indexed.setdefault(path[:length], []).append((path[length:], origin))
+    return indexed
 
 
 def _list_entries(node: YamlNode, path: TreePath) -> Iterator[tuple[TreePath, MappingEntry]]:
