@@ -17,7 +17,14 @@ def _make_interfaces(context: GenerationContext) -> GeneratedView:
     return interface_packages.make_view(context)
 
 
+def _make_plan(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import start_plan_view
+
+    return start_plan_view.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
+    "plan": _make_plan,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
