@@ -21,6 +21,7 @@ from archgen.products.backend_products import choose_backends, make_backend_view
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.product_writing import refuse_leaving_links
+from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
 
@@ -93,8 +94,8 @@ def _run_passes(
     for name in backend.passes:
         # A backend that is trusted may name a pass that is not.
         if name in known_passes.own_files and options.trusted_revision is not None:
-            msg = f"the backend `{backend.id}` has the project's own pass `{name}` run, which is not done here"
-            raise OutputError(msg, "run it without `--trust`, on a branch that you trust")
+            files = checked_project.loaded_project.files
+            refuse_untrusted_pass(name, known_passes.own_files[name], files, options.trusted_revision)
     try:
         transformed_project = transform_project(checked_project, backend.passes, known_passes.passes)
     except UnknownPassError as error:
