@@ -11,6 +11,8 @@ import math
 import re
 from collections.abc import Callable, Mapping
 
+from markupsafe import Markup
+
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
 
 _PLAIN_SHELL_WORD = re.compile(r"[A-Za-z0-9_@%+=:,./-]+\Z", re.ASCII)
@@ -145,6 +147,7 @@ CODE_FILTERS: Mapping[str, Callable[[object], str]] = {
     "ros_name": lambda value: make_ros_name(_print_text(value)),
     "shell_word": write_shell_word,
     "snake": lambda value: make_snake_name(_print_text(value)),
-    "xml": write_xml,
+    # Templates of XML escape what is no Markup.
+    "xml": lambda value: Markup(write_xml(value)),  # noqa: S704 - it is escaped
     "yaml_scalar": write_yaml_scalar,
 }
