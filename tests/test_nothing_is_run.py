@@ -83,7 +83,9 @@ def test_no_verb_runs_a_command_of_a_project(hostile_project: Path, tmp_path: Pa
         ["list", "--of", "start_up"],
         ["show", "b"],
         ["pack", "-o", "packed.yaml"],
+        ["transform", "monitor", "flatten", "-o", "flat.yaml", "--keep-going"],
         ["build", "-o", "out", "--keep-going"],
+        ["generate", "start", "-o", "robot", "--keep-going"],
     ):
         result = subprocess.run(  # noqa: S603 - our own program
             [sys.executable, str(script), str(journal), *words],
@@ -95,6 +97,7 @@ def test_no_verb_runs_a_command_of_a_project(hostile_project: Path, tmp_path: Pa
         )
         assert "Traceback" not in result.stderr, result.stderr
     assert (hostile_project / "out" / "site" / "start_up.html").is_file()
+    assert (hostile_project / "robot" / "start.sh").is_file()
     started = [line for line in journal.read_text(encoding="utf-8").splitlines() if line]
     assert started, "the journal sees what is started: git and Graphviz at least"
     assert {line.split()[0] for line in started} <= {"git", "dot", Path(sys.executable).name}

@@ -138,7 +138,7 @@ def test_a_name_that_is_no_backend(
 
 def test_a_name_that_no_backend_of_a_workspace_has(run: Run, first: Path) -> None:
     ran = run("generate", "zzz", "-C", first, "-o", first.parent / "workspace")
-    assert ran.err == ("Error: there is no text backend `zzz`; there are orca, ros_interfaces\n")
+    assert ran.err == ("Error: there is no text backend `zzz`; there are orca, ros2_python, ros_interfaces, start\n")
 
 
 def test_a_backend_cannot_be_called_as_an_output(run: Run, robot: Path, tmp_path: Path) -> None:
@@ -190,8 +190,10 @@ id              title                      makes      emitter  view             
 orca            Configurations of Orca     workspace  text     components                shipped
 report          Word report                documents  docx     outline                   shipped
 reqif           Requirements as ReqIF      file       reqif    record                    shipped
+ros2_python     ROS 2 packages in Python   workspace  text     programs                  shipped
 ros_interfaces  Interface packages of ROS  workspace  text     interfaces                shipped
 site            Static site                documents  site     pages                     shipped
+start           Start-up                   workspace  text     plan                      shipped
 wiki            Wiki pages                 documents  text     pages, graphs, sequences  shipped
 code            The code                   workspace  text     graphs                    own
 pages           The pages                  documents  text     record                    own

@@ -23,8 +23,22 @@ def _make_components(context: GenerationContext) -> GeneratedView:
     return component_records.make_view(context)
 
 
+def _make_plan(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import start_plan_view
+
+    return start_plan_view.make_view(context)
+
+
+def _make_programs(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import node_programs
+
+    return node_programs.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "components": _make_components,
+    "plan": _make_plan,
+    "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
