@@ -9,9 +9,9 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GenerationContext
+from archgen.views.generation.start_hints import find_wrong_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_plan_view import make_view
-from archgen.views.generation.start_step_record import read_hint
 
 PROJECT = """\
 groups:
@@ -150,13 +150,29 @@ def test_jobs_wait_for_what_shows_that_something_is_up(tmp_path: Path) -> None:
     assert list_seen_signs(robot["steps"][0]) == robot["steps"][0]["seen_signs"]
 
 
-@pytest.mark.parametrize("hints", ["{start: 3}", "{start: {image: [x]}}", "{other: {image: x}}"])
-def test_hints_of_another_kind_say_nothing(tmp_path: Path, hints: str) -> None:
+@pytest.mark.parametrize(
+    ("hints", "found"),
+    [
+        ("{start: 3}", "the hints of `a` for `start` are no mapping"),
+        ("{start: {image: [x]}}", "the hint `image` of `a` for `start` is no text"),
+        ("{start: {adress: x}}", "nobody reads the hint `adress` of `a` for `start`"),
+        ("{other: {image: x}}", ""),
+    ],
+)
+def test_hints_of_another_kind_say_nothing(tmp_path: Path, hints: str, found: str) -> None:
     path = tmp_path / "p.yaml"
     path.write_text(
         f"archgen: 1\nproject: {{id: bot, title: Bot}}\nhosts: {{a: {{hints: {hints}}}}}\n", encoding="utf-8"
     )
-    assert read_hint(check_project(path).architecture.hosts["a"].annotations, "image") == ""
+    architecture = check_project(path).architecture
+    assert read_hint(architecture.hosts["a"].annotations, "image") == ""
+    findings = list(find_wrong_hints(architecture))
+    assert "".join(each.message for each in findings) == found
+    assert [(each.span.line, each.help) for each in findings] in (
+        [],
+        [(3, "did you mean `address`?")],
+        [(3, "what is known here is `address` and `image`, each a text")],
+    )
 
 
 def test_a_project_without_nodes_starts_nothing(tmp_path: Path) -> None:
