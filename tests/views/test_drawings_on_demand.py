@@ -12,8 +12,9 @@ import pytest
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
+from archgen.views.agreement.partner_exchanges import gather_exchanges
 from archgen.views.drawings_on_demand import DrawingsOnDemand
-from archgen.views.pages import site_pages
+from archgen.views.pages import partner_pages, site_pages
 from archgen.views.pages.report_outline import DetailLevel
 from archgen.views.pages.single_page import make_page
 
@@ -49,8 +50,11 @@ def test_what_no_project_draws_is_not_there(level: DetailLevel) -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_each_page_is_the_one_of_the_whole_site(level: DetailLevel) -> None:
+def test_each_page_is_the_one_of_the_whole_site(level: DetailLevel, monkeypatch: pytest.MonkeyPatch) -> None:
     views = project_views.make_views(_check("example_ramcip"), OutputOptions(level=level, show_history=False))
+    exchanges = gather_exchanges(views.lookup)
+    # Else they would be gathered again for each of the hundred pages on partners.
+    monkeypatch.setattr(partner_pages, "gather_exchanges", lambda _lookup: exchanges)
     pages = site_pages.make_pages(views.lookup, views.edition)
     edition = replace(views.edition, drawings=DrawingsOnDemand(views.lookup, level))
     for page in pages:

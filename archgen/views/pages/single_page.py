@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 
 from archgen.views.changes.site_changes import mark_page
@@ -64,20 +64,27 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
                 start_page,
                 _UntimedPageMaker(lookup, page_maker.edition).spanning_pages() if kind == "page" else (),
                 page_maker.component_pages().list_type_pages() if kind in {"page", "component_type"} else (),
-                _make_surrounding_pages(page_maker),
+                _make_surrounding_pages(page_maker, kind),
             )
 
 
-def _make_surrounding_pages(page_maker: PageMaker) -> Iterator[Page]:
-    """Make the pages on what stands around the elements, one kind after the other."""
+def _make_surrounding_pages(page_maker: PageMaker, kind: str) -> Iterator[Page]:
+    """Make the pages on what stands around the elements, one kind after the other, first those where the kind is at home."""
     lookup, edition = page_maker.lookup, page_maker.edition
-    yield from context_pages.make_context_pages(lookup, page_maker.keep_drawn)
-    yield from host_pages.make_host_pages(lookup, page_maker.keep_drawn)
-    yield from requirement_pages.make_requirement_pages(lookup)
-    yield from page_maker.variant_pages()
-    yield from matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation")
-    yield from page_maker.message_pages().make_pages()
-    yield from partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags)
+    makers: tuple[tuple[tuple[str, ...], Callable[[], Iterable[Page]]], ...] = (
+        ((), lambda: context_pages.make_context_pages(lookup, page_maker.keep_drawn)),
+        (("host",), lambda: host_pages.make_host_pages(lookup, page_maker.keep_drawn)),
+        (("requirement",), lambda: requirement_pages.make_requirement_pages(lookup)),
+        (("variant",), page_maker.variant_pages),
+        ((), lambda: matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation")),
+        (("message",), lambda: page_maker.message_pages().make_pages()),
+        (
+            ("partner", "pair", "interface"),
+            lambda: partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags),
+        ),
+    )
+    for _, make_pages in sorted(makers, key=lambda each: kind not in each[0]):
+        yield from make_pages()
 
 
 class _UntimedPageMaker(PageMaker):

@@ -81,6 +81,7 @@ def visit(browser: Browser, folder: Path) -> Iterator[OpenPage]:
     def opened(path: str, width: int = 1280, scheme: str = "light", root: Path | None = None) -> Page:
         context = browser.new_context(viewport={"width": width, "height": 800}, color_scheme=scheme)  # type: ignore[arg-type]
         page = context.new_page()
+        page.set_default_timeout(120_000)
         page.route("**/*", judge)
         page.on("console", lambda message: wrong.append(message.text))
         page.on("pageerror", lambda error: wrong.append(str(error)))

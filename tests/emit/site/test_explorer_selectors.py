@@ -126,6 +126,7 @@ def open_explorer(
     )
     write_tree(tree, folder)
     page = browser.new_page()
+    page.set_default_timeout(120_000)
     page.goto(f"file://{folder}/explorer.html")
     return page
 

@@ -50,6 +50,7 @@ def test_the_policy_refuses_all_but_the_sites_own_files() -> None:
 def test_a_browser_refuses_nothing_on_any_kind_of_page_from_the_disk(browser: Browser, example: Path) -> None:
     messages: list[str] = []
     page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+    page.set_default_timeout(120_000)
     page.on("console", lambda message: messages.append(f"{page.url}: {message.text}"))
     page.on("pageerror", lambda error: messages.append(f"{page.url}: {error}"))
     for path in choose_pages(example):
@@ -72,6 +73,7 @@ def test_a_script_in_a_page_would_not_run(browser: Browser, example: Path, tmp_p
         encoding="utf-8",
     )
     page = browser.new_page()
+    page.set_default_timeout(120_000)
     page.goto(f"file://{tmp_path}/x.html")
     assert page.title() != "taken"
     assert page.title() != "1"
@@ -91,6 +93,7 @@ def test_a_place_without_a_repository_can_be_copied(browser: Browser, example: P
     context = browser.new_context()
     context.grant_permissions(["clipboard-read", "clipboard-write"])
     page = context.new_page()
+    page.set_default_timeout(120_000)
     page.goto(f"file://{example}/components/cognitive_reasoning.situation_assessment.html")
     page.get_by_role("button", name="Copy groups/cognitive_reasoning.yaml:11").click()
     page.get_by_text("Copied").wait_for()
@@ -100,6 +103,7 @@ def test_a_place_without_a_repository_can_be_copied(browser: Browser, example: P
 
 def test_on_paper_there_is_neither_bar_nor_button(browser: Browser, example: Path) -> None:
     page = browser.new_page()
+    page.set_default_timeout(120_000)
     for path in (
         "matrix.html",
         "components/cognitive_reasoning.situation_assessment.html",
@@ -124,6 +128,7 @@ def test_a_browser_refuses_nothing_of_a_page_that_stands_by_itself(browser: Brow
     (tmp_path / "x.html").write_text(text, encoding="utf-8")
     messages: list[str] = []
     page = browser.new_page()
+    page.set_default_timeout(120_000)
     page.on("console", lambda message: messages.append(message.text))
     page.goto(f"file://{tmp_path}/x.html")
     assert messages == []

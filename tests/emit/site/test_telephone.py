@@ -20,6 +20,7 @@ WIDE = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scro
 def page(browser: Browser) -> Iterator[BrowserPage]:
     """Open a page as wide as a telephone."""
     opened = browser.new_context(viewport={"width": 390, "height": 844}).new_page()
+    opened.set_default_timeout(120_000)
     yield opened
     opened.context.close()
 
