@@ -121,11 +121,12 @@ def write_product_file(checked_project: CheckedProject, target: Path, content: b
 
 
 def _is_read_by_project(checked_project: CheckedProject, file: Path) -> bool:
-    """Whether a file is an input of the project, a picture of its chapters, or part of a backend of its own."""
+    """Whether a file is an input of the project, a picture of its chapters, or part of a backend or pass of its own."""
     root = checked_project.root
     inputs = (*checked_project.input_files, *checked_project.chapters.list_picture_paths())
-    return any(_is_same_file(file, root / name) for name in inputs) or file.resolve().is_relative_to(
-        (root / "backends").resolve()
+    own_folders = [(root / name).resolve() for name in ("backends", "passes")]
+    return any(_is_same_file(file, root / name) for name in inputs) or any(
+        map(file.resolve().is_relative_to, own_folders)
     )
 
 

@@ -24,9 +24,16 @@ def _make_plan(context: GenerationContext) -> GeneratedView:
     return start_plan_view.make_view(context)
 
 
+def _make_programs(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import node_programs
+
+    return node_programs.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "plan": _make_plan,
+    "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
 
