@@ -29,7 +29,6 @@ def _check_files(folder: Path) -> None:
     for path, data in contents(folder).items():
         text = data.decode()
         assert str(folder) not in text
-        assert "\r" not in text
         if path.endswith(".py"):
             ast.parse(text, path)
         elif path.endswith((".xml", ".launch", ".xacro")):
