@@ -32,4 +32,5 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "missing-file": ("warning", False),
         "missing-verification": ("warning", False),
         "missing-parameter-file": ("off", False),
+        "wrong-hint": ("error", False),
     }
