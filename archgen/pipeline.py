@@ -46,7 +46,7 @@ from archgen.link import (
 )
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.interface_sources import TypeMessages
-from archgen.link.project_packing import PackedAttachments, PackedProject, pack_project
+from archgen.link.project_packing import PackedAttachments, PackedProject, has_packed_path, pack_project
 from archgen.link.project_types import declare_project_types
 from archgen.link.report_chapters import ReportChapters
 from archgen.link.variants import variant_order
@@ -171,7 +171,7 @@ class CheckedProject:
         silenced_findings = dict.fromkeys(
             finding for each in (self, *judged_variants) for finding in each.silenced_findings
         )
-        return pack_project(
+        packed_project = pack_project(
             self.merged_table,
             self.architecture,
             ignores,
@@ -179,6 +179,26 @@ class CheckedProject:
             tuple(silenced_findings),
             [each.architecture for each in judged_variants],
         )
+        _add_origin_comments(packed_project, self)
+        return packed_project
+
+
+def _add_origin_comments(packed_project: PackedProject, checked_project: CheckedProject) -> None:
+    """Say at the elements of a project that passes made, now or before, what each was made from."""
+    transformed, architecture = checked_project.transformed, checked_project.architecture
+    if transformed is None and not architecture.made_elements:
+        return
+    from archgen.passes import origin_comments
+
+    comments = (
+        origin_comments.list_origin_comments(transformed.root, transformed.provenance, architecture.made_elements)
+        if transformed
+        else origin_comments.keep_origin_comments(checked_project.merged_table, architecture.made_elements)
+    )
+    ignores = packed_project.comments
+    for path, comment in comments.items():
+        if has_packed_path(packed_project.data, path):
+            packed_project.comments[path] = f"{comment}  # {ignores[path]}" if path in ignores else comment
 
 
 class VersionCache:
@@ -267,7 +287,26 @@ def judge_project(
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
-    return _judge_in_variants(_merge_project(loaded_project), analysis_memory or AnalysisMemory(), variant_names)
+    checked_project = _judge_in_variants(
+        _merge_project(loaded_project), analysis_memory or AnalysisMemory(), variant_names
+    )
+    return _read_origins(checked_project)
+
+
+def _read_origins(checked_project: CheckedProject) -> CheckedProject:
+    """Return a project with what its comments say of passes that made it: at its elements and in its findings."""
+    sources = checked_project.sources
+    texts = (sources.text_of(file) or "" for file in sources.file_names())
+    if not any("# archgen: made[" in text or "# archgen: from " in text for text in texts):
+        return checked_project
+    from archgen.passes import origin_comments
+
+    made_elements = origin_comments.read_origin_comments(sources)
+    return replace(
+        checked_project,
+        architecture=replace(checked_project.architecture, made_elements=made_elements),
+        findings=origin_comments.label_findings(checked_project.findings, sources, made_elements, {}),
+    )
 
 
 def _judge_in_variants(
@@ -353,6 +392,7 @@ def transform_project(
         pass_names,
         checked_project.architecture.interfaces,
         known_passes,
+        checked_project.transformed,
     )
     diagnostics = (*_merge_project(checked_project.loaded_project).diagnostics, *transformed.findings)
     reading_errors = tuple(_list_structural_errors(checked_project.loaded_project.diagnostics))
@@ -361,7 +401,20 @@ def transform_project(
         checked_project.loaded_project, transformed.root, diagnostics, reading_errors, damaged_elements
     )
     judged_project = _judge_in_variants(merged_project, analysis_memory or AnalysisMemory(), None)
-    return replace(judged_project, transformed=transformed, steps=checked_project.steps)
+    from archgen.passes import origin_comments
+
+    made_elements = {
+        **checked_project.architecture.made_elements,
+        **origin_comments.index_origins(transformed.root, transformed.provenance),
+    }
+    made_places = origin_comments.list_made_places(transformed.root, transformed.provenance)
+    return replace(
+        judged_project,
+        architecture=replace(judged_project.architecture, made_elements=made_elements),
+        findings=origin_comments.label_findings(judged_project.findings, judged_project.sources, {}, made_places),
+        transformed=transformed,
+        steps=checked_project.steps,
+    )
 
 
 def keep_variant_findings(checked_project: CheckedProject, names: Sequence[str]) -> CheckedProject:

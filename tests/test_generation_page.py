@@ -42,7 +42,7 @@ def test_the_generator_of_the_page(run: Run, robot: Path) -> None:
     assert stub == (
         "# Made by archgen from Grip (archgen.yaml:4:3).\n"
         "class Grip:\n"
-        '    comment = "How \\"wide\\"\\nit is"\n\n'
+        "    comment = 'How \"wide\"\\nit is'\n\n"
         "    def __init__(self):\n"
         "        self.width = None  # float64\n"
         "        self.pose = None  # geometry_msgs/Pose\n"

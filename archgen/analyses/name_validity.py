@@ -11,7 +11,7 @@ from archgen.model.port_media import uses_ros
 from archgen.model.ros_distro import is_ros_1
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from archgen.model.architecture import Architecture
     from archgen.model.deployment import Container
@@ -111,12 +111,23 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
             kind = "a topic" if use.use in {"publishes", "subscribes"} else "a service or action"
             # Only the linker fills in `topic_places`, one span for each topic.
             spans = use.topic_places or (use.at,) * len(use.topics)
-            for topic, span in zip(use.topics, spans, strict=True):
-                fault = "it is only a `/`" if topic == "/" else find_name_fault(topic, ros_1=ros_1)
-                if fault:
-                    yield _report_invalid_name(node, kind, topic, span, fault)
+            names = list(zip(use.topics, spans, strict=True))
+            if use.own_name is not None:
+                names.append((use.own_name, use.at))
+            yield from _find_invalid_names(node, kind, names, ros_1=ros_1)
+        remapped = [(name, node.at) for pair in node.remaps.items() for name in pair]
+        yield from _find_invalid_names(node, "a topic in `remaps`", remapped, ros_1=ros_1)
     for container in architecture.containers.values():
         yield from _judge_container(container, ros_1=ros_1)
+
+
+def _find_invalid_names(
+    node: Node, kind: str, names: Iterable[tuple[str, Span]], *, ros_1: bool
+) -> Iterator[Diagnostic]:
+    for name, span in names:
+        fault = "it is only a `/`" if name == "/" else find_name_fault(name, ros_1=ros_1)
+        if fault:
+            yield _report_invalid_name(node, kind, name, span, fault)
 
 
 def _is_ros_use(architecture: Architecture, use: PortUse) -> bool:

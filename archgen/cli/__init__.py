@@ -14,6 +14,7 @@ VERBS = {
     "serve": "Show the site while its files are edited.",
     "diagram": "Draw the diagrams.",
     "pack": "Write one validated YAML file that holds the whole project.",
+    "transform": "Write the project as passes make it: types written out, hierarchy taken away.",
     "generate": "Make a workspace by a backend of the project.",
     "export": "Make a single file by a backend of the project.",
     "diff": "Compare two revisions, folders or files: what changed, and what it means.",

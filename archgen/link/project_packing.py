@@ -151,6 +151,19 @@ def pack_project(  # noqa: PLR0913, PLR0917 - all that a packed file is made of
     return packed_project
 
 
+def has_packed_path(data: object, path: DataPath) -> bool:
+    """Whether packed data hold something at a path."""
+    for step in path:
+        if isinstance(data, dict) and step in data:
+            data = data[step]
+        elif isinstance(data, list) and isinstance(step, int) and step < len(data):
+            items: list[object] = data
+            data = items[step]
+        else:
+            return False
+    return True
+
+
 def _copy_dict(value: object) -> dict[str, object]:
     return dict(value) if isinstance(value, dict) else {}
 

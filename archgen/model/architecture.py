@@ -14,6 +14,7 @@ from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
 from archgen.model.known_interfaces import Interfaces
+from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
@@ -196,6 +197,8 @@ class Architecture:
     """Where its files are on the web; None where the project does not say."""
     commit_day: str | None = None
     """The day of the newest commit, as YYYY-MM-DD; None where nothing ends on a day, and where git does not say."""
+    made_elements: Mapping[ElementPlace, MadeElement] = field(default_factory=dict, compare=False, repr=False)
+    """What elements that passes made were made from, by the places that they carry."""
     distro: str | None = None
     distro_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     shared_topics: tuple[str, ...] = ()

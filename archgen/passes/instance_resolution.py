@@ -13,7 +13,7 @@ _TYPE_KEYS = frozenset({"is", "same_as"})
 
 def _resolve_instances(work: PassWork) -> None:
     expansion = work.link().expansion
-    if expansion.is_plain:
+    if not expansion.instances and not expansion.type_entries:
         return
     sections = {key: entry for key, entry in work.tree.root.entries.items() if key != "component_types"}
     written_groups = mapping_values.get_mapping(work.tree.root, "groups")

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from archgen.passes.connection_passes import CONNECT_COMPONENTS, CONNECT_PORTS, CONNECT_TYPES
+from archgen.passes.enveloping import ENVELOPE
+from archgen.passes.flattening import FLATTEN
 from archgen.passes.generic_removal import REMOVE_GENERICS
 from archgen.passes.instance_resolution import RESOLVE_INSTANCES
+from archgen.passes.monitoring import MONITOR
 from archgen.passes.pass_shape import Pass
 from archgen.passes.short_forms import COMPLETE_NAMES, NORMALISE_CONNECTIONS
 
@@ -15,7 +18,10 @@ _ALL_PASSES = (
     CONNECT_PORTS,
     CONNECT_TYPES,
     RESOLVE_INSTANCES,
+    ENVELOPE,
     REMOVE_GENERICS,
+    FLATTEN,
+    MONITOR,
 )
 PASSES: dict[str, Pass] = {each.name: each for each in _ALL_PASSES}
 """The passes by name."""

@@ -37,18 +37,19 @@ class UnknownPassError(Exception):
         super().__init__(f"no pass named `{name}`: {help_line}")
 
 
-def run_passes(
+def run_passes(  # noqa: PLR0913, PLR0917 - what passes work with
     loaded_project: LoadedProject,
     root: MappingNode,
     names: Sequence[str],
     interfaces: Interfaces,
     known_passes: Mapping[str, Pass] = PASSES,
+    earlier: TransformedProject | None = None,
 ) -> TransformedProject:
-    """Return what passes make of a merged project, which is not changed.
+    """Return what passes make of a merged project, which is not changed. `earlier` is what passes made before.
 
     Raise `UnknownPassError` for a name that is none of `known_passes`.
     """
-    work = PassWork(loaded_project, ProjectTree(root), interfaces)
+    work = PassWork(loaded_project, ProjectTree(root, earlier.provenance if earlier else None), interfaces)
     ordered_passes = order_passes(names, known_passes)
     for each in ordered_passes:
         work.tree.maker = each.name
@@ -57,7 +58,7 @@ def run_passes(
         work.tree.root,
         work.tree.provenance,
         tuple(dict.fromkeys(work.findings)),
-        tuple(each.name for each in ordered_passes),
+        (*(earlier.passes if earlier else ()), *(each.name for each in ordered_passes)),
     )
 
 

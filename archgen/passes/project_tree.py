@@ -26,11 +26,11 @@ PlainData = PlainValue | Mapping[str, "PlainData"] | Sequence["PlainData"]
 class ProjectTree:
     """A project's tree, a copy of the one that it is made from, and the origins of what passes wrote into it."""
 
-    def __init__(self, root: MappingNode) -> None:
-        """Take the root of a merged project, which is not changed."""
+    def __init__(self, root: MappingNode, provenance: Mapping[TreePath, Origin] | None = None) -> None:
+        """Take the root of a merged project, which is not changed, and the origins of what passes made in it already."""
         copied_root = copy_node(root, root.span)
         self.root = copied_root if isinstance(copied_root, MappingNode) else root
-        self.provenance: dict[TreePath, Origin] = {}
+        self.provenance: dict[TreePath, Origin] = dict(provenance or {})
         """What was made, by its path now; what is inside of it was made with it, unless it is named itself."""
         self.edit_count = 0
         """How many values were written or dropped."""
@@ -100,7 +100,8 @@ class ProjectTree:
             present_entry = holder.entries.get(key)
             key_span = present_entry.key_span if present_entry else self.find_place(source)
             holder.entries[key] = MappingEntry(key, key_span, node)
-        self._forget_below(path)
+        if isinstance(present, (MappingNode, SequenceNode)):
+            self._forget_below(path)
         self.provenance[first_made or path] = origin
         self.edit_count += 1
 
@@ -165,8 +166,8 @@ class ProjectTree:
 
     def mark(self, path: TreePath) -> None:
         """Say that the pass made what stands at a path from itself: it is there, and follows from what is written."""
-        if path not in self.provenance:
-            self.provenance[path] = self.make_origin(path)
+        if not self.trace(path).passes:
+            self.provenance[path] = self.make_origin(path)._replace(is_moved=True)
 
     def make_node(self, value: YamlNode | PlainData, source: TreePath) -> YamlNode:
         """Return plain data as a tree with the span of what it is made from; a tree stays as it is."""

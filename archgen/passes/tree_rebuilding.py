@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from archgen.diagnostics.element_origins import Origin, TreePath
 from archgen.diagnostics.source_span import Span
-from archgen.passes.project_tree import ProjectTree
+from archgen.passes.project_tree import ProjectTree, have_same_content
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, copy_node
 
 
@@ -27,18 +27,22 @@ class _OldPlaces:
 
     def __init__(self, tree: ProjectTree) -> None:
         self._tree = tree
+        self._item_origins = _index_items(tree.provenance)
         self._by_identity: dict[int, TreePath] = {}
         self._by_place: dict[tuple[Span, str], TreePath] = {}
+        self._components_by_place: dict[Span, TreePath] = {}
         for path, entry in _list_entries(tree.root, ()):
             self._by_identity[id(entry)] = path
             self._by_identity.setdefault(id(entry.value), path)
             self._by_place.setdefault((entry.key_span, str(path[-1])), path)
+            if len(path) > 1 and path[-2] == "components":
+                self._components_by_place.setdefault(entry.key_span, path)
 
-    def find(self, entry: MappingEntry) -> TreePath | None:
-        """Return where an entry, or one made from it, stood."""
+    def find(self, entry: MappingEntry, *, is_component: bool) -> TreePath | None:
+        """Return where an entry, or one made from it, stood. A component may be called otherwise now."""
         found = self._by_identity.get(id(entry)) or self._by_identity.get(id(entry.value))
-        # A leaf that is called otherwise now has the place of what it was made from.
-        return found or self._by_place.get((entry.key_span, entry.key.rpartition(".")[2]))
+        found = found or self._by_place.get((entry.key_span, entry.key))
+        return found or (self._components_by_place.get(entry.key_span) if is_component else None)
 
     def make_origin(self, old_path: TreePath) -> Origin:
         """Return the origin of what was moved by the pass that edits at present."""
@@ -50,15 +54,28 @@ class _OldPlaces:
         """Return the origin of a value as it was before."""
         return self._tree.trace(old_path)
 
+    def is_rewritten(self, old_path: TreePath, value: YamlNode) -> bool:
+        """Whether a leaf holds something else than before."""
+        old_value = self._tree.get(old_path)
+        return not isinstance(value, MappingNode) and old_value is not None and not have_same_content(old_value, value)
+
     def find_origin(self, old_path: TreePath) -> Origin | None:
         """Return the origin that is written down of a value itself."""
         return self._tree.provenance.get(old_path)
 
-    def find_item_origins(self, old_path: TreePath) -> Iterator[tuple[TreePath, Origin]]:
-        """Yield the origins inside of a list, by the rest of their paths."""
-        for path, origin in self._tree.provenance.items():
-            if len(path) > len(old_path) and path[: len(old_path)] == old_path:
-                yield path[len(old_path) :], origin
+    def find_item_origins(self, old_path: TreePath) -> list[tuple[TreePath, Origin]]:
+        """Return the origins inside of a list, by the rest of their paths."""
+        return self._item_origins.get(old_path, [])
+
+
+def _index_items(provenance: dict[TreePath, Origin]) -> dict[TreePath, list[tuple[TreePath, Origin]]]:
+    """Return the origins inside of lists by the path of the outermost list, with the rest of their paths."""
+    indexed: dict[TreePath, list[tuple[TreePath, Origin]]] = {}
+    for path, origin in provenance.items():
+        length = next((number for number, step in enumerate(path) if isinstance(step, int)), len(path))
+        if length < len(path):
+            indexed.setdefault(path[:length], []).append((path[length:], origin))
+    return indexed
 
 
 def _list_entries(node: YamlNode, path: TreePath) -> Iterator[tuple[TreePath, MappingEntry]]:
@@ -78,10 +95,12 @@ def _trace_mapping(
     """Write down the origins of what stands in a mapping; `old_path` is where the mapping is taken to have stood."""
     for entry in node:
         inner_path, expected_path = (*path, entry.key), (*old_path, entry.key)
-        found_path = places.find(entry)
+        found_path = places.find(entry, is_component=path[-1:] == ("components",))
         if found_path is not None and found_path != expected_path:
             is_unmoved = found_path == inner_path
             origins[inner_path] = places.trace(found_path) if is_unmoved else places.make_origin(found_path)
+        elif found_path is not None and places.is_rewritten(found_path, entry.value):
+            origins[inner_path] = places.make_origin(found_path)._replace(is_moved=False)
         elif found_path is not None and (own_origin := places.find_origin(found_path)) is not None:
             origins[inner_path] = own_origin
         now_expected = found_path or expected_path

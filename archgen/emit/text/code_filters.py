@@ -7,6 +7,7 @@ docs/generation.md.
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Mapping
 
@@ -33,8 +34,23 @@ def _print_text(value: object) -> str:
 
 
 def write_python_string(value: object) -> str:
-    """Return text as a string of Python, of printable ASCII."""
-    return '"' + "".join(_escape_python(character) for character in _print_text(value)) + '"'
+    """Return text as a string of Python, of printable ASCII; in double quotes only where that saves escapes."""
+    text = _print_text(value)
+    if "'" in text and '"' not in text:
+        return '"' + "".join(_escape_python(character) for character in text) + '"'
+    escaped = "".join(character if character == '"' else _escape_python(character) for character in text)
+    return "'" + escaped.replace("'", "\\'") + "'"
+
+
+def write_python_value(value: object) -> str:
+    """Return a value of a parameter as Python has it: texts, numbers, True and False, and lists of them."""
+    if value is None or isinstance(value, bool | int):
+        return repr(value)
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else f"float({write_python_string(repr(value))})"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(write_python_value(each) for each in value) + "]"
+    return write_python_string(value)
 
 
 def _escape_python(character: str) -> str:
@@ -125,6 +141,7 @@ CODE_FILTERS: Mapping[str, Callable[[object], str]] = {
     "line_comment": write_line_comment,
     "python_name": lambda value: make_identifier_in("python", _print_text(value)),
     "python_string": write_python_string,
+    "python_value": write_python_value,
     "ros_name": lambda value: make_ros_name(_print_text(value)),
     "shell_word": write_shell_word,
     "snake": lambda value: make_snake_name(_print_text(value)),

@@ -108,7 +108,7 @@ class ComponentNodes:
         if holder_id is None:
             return entry
         own = self._parameters.fill_in_body(mapping_values.get_body(entry), holder_id)
-        around = self._find_body(holder_id).entries
+        around = self.find_body(holder_id).entries
         inherited = {key: around[key] for key in _CONTAINER_KEYS if key in around}
         body = MappingNode({**inherited, **own.entries}, own.span)
         _join_namespaces(body, inherited, own)
@@ -118,7 +118,7 @@ class ComponentNodes:
         for entry in written_nodes:
             body = mapping_values.get_body(entry)
             component_ids = implements.get(entry.key, ())
-            own_bodies = [(each, self._find_body(each)) for each in component_ids]
+            own_bodies = [(each, self.find_body(each)) for each in component_ids]
             if len(own_bodies) == 1 and own_bodies[0][1].entries:
                 body = lay_node(own_bodies[0][1], body)
             for component_id in component_ids:
@@ -151,7 +151,7 @@ class ComponentNodes:
             elif shell_id not in implemented:
                 self._diagnostics += diagnose_idle_start(self._own_node(shell_id), shell_id)
         single_ids = [
-            each for each in self._outline.components if each not in implemented and self._find_body(each).entries
+            each for each in self._outline.components if each not in implemented and self.find_body(each).entries
         ]
         all_ids = (*self._outline.components, *self._outline.shells)
         node_ids = derive_node_ids([*single_ids, *wholes], all_ids, written_nodes.entries)
@@ -161,7 +161,7 @@ class ComponentNodes:
             self._report_unused(component_id, self.entries[node_id], is_one=True)
 
     def _add_node(self, component_id: str, node_id: str, used_names: set[tuple[str, str]]) -> None:
-        body, entry = _drop_whole(self._find_body(component_id)), self._entry_of(component_id)
+        body, entry = _drop_whole(self.find_body(component_id)), self._entry_of(component_id)
         reference = ScalarNode(component_id, component_id, entry.key_span)
         entries = {"implements": MappingEntry("implements", entry.key_span, SequenceNode([reference], entry.key_span))}
         if "name" not in body.entries:
@@ -185,13 +185,13 @@ class ComponentNodes:
     def _own_node(self, component_id: str) -> MappingNode:
         return mapping_values.get_mapping(mapping_values.get_body(self._entry_of(component_id)), "node")
 
-    def _find_body(self, component_id: str) -> MappingNode:
+    def find_body(self, component_id: str) -> MappingNode:
         """Return what a component's node has: its own keys over those of what is around it."""
         if component_id not in self._bodies:
             filled = self._parameters.fill_in_body(self._own_node(component_id), component_id)
             own = resolve_start(filled, self._resolver, component_id)
             parent = self._expansion.parents.get(component_id)
-            around = self._find_body(parent) if parent else mapping_values.EMPTY_MAPPING
+            around = self.find_body(parent) if parent else mapping_values.EMPTY_MAPPING
             inherited = _list_inherited(around)
             body = lay_node(MappingNode(inherited, around.span), own) if inherited else own
             if inherited and own.entries:

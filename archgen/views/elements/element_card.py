@@ -11,6 +11,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture, UseCase
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.deployment import Container
+from archgen.model.made_elements import find_made_element
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import ROS, name_medium, name_on_medium, uses_ros, word_of_medium
@@ -135,6 +136,8 @@ def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
     else:
         card = make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
     further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind not in {"topic", "variant"} else ()
+    if (made := find_made_element(lookup.architecture.made_elements, card.span)) is not None:
+        further_facts = (*further_facts, ("origin", str(made)))
     return replace(card, facts=(*card.facts, *further_facts)) if further_facts else card
 
 

@@ -35,10 +35,17 @@ def _make_ros2_launch(context: GenerationContext) -> GeneratedView:
     return launch_view.make_view(context, ros=2)
 
 
+def _make_programs(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import node_programs
+
+    return node_programs.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "plan": _make_plan,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
+    "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""

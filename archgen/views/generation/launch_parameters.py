@@ -49,7 +49,7 @@ def record_node_parameters(
         for suffix, values in parts
     ]
     written, unfit_names = _write_parts(parts, launch, file_name, ros)
-    own_files: list[dict[str, str]] = [{"own": str(each["path"])} for each in written]
+    own_files = [_place_file("own", str(each["path"])) for each in written]
     count = 1 if elsewhere and written and written[0]["name"] != file_name else 0
     return {
         "files": [*own_files[:count], *elsewhere, *own_files[count:]],
@@ -63,7 +63,11 @@ def record_container_parameters(
 ) -> tuple[dict[str, Any], list[Diagnostic]]:
     """Return the same for a container."""
     written, unfit_names = _write_parts([("", launch.own_values)], launch, file_name, ros)
-    parameters = {"files": [{"own": str(each["path"])} for each in written], "written": written, "filled": []}
+    parameters = {
+        "files": [_place_file("own", str(each["path"])) for each in written],
+        "written": written,
+        "filled": [],
+    }
     return parameters, [_tell_unfit(name, span, file_name) for name in unfit_names]
 
 
@@ -135,16 +139,21 @@ def _list_tree(tree: Mapping[str, Any], depth: int) -> list[dict[str, Any]]:
     return lines
 
 
+def _place_file(place: str, path: str, package: str = "") -> dict[str, str]:
+    """Return a file to load. `place` is `own`, `package`, `home` or `robot`."""
+    return {"place": place, "package": package, "path": path}
+
+
 def _find_file(path: str, node: Node) -> dict[str, str]:
     """Return where a file that no project holds lies: in a package, in the user's home, or somewhere on the robot."""
     found = _PACKAGE_PATH.match(path)
     if found:
-        return {"package": found["found"] or found["named"], "path": found["path"]}
+        return _place_file("package", found["path"], found["found"] or found["named"])
     if path.startswith(_HOME):
-        return {"home": path.removeprefix(_HOME)}
+        return _place_file("home", path.removeprefix(_HOME))
     if path.startswith("/"):
-        return {"path": path}
-    return {"package": node.package or "", "path": path}
+        return _place_file("robot", path)
+    return _place_file("package", path, node.package) if node.package else _place_file("own", path)
 
 
 def _is_filled_in(value: object) -> bool:
@@ -170,7 +179,7 @@ def _record_filled(
     for each in filled:
         declared_type = declarations[each["name"]].type if each["name"] in declarations else None
         each["is_text"] = declared_type in {None, "string"} and not (
-            declared_type is None and len(each["parts"]) == 1 and "variable" in each["parts"][0]
+            declared_type is None and len(each["parts"]) == 1 and each["parts"][0]["variable"]
         )
         each["name"] = each["name"].replace(".", "/") if ros_1 else each["name"]
     return filled
@@ -182,7 +191,11 @@ def _split_substitutions(text: str) -> list[dict[str, str]]:
     end = 0
     for found in _SUBSTITUTION.finditer(text):
         if found.start() > end:
-            pieces.append({"text": text[end : found.start()]})
-        pieces.append({"package": found["package"]} if found["package"] else {"variable": found["variable"]})
+            pieces.append(_make_piece(text=text[end : found.start()]))
+        pieces.append(_make_piece(package=found["package"] or "", variable=found["variable"] or ""))
         end = found.end()
-    return [*pieces, {"text": text[end:]}] if end < len(text) else pieces
+    return [*pieces, _make_piece(text=text[end:])] if end < len(text) else pieces
+
+
+def _make_piece(text: str = "", package: str = "", variable: str = "") -> dict[str, str]:
+    return {"text": text, "package": package, "variable": variable}

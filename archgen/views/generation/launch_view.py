@@ -115,9 +115,9 @@ def _list_dependencies(hosts: list[dict[str, Any]], own_package: str, ros: int) 
     """Return what the package of the launch files needs, and what else stands in it."""
     entries = [entry for host in hosts for entry in host["entries"] if entry["form"] != "nobody"]
     used = {entry["package"] for entry in entries if entry["package"]}
-    used |= {file["package"] for entry in entries for file in entry["files"] if file.get("package")}
+    used |= {file["package"] for entry in entries for file in entry["files"] if file["package"]}
     used |= {
-        part["package"] for entry in entries for each in entry["filled"] for part in each["parts"] if "package" in part
+        part["package"] for entry in entries for each in entry["filled"] for part in each["parts"] if part["package"]
     }
     has_programs = any(entry["form"] == "program" for entry in entries)
     has_states = any(host["states"] for host in hosts)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import replace
 from archgen.model.architecture import Architecture
+from archgen.model.made_elements import find_made_element
 from archgen.views.element_references import place_run
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Page
@@ -15,9 +16,16 @@ from archgen.views.shapes import Page
 def place_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
     """Return the pages, those on something that is written in a file with its place."""
     spans = _list_spans(lookup.architecture)
-    return tuple(
-        replace(page, place=place_run(lookup, spans[page.anchor])) if page.anchor in spans else page for page in pages
-    )
+    return tuple(_place_page(lookup, page, spans[page.anchor]) if page.anchor in spans else page for page in pages)
+
+
+def _place_page(lookup: Lookup, page: Page, place: Span) -> Page:
+    placed_page = replace(page, place=place_run(lookup, place))
+    made = find_made_element(lookup.architecture.made_elements, place)
+    if made is None or not made.passes:
+        return placed_page
+    sentence = f"{str(made).replace('`', '').capitalize()}."
+    return replace(placed_page, lead=f"{page.lead} {sentence}" if page.lead else sentence)
 
 
 def _list_spans(architecture: Architecture) -> Mapping[str, Span]:

@@ -1,0 +1,172 @@
+"""References to components from the rest of a project once the components around them are gone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from archgen.analyses import analyse_timing
+from archgen.diagnostics.element_origins import TreePath
+from archgen.link import mapping_values
+from archgen.model.architecture import Architecture
+from archgen.model.path_resolver import ElementRef
+from archgen.passes.linked_tree import LinkedTree
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.timing.run_analysis import AnalysisMemory
+
+_KINDS = ("node", "component", "output")
+
+
+@dataclass
+class FlatReferences:
+    """Rewrites the sections that name components and outputs."""
+
+    linked: LinkedTree
+    flat_ids: Mapping[str, str]
+    architecture: Architecture
+    """With the low level derived: the worst way of a chain through a composed component is looked up in it."""
+
+    def rewrite_sections(self, sections: Mapping[str, MappingEntry]) -> dict[str, MappingEntry]:
+        """Return the sections in which something is called otherwise now."""
+        rewritten: dict[str, MappingEntry] = {}
+        for name, key in (("chains", "through"), ("links", "connects"), ("frames", "by")):
+            if name in sections:
+                rewritten[name] = self._rewrite_elements(sections[name], key)
+        if "use_cases" in sections:
+            rewritten["use_cases"] = self._rewrite_use_cases(sections["use_cases"])
+        for name, keys in (("views", ("show",)), ("policies", ("forbid", "require"))):
+            if name in sections:
+                rewritten[name] = self._rewrite_selectors(sections[name], keys)
+        return rewritten
+
+    def _rewrite_elements(self, section: MappingEntry, key: str) -> MappingEntry:
+        entries: dict[str, MappingEntry] = {}
+        for element in mapping_values.get_body(section):
+            body = mapping_values.get_body(element)
+            inner = dict(body.entries)
+            if key in inner:
+                worst_leaves = self._list_worst_leaves(element.key) if key == "through" else ()
+                value = self._rewrite_value(inner[key].value, worst_leaves, is_list=key != "by")
+                inner[key] = MappingEntry(key, inner[key].key_span, value)
+            value_node = MappingNode(inner, body.span) if inner else element.value
+            entries[element.key] = MappingEntry(element.key, element.key_span, value_node)
+        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+
+    def _rewrite_use_cases(self, section: MappingEntry) -> MappingEntry:
+        entries: dict[str, MappingEntry] = {}
+        for case in mapping_values.get_body(section):
+            body = mapping_values.get_body(case)
+            inner, steps = dict(body.entries), body.get("steps")
+            if isinstance(steps, SequenceNode):
+                items = [self._rewrite_step(each) for each in steps.items]
+                inner["steps"] = MappingEntry("steps", inner["steps"].key_span, SequenceNode(items, steps.span))
+            value_node = MappingNode(inner, body.span) if inner else case.value
+            entries[case.key] = MappingEntry(case.key, case.key_span, value_node)
+        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+
+    def _rewrite_step(self, step: YamlNode) -> YamlNode:
+        if not isinstance(step, MappingNode):
+            return step
+        inner = dict(step.entries)
+        for key in ("from", "to"):
+            if key in inner:
+                value = self._rewrite_value(inner[key].value, (), is_list=False)
+                inner[key] = MappingEntry(key, inner[key].key_span, value)
+        return MappingNode(inner, step.span)
+
+    def _rewrite_value(self, node: YamlNode, worst_leaves: tuple[str, ...], *, is_list: bool) -> YamlNode:
+        if isinstance(node, SequenceNode):
+            items = [new for item in node.items for new in self._rewrite_item(item, worst_leaves)]
+            return SequenceNode(items, node.span)
+        rewritten = list(self._rewrite_item(node, worst_leaves))
+        if len(rewritten) == 1 or not is_list:
+            return rewritten[0]
+        return SequenceNode(rewritten, node.span)
+
+    def _rewrite_item(self, item: YamlNode, worst_leaves: tuple[str, ...]) -> Iterator[YamlNode]:
+        """Yield what stands in the place of a reference: the leaves of a composed component that it is about."""
+        if not isinstance(item, ScalarNode) or item.value is None:
+            yield item
+            return
+        target = self.linked.resolver.names.resolve_path(item.text, _KINDS).unique_element
+        texts = list(self._name_target(target, worst_leaves)) if target else []
+        if not texts or texts == [target.id if target else ""]:
+            yield item
+            return
+        yield from (ScalarNode(text, text, item.span) for text in texts)
+
+    def _name_target(self, target: ElementRef, worst_leaves: tuple[str, ...]) -> Iterator[str]:
+        if target.kind == "output":
+            component_id, _, name = target.id.rpartition(".")
+            if component_id in self.flat_ids:
+                yield f"{self.flat_ids[component_id]}.{name}"
+                return
+            behind = [each for each in self.linked.joined_sources.leaf_outputs_of(target.id) if each != target.id]
+            if len(behind) == 1:
+                leaf_id, _, leaf_name = behind[0].rpartition(".")
+                yield f"{self.flat_ids[leaf_id]}.{leaf_name}"
+            else:
+                yield from self._name_leaves(component_id, worst_leaves)
+        elif target.kind == "component" and target.id in self.flat_ids:
+            yield self.flat_ids[target.id]
+        elif target.kind == "component":
+            yield from self._name_leaves(target.id, worst_leaves)
+
+    def _name_leaves(self, shell_id: str, worst_leaves: tuple[str, ...]) -> Iterator[str]:
+        inside = [each for each in self.linked.outline.list_inside(shell_id) if each in self.flat_ids]
+        on_way = [each for each in worst_leaves if each in inside]
+        yield from (self.flat_ids[each] for each in on_way or inside[:1])
+
+    def _list_worst_leaves(self, chain_id: str) -> tuple[str, ...]:
+        """Return the leaves on the worst way of a chain, in the order in which it passes them."""
+        from archgen.timing.chains.chain_bounds import bound_chain
+
+        chain = self.architecture.chains.get(chain_id)
+        if chain is None or not any(each.id in self.linked.outline.shells for each in chain.through):
+            return ()
+        analysis = analyse_timing(self.architecture, AnalysisMemory())
+        if analysis is None:
+            return ()
+        leaves: list[str] = []
+        for term in bound_chain(analysis, self.architecture, chain).terms:
+            activity = analysis.system.activities.get(term.activity)
+            node = self.architecture.nodes.get(activity.node) if activity else None
+            own_name = activity.component if activity else None
+            leaves += (
+                each for each in (node.implements if node else ()) if own_name in {None, each, each.rpartition(".")[2]}
+            )
+        return tuple(dict.fromkeys(leaves))
+
+    def _rewrite_selectors(self, section: MappingEntry, keys: Iterable[str]) -> MappingEntry:
+        def rewrite(path: TreePath, node: YamlNode) -> YamlNode:
+            if isinstance(node, MappingNode):
+                return MappingNode(
+                    {e.key: MappingEntry(e.key, e.key_span, rewrite((*path, e.key), e.value)) for e in node}, node.span
+                )
+            is_selector = isinstance(node, ScalarNode) and any(key in path for key in keys)
+            if not is_selector or not isinstance(node, ScalarNode):
+                return node
+            text = " ".join(self._rewrite_word(word) for word in node.text.split(" "))
+            return node if text == node.text else ScalarNode(text, text, node.span)
+
+        value = rewrite((), section.value)
+        return MappingEntry(section.key, section.key_span, value)
+
+    def _rewrite_word(self, word: str) -> str:
+        """Return a word of a selector with the path in it as it is now; keys such as `tag:` stay."""
+        path = word.lstrip("0123456789+!-(").rstrip("0123456789+)")
+        if not path or ":" in path or "*" in path:
+            return word
+        target = self.linked.resolver.names.resolve_path(path, _KINDS).unique_element
+        if target is None or target.kind == "node":
+            return word
+        texts = [text for text in self._name_all(target) if text]
+        if not texts or texts == [target.id]:
+            return word
+        before, _, after = word.partition(path)
+        return " ".join(f"{before}{text}{after}" for text in texts)
+
+    def _name_all(self, target: ElementRef) -> list[str]:
+        if target.kind == "component" and target.id not in self.flat_ids:
+            return [self.flat_ids[each] for each in self.linked.outline.list_inside(target.id) if each in self.flat_ids]
+        return list(self._name_target(target, ()))

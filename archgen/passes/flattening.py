@@ -1,0 +1,170 @@
+"""The pass that takes hierarchy away: connections lifted through composed components, which are gone then."""
+
+from __future__ import annotations
+
+from archgen import derivation
+from archgen.link import mapping_values
+from archgen.link.declare.handed_parameters import HandedParameters
+from archgen.link.open_shells import OpenShells
+from archgen.passes.flat_names import name_flat_components
+from archgen.passes.flat_nodes import FlatNodes
+from archgen.passes.flat_parameters import fill_in_parameters
+from archgen.passes.flat_references import FlatReferences
+from archgen.passes.flat_sources import FlatSources
+from archgen.passes.linked_tree import LinkedTree
+from archgen.passes.pass_shape import Pass, PassWork
+from archgen.passes.tree_rebuilding import rebuild_tree
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, YamlNode
+
+_JOINED_LISTS = ("requirements", "tags")
+"""What a leaf has of what is around it, besides its own."""
+_SHELL_KEYS = frozenset({"components", "containers", "autoconnect", "node"})
+_WHOLE_KEYS = frozenset({"timing", "performance", "requirements"})
+"""What a composed component says of itself as a whole: nothing that is left of it can keep it."""
+
+
+def _flatten(work: PassWork) -> None:
+    linked = work.link()
+    component_ids = [*linked.outline.components, *_list_open_shells(linked)]
+    nodes = mapping_values.get_mapping(work.tree.root, "nodes")
+    deep_names = {each.rpartition(".")[2] for each in component_ids if each.count(".") > 1}
+    used_names = [name for name in nodes.entries if name not in deep_names]
+    all_ids = [*linked.outline.components, *linked.outline.shells]
+    flat_ids = name_flat_components(component_ids, all_ids, used_names)
+    if not linked.outline.shells and all(flat_ids[each] == each for each in component_ids):
+        return
+    rebuild_tree(work.tree, _Flattener(work, linked, flat_ids).write_root())
+
+
+def _list_open_shells(linked: LinkedTree) -> list[str]:
+    """Return the composed components that count as a component of their own: ports that nothing inside carries."""
+    open_shells = OpenShells(linked.outline, linked.joined_sources)
+    return [shell.id for group_id in linked.outline.groups for shell in open_shells.list_in_group(group_id)]
+
+
+class _Flattener:
+    """Writes a project without composed components."""
+
+    def __init__(self, work: PassWork, linked: LinkedTree, flat_ids: dict[str, str]) -> None:
+        self._work = work
+        self._linked = linked
+        self._flat_ids = flat_ids
+        self._parents = linked.expansion.parents
+        self._sources = FlatSources(linked, flat_ids)
+        self._open_shells = OpenShells(linked.outline, linked.joined_sources)
+        self._parameters = HandedParameters(linked.outline, [])
+        self._nodes = FlatNodes(linked, linked.expansion.root, flat_ids)
+        self._run_leaves = self._nodes.list_run_leaves()
+
+    def write_root(self) -> MappingNode:
+        root = self._work.tree.root
+        sections = dict(root.entries)
+        written_groups = mapping_values.get_mapping(root, "groups")
+        groups = {entry.key: self._write_group(entry) for entry in written_groups}
+        sections["groups"] = MappingEntry(
+            "groups", root.entries["groups"].key_span, MappingNode(groups, written_groups.span)
+        )
+        sections |= self._nodes.find_containers(self._linked.expansion.root)
+        nodes = self._nodes.write_section()
+        if nodes:
+            key_span = sections["nodes"].key_span if "nodes" in sections else root.span
+            sections["nodes"] = MappingEntry("nodes", key_span, MappingNode(nodes, key_span))
+        architecture = derivation.derive_low_level(self._linked.architecture)
+        references = FlatReferences(self._linked, self._flat_ids, architecture)
+        sections |= references.rewrite_sections(sections)
+        return MappingNode(sections, root.span)
+
+    def _write_group(self, group: MappingEntry) -> MappingEntry:
+        body = mapping_values.get_body(group)
+        if "components" not in body.entries:
+            return group
+        components: dict[str, MappingEntry] = {}
+        written_ids = [f"{group.key}.{name}" for name in mapping_values.get_mapping(body, "components").entries]
+        for component_id in self._list_in_order(written_ids):
+            flat_name = self._flat_ids[component_id].partition(".")[2]
+            components[flat_name] = self._write_component(component_id, flat_name)
+        written = body.entries["components"]
+        section = MappingEntry("components", written.key_span, MappingNode(components, written.value.span))
+        return MappingEntry(group.key, group.key_span, MappingNode({**body.entries, "components": section}, body.span))
+
+    def _list_in_order(self, component_ids: object) -> list[str]:
+        """Return what is left of components, each composed one before what is inside of it."""
+        listed: list[str] = []
+        for component_id in component_ids if isinstance(component_ids, (list, tuple)) else ():
+            if component_id in self._flat_ids:
+                listed.append(component_id)
+            shell = self._linked.outline.shells.get(component_id)
+            listed += self._list_in_order(shell.children) if shell else []
+        return listed
+
+    def _write_component(self, component_id: str, flat_name: str) -> MappingEntry:
+        shell = self._linked.outline.shells.get(component_id)
+        entry = shell.entry if shell else self._linked.outline.components[component_id]
+        body = mapping_values.get_body(entry)
+        is_deep = component_id in self._parents
+        entries = {key: each for key, each in body.entries.items() if not (shell and key in _SHELL_KEYS | _WHOLE_KEYS)}
+        entries.pop("containers", None)
+        inputs, outputs = self._list_ports(component_id, is_shell=shell is not None)
+        for key, names, write in (
+            ("inputs", inputs, self._sources.write_inputs),
+            ("outputs", outputs, self._sources.write_outputs),
+        ):
+            if key in entries and isinstance(entries[key].value, MappingNode):
+                ports = write(component_id, names, mapping_values.get_mapping(body, key))
+                entries[key] = MappingEntry(key, entries[key].key_span, ports)
+        if "parameters" in entries and isinstance(entries["parameters"].value, MappingNode):
+            filled = fill_in_parameters(entries["parameters"].value, self._parameters.find_parameters(component_id))
+            entries["parameters"] = MappingEntry("parameters", entries["parameters"].key_span, filled)
+        if is_deep:
+            self._inherit(component_id, entries)
+        is_renamed = self._flat_ids[component_id] != component_id
+        if shell is not None or is_deep or is_renamed or component_id in self._run_leaves:
+            entries.pop("node", None)
+            own_node = None if component_id in self._run_leaves else self._nodes.write_own_node(component_id)
+            if own_node is not None:
+                entries["node"] = own_node
+        value = MappingNode(entries, body.span) if entries else entry.value
+        return MappingEntry(flat_name, entry.key_span, value)
+
+    def _list_ports(self, component_id: str, *, is_shell: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Return the names of the inputs and outputs that a component keeps: of a composed one those that are open."""
+        inputs = tuple(self._linked.outline.inputs.get(component_id, ()))
+        outputs = tuple(self._linked.outline.outputs.get(component_id, ()))
+        if not is_shell:
+            return inputs, outputs
+        return (
+            tuple(each for each in inputs if self._open_shells.is_open(("input", f"{component_id}.{each}"))),
+            tuple(each for each in outputs if self._open_shells.is_open(("output", f"{component_id}.{each}"))),
+        )
+
+    def _inherit(self, component_id: str, entries: dict[str, MappingEntry]) -> None:
+        """Give a leaf what the components around it say for all that is inside: owner, requirements and tags."""
+        parent = self._parents.get(component_id)
+        while parent is not None:
+            body = mapping_values.get_body(self._linked.outline.shells[parent].entry)
+            if "owner" in body.entries and "owner" not in entries:
+                entries["owner"] = body.entries["owner"]
+            for key in _JOINED_LISTS:
+                if key in body.entries:
+                    entries[key] = _join_lists(entries.get(key), body.entries[key])
+            parent = self._parents.get(parent)
+
+
+def _join_lists(own: MappingEntry | None, around: MappingEntry) -> MappingEntry:
+    if own is None:
+        return around
+    items = [*_list_items(own), *_list_items(around)]
+    return MappingEntry(own.key, own.key_span, SequenceNode(items, own.value.span))
+
+
+def _list_items(entry: MappingEntry) -> list[YamlNode]:
+    return list(entry.value.items) if isinstance(entry.value, SequenceNode) else [entry.value]
+
+
+FLATTEN = Pass(
+    "flatten",
+    "Takes composed components away: connections lead from leaf to leaf, and every name is unique.",
+    _flatten,
+    needs=("no_component_sources", "no_autoconnect_ports", "no_autoconnect_types", "no_instances"),
+    leaves=("flat", "unique_names"),
+)

@@ -1,0 +1,250 @@
+"""The view `programs`: the packages of ROS nodes to generate, and each program in them with all that it has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span, first_written_span
+from archgen.model.architecture import Architecture
+from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
+from archgen.model.node import Endpoint, Node
+from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
+from archgen.views.generation.name_clashes import find_name_clashes
+from archgen.views.generation.package_facts import record_package_facts
+from archgen.views.generation.program_parameters import list_node_values, record_parameters
+from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports
+
+_NANOSECONDS = 10**9
+_IMPORTED_CLASSES = frozenset(
+    [
+        "ActionClient",
+        "ActionServer",
+        "Duration",
+        "DurabilityPolicy",
+        "ExternalShutdownException",
+        "FloatingPointRange",
+        "HistoryPolicy",
+        "IntegerRange",
+        "LifecycleNode",
+        "LivelinessPolicy",
+        "MultiThreadedExecutor",
+        "Node",
+        "Parameter",
+        "ParameterDescriptor",
+        "QoSProfile",
+        "ReentrantCallbackGroup",
+        "ReliabilityPolicy",
+        "SetParametersResult",
+        "TransitionCallbackReturn",
+    ]
+)
+"""What the modules of nodes import of rclpy: a message of this name is imported under another one."""
+
+
+def make_view(context: GenerationContext) -> GeneratedView:
+    """Return the programs to generate: `packages`, and all their `programs`.
+
+    Nodes that exist (`status: existing`) have a program already, and what is no node of ROS has none here. The option
+    `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
+    """
+    language = str(context.options.get("language") or "python")
+    nodes = [each for each in context.wanted_nodes.values() if _is_generated(each, language)]
+    endpoints = _index_endpoints(context.architecture)
+    programs: dict[tuple[str, str], list[Node]] = {}
+    for node in nodes:
+        programs.setdefault(
+            (name_package(context.architecture, node), name_program(context.architecture, node)), []
+        ).append(node)
+    findings: list[Diagnostic] = list(_find_mixed_packages(context, programs, language))
+    packages: dict[str, dict[str, object]] = {}
+    records: list[dict[str, object]] = []
+    for (package_name, program_name), program_nodes in sorted(programs.items()):
+        record, program_findings = _record_program(
+            context.architecture, package_name, program_name, program_nodes, endpoints
+        )
+        records.append(record)
+        findings += program_findings
+        package = packages.setdefault(
+            package_name,
+            {
+                **record_package_facts(context, program_nodes[0].owner),
+                "name": package_name,
+                "language": language,
+                "programs": [],
+                "dependencies": [],
+                "has_values": False,
+                "place": write_place(_find_place(context.architecture, program_nodes[0])),
+            },
+        )
+        package["programs"].append(record)  # type: ignore[attr-defined]
+        package["has_values"] |= any(each["parameters"] for each in record["nodes"])  # type: ignore[attr-defined,operator]
+    for package in packages.values():
+        used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
+        package["dependencies"] = sorted(used)
+    names = [
+        (str(each["class_name"]), program_nodes[0].id, program_nodes[0].at)
+        for each, (_, program_nodes) in zip(records, sorted(programs.items()), strict=True)
+    ]
+    for package_name in packages:
+        in_package = [name for name, each in zip(names, records, strict=True) if each["package"] == package_name]
+        findings += find_name_clashes(in_package, "class")
+    return GeneratedView({"packages": list(packages.values()), "programs": records}, tuple(findings))
+
+
+def name_package(architecture: Architecture, node: Node) -> str:
+    """Return the package of a node: what it says, else one for the nodes of its group."""
+    if node.package:
+        return node.package
+    group = next((architecture.components[each].group for each in node.implements), None)
+    return make_ros_name(f"{architecture.project.id}_{group or 'nodes'}")
+
+
+def name_program(architecture: Architecture, node: Node) -> str:
+    """Return the executable of a node: what it says, else that of its component's type, else its own id."""
+    if node.executable:
+        return node.executable
+    types = {architecture.components[each].component_type for each in node.implements}
+    type_name = next(iter(types)) if len(types) == len(node.implements) == 1 else None
+    return make_ros_name(type_name or node.id)
+
+
+def _is_generated(node: Node, language: str) -> bool:
+    # What a container loads is a library of C++.
+    usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
+    return node.status != "existing" and not node.is_program and (node.language or usual_language) == language
+
+
+def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:
+    index: dict[str, list[Endpoint]] = {}
+    for endpoint in architecture.endpoints:
+        index.setdefault(endpoint.node, []).append(endpoint)
+    return index
+
+
+def _find_mixed_packages(
+    context: GenerationContext, programs: Mapping[tuple[str, str], Sequence[Node]], language: str
+) -> Iterator[Diagnostic]:
+    """Yield packages that hold programs of both languages: one build cannot make both."""
+    other_language = "cpp" if language == "python" else "python"
+    others = {
+        name_package(context.architecture, node): node
+        for node in context.architecture.nodes.values()
+        if _is_generated(node, other_language)
+    }
+    told = set[str]()
+    for (package_name, _), nodes in programs.items():
+        if package_name in others and package_name not in told:
+            told.add(package_name)
+            yield tell_left_out(
+                f"the package `{package_name}` has programs in Python and in C++: `{nodes[0].id}` and "
+                f"`{others[package_name].id}`; here it has only those in {'Python' if language == 'python' else 'C++'}",
+                nodes[0].at,
+                element=nodes[0].id,
+                help_line="give the nodes of one language a `package` of their own",
+            )
+
+
+def _record_program(
+    architecture: Architecture,
+    package_name: str,
+    program_name: str,
+    nodes: Sequence[Node],
+    endpoints: Mapping[str, Sequence[Endpoint]],
+) -> tuple[dict[str, object], list[Diagnostic]]:
+    first = nodes[0]
+    components = [architecture.components[each] for each in first.implements]
+    sections, findings = record_ports(architecture, nodes, endpoints)
+    parameters, parameter_findings = record_parameters(architecture, nodes)
+    message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
+    functionalities = [each.functionality for each in components if each.functionality]
+    record: dict[str, object] = {
+        "package": package_name,
+        "executable": program_name,
+        "module": make_snake_name(program_name),
+        "class_name": make_camel_name(program_name),
+        "title": components[0].title if len(components) == 1 and components[0].component_type is None else first.title,
+        "description": first.description or " ".join(functionalities),
+        "is_lifecycle": "lifecycle" in first.kinds,
+        "is_composable": "composable" in first.kinds,
+        "nodes": [_record_node(architecture, each, sections) for each in nodes],
+        "node_name": first.name if len(nodes) == 1 else make_ros_name(program_name),
+        "namespace": first.namespace if len(nodes) == 1 else "/",
+        "threads": first.threads,
+        "reentrant": first.reentrant,
+        "timers": list(_list_timers(first)),
+        "parameters": parameters,
+        **sections,
+        "message_packages": sorted(message_packages),
+        "python_imports": _import_in_python(sections, make_camel_name(program_name)),
+        "place": write_place(_find_place(architecture, first)),
+    }
+    return record, [*findings, *parameter_findings]
+
+
+def _record_node(
+    architecture: Architecture, node: Node, sections: Mapping[str, Sequence[Mapping[str, object]]]
+) -> dict[str, object]:
+    return {
+        "id": node.id,
+        "name": node.name,
+        "namespace": node.namespace,
+        "full_name": node.full_name,
+        "implements": list(node.implements),
+        "parameters": list_node_values(architecture, node),
+        "remaps": list(_list_remaps(node, sections)),
+        "place": write_place(_find_place(architecture, node)),
+    }
+
+
+def _list_remaps(node: Node, sections: Mapping[str, Sequence[Mapping[str, object]]]) -> Iterator[dict[str, str]]:
+    """Yield which names of the program become others at one of its nodes: `own_name`, and what it becomes, `name`."""
+    for ports in sections.values():
+        for port in ports:
+            name = port["topics"].get(node.id)  # type: ignore[attr-defined]
+            if name is not None and name != port["topic"]:
+                yield {"own_name": str(port["topic"]), "name": name}
+    yield from ({"own_name": own_name, "name": name} for own_name, name in node.remaps.items())
+
+
+def _find_place(architecture: Architecture, node: Node) -> Span:
+    """Return where a node is written; of one that archgen adds, its component."""
+    components = (architecture.components[each] for each in node.implements)
+    return first_written_span(node.at, *(each.at for each in components))
+
+
+def _list_timers(node: Node) -> Iterator[dict[str, object]]:
+    """Yield what runs by the clock: a timer for each component of the node that is periodic."""
+    for component, timing in node.timing.items():
+        period = timing.period.value if timing.period else None
+        if period is None and timing.rate and timing.rate.value:
+            period = Fraction(_NANOSECONDS) / timing.rate.value
+        if period and timing.behaviour in {None, "periodic"}:
+            name = "" if len(node.timing) == 1 else make_snake_name(component.rpartition(".")[2])
+            yield {"key": name, "component": component, "period_ns": round(period), "period_s": _format_seconds(period)}
+
+
+def _format_seconds(duration_ns: Fraction) -> str:
+    """Return a duration in seconds as code has it: `0.1`."""
+    return f"{float(duration_ns) / _NANOSECONDS:.9f}".rstrip("0").removesuffix(".") + (
+        "" if duration_ns % _NANOSECONDS else ".0"
+    )
+
+
+def _import_in_python(sections: Mapping[str, Sequence[dict[str, object]]], class_name: str) -> list[dict[str, object]]:
+    """Return what is imported of which module, and tell each port the class of its message (`python_class`).
+
+    Messages of one name in several packages are told apart by their packages.
+    """
+    ports = [port for section in PORT_SECTIONS.values() for port in sections[section]]
+    modules_by_name: dict[object, set[str]] = {}
+    for port in ports:
+        modules_by_name.setdefault(port["name"], set()).add(f"{port['package']}.{port['kind']}")
+    imports: dict[str, set[str]] = {}
+    for port in ports:
+        module, name = f"{port['package']}.{port['kind']}", str(port["name"])
+        is_taken = len(modules_by_name[name]) > 1 or name in {class_name, f"{class_name}Node", *_IMPORTED_CLASSES}
+        port["python_class"] = f"{make_camel_name(module)}{name}" if is_taken else name
+        imports.setdefault(module, set()).add(f"{name} as {port['python_class']}" if is_taken else name)
+    return [{"module": module, "names": sorted(each)} for module, each in sorted(imports.items())]

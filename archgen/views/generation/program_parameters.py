@@ -1,0 +1,121 @@
+"""The parameters of a program: their types in ROS 2, defaults, ranges and words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node
+from archgen.model.parameter import Parameter
+from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters, is_ros_parameter
+from archgen.views.generation.generation_context import tell_left_out, write_place
+
+_ROS_TYPES: Mapping[str, str] = {"boolean": "bool", "integer": "integer", "float": "double", "string": "string"}
+
+
+def record_parameters(
+    architecture: Architecture, nodes: Sequence[Node]
+) -> tuple[list[dict[str, object]], list[Diagnostic]]:
+    """Return the parameters of the nodes of one program, and what is left out.
+
+    `default` is the value where all nodes have the same; None where each node is given its own, or nobody gives one.
+    """
+    values: dict[str, list[EffectiveParameter]] = {}
+    for node in nodes:
+        for name, parameter in find_effective_parameters(architecture, node).items():
+            if not is_ros_parameter(name, ros_1=False):
+                values.setdefault(name, []).append(parameter)
+    records: list[dict[str, object]] = []
+    findings: list[Diagnostic] = []
+    for name, parameters in values.items():
+        ros_type = _find_ros_type(parameters)
+        first = parameters[0]
+        if ros_type is None:
+            findings.append(
+                tell_left_out(
+                    f"the parameter `{name}` of `{nodes[0].id}` is left out: no parameter of ROS can be what it is",
+                    first.declaration.at if first.declaration else first.at,
+                    element=nodes[0].id,
+                    help_line="ROS has booleans, whole numbers, numbers, texts, and lists of one of these",
+                )
+            )
+            continue
+        records.append(_record_parameter(name, ros_type, parameters, is_common=len(parameters) == len(nodes)))
+    return records, findings
+
+
+def list_node_values(architecture: Architecture, node: Node) -> list[dict[str, object]]:
+    """Return the values of a node that are known, as a parameter file has them: `name` and `value`."""
+    listed: list[dict[str, object]] = []
+    for name, parameter in find_effective_parameters(architecture, node).items():
+        ros_type = _find_ros_type((parameter,))
+        if parameter.is_known and ros_type is not None:
+            listed.append({"name": name, "value": _convert_value(parameter.value, ros_type)})
+    return listed
+
+
+def _record_parameter(
+    name: str, ros_type: str, parameters: Sequence[EffectiveParameter], *, is_common: bool
+) -> dict[str, object]:
+    declaration = parameters[0].declaration or Parameter(name)
+    defaults = [_convert_value(each.value, ros_type) if each.is_known else None for each in parameters]
+    is_same = is_common and all(each == defaults[0] for each in defaults)
+    limits = [_convert_value(each, ros_type) for each in declaration.range or ()]
+    has_limits = ros_type in {"integer", "double"} and len(limits) == 2  # noqa: PLR2004 - the lowest and the highest
+    return {
+        "name": name,
+        "type": ros_type,
+        "default": defaults[0] if is_same else None,
+        "unit": declaration.unit or "",
+        "description": declaration.description or "",
+        "lowest": limits[0] if has_limits else None,
+        "highest": limits[1] if has_limits else None,
+        "choices": [_convert_value(each, ros_type) for each in declaration.choices or ()],
+        "read_only": declaration.read_only,
+        "place": write_place(declaration.at if parameters[0].declaration else parameters[0].at),
+    }
+
+
+def _find_ros_type(parameters: Iterable[EffectiveParameter]) -> str | None:
+    """Return the type in ROS: the declared one, else that of the values; None for what no parameter of ROS can be."""
+    found_types = set[str]()
+    for parameter in parameters:
+        written = parameter.declaration.type if parameter.declaration else None
+        if written:
+            base_type = _ROS_TYPES.get(written.removesuffix("[]"))
+            return None if base_type is None else f"{base_type}_array" if written.endswith("[]") else base_type
+        choices = (parameter.declaration.choices if parameter.declaration else None) or ()
+        for value in (*choices, *([parameter.value] if parameter.is_known else [])):
+            found_types.add(_infer_ros_type(value))
+    if found_types == {"integer", "double"}:
+        return "double"
+    if found_types == {"integer_array", "double_array"}:
+        return "double_array"
+    # A parameter that nobody ever gave a value is text in most programs that read it; its node says so otherwise.
+    return (next(iter(found_types)) or None) if len(found_types) == 1 else None if found_types else "string"
+
+
+def _infer_ros_type(value: object) -> str:
+    """Return the type of a value in ROS; empty for what is none."""
+    if isinstance(value, list | tuple):
+        item_types = {_infer_ros_type(each) for each in value} or {"string"}
+        item_type = "double" if item_types == {"integer", "double"} else item_types.pop()
+        is_plain = item_type in _ROS_TYPES.values() and item_types <= {"integer", "double"}
+        return f"{item_type}_array" if is_plain else ""
+    # A boolean is an integer in Python, but not in ROS.
+    python_types = {bool: "bool", int: "integer", float: "double", str: "string"}
+    return python_types.get(type(value), "")
+
+
+def _convert_value(value: object, ros_type: str) -> object:
+    """Return a value as ROS wants it: a whole number is a float where the parameter is one."""
+    if isinstance(value, list | tuple):
+        return [_convert_value(each, ros_type.removesuffix("_array")) for each in value]
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        if ros_type == "double":
+            return float(value)
+        if ros_type == "integer" and math.isfinite(value):
+            return int(value)
+    return value

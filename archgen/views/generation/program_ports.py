@@ -1,0 +1,133 @@
+"""What a program publishes, subscribes to, serves and calls: its topics with their messages, settings and methods."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
+from archgen.model.code_names import make_identifier_in, make_snake_name
+from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.quantity import Quantity
+from archgen.views.generation.generation_context import tell_left_out, write_place
+
+PORT_SECTIONS: Mapping[tuple[str, str], str] = {
+    ("publishes", "topic"): "publishers",
+    ("subscribes", "topic"): "subscriptions",
+    ("serves", "service"): "services",
+    ("calls", "service"): "clients",
+    ("serves", "action"): "action_servers",
+    ("calls", "action"): "action_clients",
+}
+"""The lists that a program has, by what it does and with what."""
+
+
+def record_ports(
+    architecture: Architecture, nodes: Sequence[Node], endpoints: Mapping[str, Sequence[Endpoint]]
+) -> tuple[dict[str, list[dict[str, object]]], list[Diagnostic]]:
+    """Return what the nodes of one program use, by section, and what is left out.
+
+    Nodes of one program use the same ports. Where their topics differ, the program has a name of its own for the port,
+    which each node remaps.
+    """
+    sections: dict[str, list[dict[str, object]]] = {name: [] for name in PORT_SECTIONS.values()}
+    findings: list[Diagnostic] = []
+    uses: dict[tuple[str, str], list[Endpoint]] = {}
+    for node in nodes:
+        for endpoint, key in _name_endpoints(endpoints.get(node.id, ())):
+            uses.setdefault((PORT_SECTIONS[endpoint.use, endpoint.flow], key), []).append(endpoint)
+    for (section, key), port_endpoints in uses.items():
+        first = port_endpoints[0]
+        messages = {each.message for each in port_endpoints}
+        if first.message is None or len(messages) > 1:
+            findings.append(_tell_unknown_message(first, messages))
+            continue
+        sections[section].append(_record_port(architecture, key, port_endpoints, is_shared=len(nodes) > 1))
+    return sections, findings
+
+
+def _name_endpoints(endpoints: Iterable[Endpoint]) -> Iterator[tuple[Endpoint, str]]:
+    """Yield each endpoint with its name in the program: that of the port, with its component's where two have it."""
+    own_names: dict[tuple[str, str], set[str]] = {}
+    listed = list(endpoints)
+    for endpoint in listed:
+        own_names.setdefault((PORT_SECTIONS[endpoint.use, endpoint.flow], _short_name(endpoint)), set()).add(
+            endpoint.port or endpoint.name
+        )
+    seen: dict[tuple[str, str], int] = {}
+    for endpoint in listed:
+        section, name = PORT_SECTIONS[endpoint.use, endpoint.flow], _short_name(endpoint)
+        if len(own_names[section, name]) > 1:
+            name = make_snake_name("_".join((endpoint.port or endpoint.name).replace("/", ".").split(".")[-2:]))
+        # One port may stand on several topics.
+        seen[section, name] = seen.get((section, name), 0) + 1
+        number = seen[section, name]
+        yield endpoint, make_identifier_in("python", name if number == 1 else f"{name}_{number}")
+
+
+def _short_name(endpoint: Endpoint) -> str:
+    return make_snake_name((endpoint.port or endpoint.name.replace("/", ".")).rpartition(".")[2])
+
+
+def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diagnostic:
+    named = f"`{endpoint.port or endpoint.name}` of the node `{endpoint.node}`"
+    if len(messages) > 1:
+        shown = " and ".join(sorted(f"`{each}`" for each in messages if each))
+        return tell_left_out(
+            f"{named} is left out: nodes of one program use it with several messages, {shown or 'one of them unknown'}",
+            endpoint.at,
+            element=endpoint.node,
+            help_line="give one of the nodes an `executable` of its own",
+        )
+    return tell_left_out(
+        f"{named} is left out: nobody says which message it has",
+        endpoint.at,
+        element=endpoint.node,
+        help_line="map its type to a message below `types`, or give the type `fields`",
+    )
+
+
+def _record_port(
+    architecture: Architecture, key: str, endpoints: Sequence[Endpoint], *, is_shared: bool
+) -> dict[str, object]:
+    first = endpoints[0]
+    package, kind, name = (first.message or "//").split("/")
+    topics = {each.name for each in endpoints}
+    own_name = first.own_name or (first.name if len(topics) == 1 and not is_shared else key)
+    port = architecture.outputs.get(first.port or "") or architecture.inputs.get(first.port or "")
+    if first.use in {"subscribes", "calls"}:
+        port = architecture.inputs.get(first.port or "") or port
+    data_type = architecture.types.get(first.type or "")
+    return {
+        "key": key,
+        "topic": own_name,
+        "topics": {each.node: each.name for each in endpoints},
+        "port": first.port or "",
+        "internal": first.internal,
+        "message": first.message,
+        "package": package,
+        "kind": kind,
+        "name": name,
+        "type": first.type or "",
+        "description": (port.description if port else None) or (data_type.comment if data_type else None) or "",
+        "sources": list(first.sources),
+        "qos": _record_qos(first.qos),
+        "place": write_place(port.at if port else first.at),
+    }
+
+
+def _record_qos(qos: Qos) -> dict[str, object]:
+    return {
+        "reliability": qos.reliability,
+        "durability": qos.durability,
+        "history": qos.history,
+        "depth": qos.depth,
+        "deadline_ns": _round_quantity(qos.deadline),
+        "lifespan_ns": _round_quantity(qos.lifespan),
+        "liveliness": qos.liveliness,
+        "lease_duration_ns": _round_quantity(qos.lease_duration),
+    }
+
+
+def _round_quantity(quantity: Quantity | None) -> int | None:
+    return None if quantity is None else round(quantity.value)

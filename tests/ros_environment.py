@@ -1,0 +1,61 @@
+"""A real ROS 2 for tests, from wheels, in a virtual environment of its own that later runs find again."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.running import ROOT
+
+ROS_FOLDER = ROOT / ".make" / "ros_jazzy"
+# One version of each is published for a distribution.
+_WHEELS = (
+    "ros-jazzy-rclpy==7.1.6",
+    "ros-jazzy-rmw-fastrtps-cpp==8.4.3",
+    "ros-jazzy-common-interfaces==5.3.6",
+    "ros-jazzy-std-srvs==5.3.6",
+    "ros-jazzy-lifecycle-msgs==2.0.3",
+    "ros-jazzy-test-msgs",
+    "pytest>=8",
+)
+NEWEST_PYTHON = (3, 14)
+"""There are wheels for Python 3.10 to this one."""
+
+
+def make_ros_python() -> Path:
+    """Return the Python of an environment with rclpy; it is made where it is not there yet."""
+    python = ROS_FOLDER / "bin" / "python"
+    done = ROS_FOLDER / "installed"
+    ROS_FOLDER.parent.mkdir(exist_ok=True)
+    with (ROS_FOLDER.parent / "ros_jazzy.lock").open("w") as lock:
+        # Several workers ask for it at once.
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        wanted = "\n".join(_WHEELS)
+        if not done.exists() or done.read_text() != wanted:
+            run_program([sys.executable, "-m", "venv", "--clear", str(ROS_FOLDER)])
+            run_program([str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *_WHEELS])
+            done.write_text(wanted)
+    return python
+
+
+def ros_environment(domain: int, log_folder: Path) -> dict[str, str]:
+    """Return the variables of a process of ROS: it sees only processes of this machine with the same domain, 0 to 101."""
+    return {
+        # Nothing of the caller's own: two environments of ROS in one process do not get along.
+        "PATH": f"{ROS_FOLDER / 'bin'}{os.pathsep}{os.environ['PATH']}",
+        "HOME": str(log_folder),
+        "AMENT_PREFIX_PATH": str(ROS_FOLDER),
+        "VIRTUAL_ENV": str(ROS_FOLDER),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_LOG_DIR": str(log_folder),
+    }
+
+
+def run_program(command: list[str]) -> None:
+    """Run a program; what it says is shown where it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own commands
+    assert done.returncode == 0, done.stdout + done.stderr
