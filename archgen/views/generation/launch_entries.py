@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.bringup.plan_shapes import RosLaunch, StartStep, format_seconds
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_camel_name
+from archgen.model.code_names import make_camel_name, make_ros_name
 from archgen.model.node import Node
 from archgen.views import start_phrases
 from archgen.views.generation.generation_context import write_place
@@ -84,6 +85,7 @@ def _record_entry(step: StartStep, element: str, place: str) -> dict[str, Any]:
         "place": place,
         "phase": step.phase,
         "name": step.ros.name if step.ros else step.file_name,
+        "ros_name": make_ros_name(step.file_name),
         "namespace": step.ros.namespace if step.ros else "/",
         "full_name": step.ros.full_name if step.ros else "",
         "container": (step.ros.container or "") if step.ros else "",
@@ -143,9 +145,8 @@ def _list_remarks(step: StartStep, form: str) -> list[str]:
     remarks = []
     if form == "nobody":
         remarks.append("not started here: " + start_phrases.describe_unknown(step))
-    awaited = [f"{each.awaited} ({'; '.join(each.reasons)})" for each in start_phrases.name_waits(step)]
-    if awaited:
-        remarks.append(f"after {', '.join(awaited)}")
+    if step.awaited:
+        remarks.append(f"after {join_words([each.awaited for each in step.awaited])}")
     up_when = start_phrases.describe_ready(step)
     if up_when:
         remarks.append(f"up when {up_when}")

@@ -23,6 +23,7 @@ _SUBSTITUTION = re.compile(
     r"\$\((?:(?:find|find-pkg-share) (?P<package>[A-Za-z0-9_]+)|env (?P<variable>[A-Za-z_][A-Za-z0-9_]*))\)"
 )
 """What a launch file fills in. Others would run something, or need what no launch file here declares: they stay text."""
+_PACKAGE_NAME = re.compile(r"[A-Za-z0-9_-]+")
 _HOME = "~/"
 _GLOBAL_IN_ROS_1 = "use_sim_time"
 """In ROS 1 it is one parameter of all nodes."""
@@ -153,7 +154,9 @@ def _find_file(path: str, node: Node) -> dict[str, str]:
         return _place_file("home", path.removeprefix(_HOME))
     if path.startswith("/"):
         return _place_file("robot", path)
-    return _place_file("package", path, node.package) if node.package else _place_file("own", path)
+    if node.package and _PACKAGE_NAME.fullmatch(node.package):
+        return _place_file("package", path, node.package)
+    return _place_file("own", path)
 
 
 def _is_filled_in(value: object) -> bool:
