@@ -112,7 +112,7 @@ def _find_program(architecture: Architecture, node: Node, step: StartStep, ros: 
     if is_generated(node):
         package, executable = name_package(architecture, node), name_program(architecture, node)
         plugin = plugin or f"{package}{'/' if ros == 1 else '::'}{make_camel_name(executable)}"
-    found = {"package": package, "executable": executable, "plugin": plugin, "arguments": []}
+    found: dict[str, Any] = {"package": package, "executable": executable, "plugin": plugin, "arguments": []}
     if ros == 1:
         return _find_ros_1_program(node, step, found)
     if node.container is not None:

@@ -39,7 +39,7 @@ def record_node_parameters(
     """
     elsewhere = [_find_file(path, node) for path in launch.parameter_files if path in node.unread_files]
     read_values = {**launch.file_values, **launch.own_values}
-    parts = [("", {**launch.earlier_values, **read_values})]
+    parts: list[tuple[str, Mapping[str, object]]] = [("", {**launch.earlier_values, **read_values})]
     if elsewhere:
         # What nobody could read counts more than defaults, and less than what the node says.
         parts = [("_defaults", launch.earlier_values), ("", read_values)]
