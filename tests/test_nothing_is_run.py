@@ -83,6 +83,7 @@ def test_no_verb_runs_a_command_of_a_project(hostile_project: Path, tmp_path: Pa
         ["list", "--of", "start_up"],
         ["show", "b"],
         ["pack", "-o", "packed.yaml"],
+        ["transform", "monitor", "flatten", "-o", "flat.yaml", "--keep-going"],
         ["build", "-o", "out", "--keep-going"],
         ["generate", "start", "-o", "robot", "--keep-going"],
     ):

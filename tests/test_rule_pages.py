@@ -11,6 +11,7 @@ from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
 from archgen.findings.comparison_rules import COMPARISON_RULES
+from archgen.findings.generation_rules import GENERATION_RULES
 from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES, check_project, check_text
 from tests.repositories import repository
@@ -52,7 +53,7 @@ def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule,
 
 
 def test_the_pages_are_fresh() -> None:
-    rules = index_rules((*ALL_RULES, *COMPARISON_RULES))
+    rules = index_rules((*ALL_RULES, *COMPARISON_RULES, *GENERATION_RULES))
     folder = resources.resource_path("docs", "rules")
     wanted = {
         "README.md": rule_pages.format_rule_index(rules),

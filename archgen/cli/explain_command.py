@@ -19,9 +19,10 @@ def command(rule: str | None) -> None:
     from archgen.emit.terminal.findings_text import wants_colour
     from archgen.findings import rule_pages
     from archgen.findings.comparison_rules import COMPARISON_RULES
+    from archgen.findings.generation_rules import GENERATION_RULES
     from archgen.findings.rule_table import index_rules
 
-    rules = index_rules((*pipeline.ALL_RULES, *COMPARISON_RULES))
+    rules = index_rules((*pipeline.ALL_RULES, *COMPARISON_RULES, *GENERATION_RULES))
     width = find_width(sys.stdout)
     if rule is None:
         rows = ((name, str(each.severity), rule_pages.parse_rule_page(each).summary) for name, each in rules.items())

@@ -111,7 +111,7 @@ component_pictures_option = click.option(
 trust_option = click.option(
     "--trust",
     metavar="REV",
-    help="Run the project's own backends only if `review.backends` at this git revision names them and their folders are as they are there.",
+    help="Run the project's own backends and passes only if `review.backends` and `review.passes` at this git revision name them and their files are as they are there.",
 )
 
 

@@ -12,15 +12,21 @@ from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
+    from archgen.products.trusted_backends import TrustedRevision
 
 _YAML_SUFFIXES = frozenset({".yaml", ".yml"})
 
 
 def _complete_passes(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the names of passes."""
-    from archgen.passes import PASSES
+    """Complete the names of passes: those of archgen, and those of the project around the current folder."""
+    from archgen.passes.patterns.pattern_registry import find_known_passes
+    from archgen.project import ProjectNotFoundError, load_project
 
-    return [name for name in PASSES if name.startswith(incomplete)]
+    try:
+        loaded_project = load_project(None)
+    except ProjectNotFoundError:
+        loaded_project = None
+    return [name for name in find_known_passes(loaded_project).passes if name.startswith(incomplete)]
 
 
 @click.command("transform")
@@ -30,24 +36,36 @@ def _complete_passes(_context: click.Context, _parameter: click.Parameter, incom
 @click.option("--list", "lists_passes", is_flag=True, help="Show all passes: what they do, need and leave true.")
 @shared_options.output_option("The file, or the folder (its archgen.yaml)", "transformed.yaml")
 @shared_options.keep_going_option
-def command(
-    names: tuple[str, ...], project: Path | None, output: Path | None, *, lists_passes: bool, keep_going: bool
+@shared_options.trust_option
+def command(  # noqa: PLR0913 - one for each option
+    names: tuple[str, ...],
+    project: Path | None,
+    output: Path | None,
+    trust: str | None,
+    *,
+    lists_passes: bool,
+    keep_going: bool,
 ) -> None:
     """Write what each PASS, one after the other, makes of a project: again a project, of one file.
 
-    A pass that needs others runs behind them. `--list` shows all. The project itself stays as it is.
+    A pass that needs others runs behind them. `--list` shows all, and those of the project: files of rules in its folder
+    `passes`. The project itself stays as it is.
     """
     if lists_passes:
-        _print_passes()
+        _print_passes(project)
         return
     if not names:
         msg = "name one pass or several; `archgen transform --list` shows all"
         raise click.UsageError(msg)
-    _check_names(names)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    transformed_project = _transform_or_exit(checked_project, names)
+    transformed_project = _transform_or_exit(
+        checked_project, names, command_support.find_trusted_revision(project, trust)
+    )
     _report_further_passes(names, transformed_project)
     command_support.print_findings_above(transformed_project)
+    if _is_stopped(transformed_project):
+        click.echo("Nothing was written.", err=True)
+        sys.exit(1)
     if command_support.exit_status(transformed_project.findings) and not keep_going:
         click.echo("Nothing was written. With --keep-going it is written with its errors.", err=True)
         sys.exit(1)
@@ -62,22 +80,19 @@ def command(
     command_support.exit_by_findings(transformed_project)
 
 
-def _check_names(names: tuple[str, ...]) -> None:
-    """Refuse names that are none of passes before the project is read."""
+def _transform_or_exit(
+    checked_project: CheckedProject, names: tuple[str, ...], trusted_revision: TrustedRevision | None
+) -> CheckedProject:
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.passes import UnknownPassError, order_passes
+    from archgen.passes import UnknownPassError
+    from archgen.products import project_passes
 
-    try:
-        order_passes(names)
-    except UnknownPassError as error:
-        raise click.UsageError(make_visible(str(error))) from None
-
-
-def _transform_or_exit(checked_project: CheckedProject, names: tuple[str, ...]) -> CheckedProject:
-    from archgen import pipeline
-    from archgen.passes import order_passes
-
-    dropping = [each.name for each in order_passes(names) if not each.keeps_variants]
+    with command_support.explain_write_errors():
+        try:
+            passes = project_passes.choose_passes(checked_project, names, trusted_revision)
+        except UnknownPassError as error:
+            raise click.UsageError(make_visible(str(error))) from None
+    dropping = [each.name for each in passes.ordered if not each.keeps_variants]
     if checked_project.variants and dropping:
         variant_names = ", ".join(checked_project.variants)
         click.echo(
@@ -85,7 +100,13 @@ def _transform_or_exit(checked_project: CheckedProject, names: tuple[str, ...]) 
             " `--variant` names.",
             err=True,
         )
-    return pipeline.transform_project(checked_project, names)
+    return project_passes.transform_by_name(checked_project, passes)
+
+
+def _is_stopped(transformed_project: CheckedProject) -> bool:
+    """Whether a pass of rules came to no end, or could not be read: what it makes is nothing."""
+    findings = transformed_project.transformed.findings if transformed_project.transformed else ()
+    return any(each.rule == "wrong-pass" for each in findings)
 
 
 def _report_further_passes(names: tuple[str, ...], transformed_project: CheckedProject) -> None:
@@ -96,13 +117,21 @@ def _report_further_passes(names: tuple[str, ...], transformed_project: CheckedP
         click.echo(f"Ran before, since they are needed: {', '.join(further)}.", err=True)
 
 
-def _print_passes() -> None:
+def _print_passes(project: Path | None) -> None:
     """Print every pass with what it does, needs and leaves true."""
-    from archgen.passes import PASSES
+    from archgen.diagnostics.safe_text import make_visible
     from archgen.passes.pass_shape import STATES
+    from archgen.passes.patterns.pattern_registry import find_known_passes
+    from archgen.project import ProjectNotFoundError, load_project
 
-    for each in PASSES.values():
-        click.echo(f"{each.name}: {each.title}")
+    try:
+        loaded_project = load_project(project)
+    except ProjectNotFoundError as error:
+        if project is not None:
+            raise click.UsageError(str(error)) from None
+        loaded_project = None
+    for each in find_known_passes(loaded_project).passes.values():
+        click.echo(make_visible(f"{each.name}: {each.title}"))
         for words, states in (("needs", each.needs), ("leaves", each.leaves), ("ends", each.ends)):
             for state in states:
                 click.echo(f"    {words} {state}: {STATES[state]}")

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from archgen.analyses import analyse_timing
-from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values
 from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import ElementRef
 from archgen.passes.linked_tree import LinkedTree
+from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -34,9 +34,9 @@ class FlatReferences:
                 rewritten[name] = self._rewrite_elements(sections[name], key)
         if "use_cases" in sections:
             rewritten["use_cases"] = self._rewrite_use_cases(sections["use_cases"])
-        for name, keys in (("views", ("show",)), ("policies", ("forbid", "require"))):
+        for name in ("views", "policies"):
             if name in sections:
-                rewritten[name] = self._rewrite_selectors(sections[name], keys)
+                rewritten[name] = rewrite_selectors(sections[name], self._rename_word)
         return rewritten
 
     def _rewrite_elements(self, section: MappingEntry, key: str) -> MappingEntry:
@@ -137,34 +137,15 @@ class FlatReferences:
             )
         return tuple(dict.fromkeys(leaves))
 
-    def _rewrite_selectors(self, section: MappingEntry, keys: Iterable[str]) -> MappingEntry:
-        def rewrite(path: TreePath, node: YamlNode) -> YamlNode:
-            if isinstance(node, MappingNode):
-                return MappingNode(
-                    {e.key: MappingEntry(e.key, e.key_span, rewrite((*path, e.key), e.value)) for e in node}, node.span
-                )
-            is_selector = isinstance(node, ScalarNode) and any(key in path for key in keys)
-            if not is_selector or not isinstance(node, ScalarNode):
-                return node
-            text = " ".join(self._rewrite_word(word) for word in node.text.split(" "))
-            return node if text == node.text else ScalarNode(text, text, node.span)
-
-        value = rewrite((), section.value)
-        return MappingEntry(section.key, section.key_span, value)
-
-    def _rewrite_word(self, word: str) -> str:
-        """Return a word of a selector with the path in it as it is now; keys such as `tag:` stay."""
-        path = word.lstrip("0123456789+!-(").rstrip("0123456789+)")
-        if not path or ":" in path or "*" in path:
-            return word
-        target = self.linked.resolver.names.resolve_path(path, _KINDS).unique_element
+    def _rename_word(self, word: str) -> list[str] | None:
+        """Return the paths that stand in the place of one in a selector; None where it stays."""
+        if "*" in word and ":" not in word:
+            return [self.flat_ids[each] for each in list_selected(self.architecture, word) if each in self.flat_ids]
+        target = None if ":" in word else self.linked.resolver.names.resolve_path(word, _KINDS).unique_element
         if target is None or target.kind == "node":
-            return word
-        texts = [text for text in self._name_all(target) if text]
-        if not texts or texts == [target.id]:
-            return word
-        before, _, after = word.partition(path)
-        return " ".join(f"{before}{text}{after}" for text in texts)
+            return None
+        texts = self._name_all(target)
+        return None if texts == [target.id] else texts
 
     def _name_all(self, target: ElementRef) -> list[str]:
         if target.kind == "component" and target.id not in self.flat_ids:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from archgen.compose.project_expansion import Expansion
 from archgen.link import mapping_values
 from archgen.passes.pass_shape import Pass, PassWork
+from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
 from archgen.passes.tree_rebuilding import rebuild_tree
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
@@ -21,9 +22,17 @@ def _resolve_instances(work: PassWork) -> None:
     if groups:
         section = work.tree.root.entries["groups"]
         sections["groups"] = MappingEntry("groups", section.key_span, MappingNode(groups, written_groups.span))
+    for name in ("views", "policies"):
+        if name in sections:
+            sections[name] = rewrite_selectors(sections[name], lambda word: _name_instances(work, word))
     if "libraries" in sections:
         sections["libraries"] = _drop_library_types(sections["libraries"])
     rebuild_tree(work.tree, MappingNode(sections, work.tree.root.span))
+
+
+def _name_instances(work: PassWork, word: str) -> list[str] | None:
+    """Return the components that `is:` and `library:` select: nothing says any more what they are made from."""
+    return list_selected(work.link().architecture, word) if word.startswith(("is:", "library:")) else None
 
 
 def _write_group(group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]) -> MappingEntry:

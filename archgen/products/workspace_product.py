@@ -17,10 +17,11 @@ from archgen.emit.workspace.generated_file import GeneratedFile, fold_path
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_products import choose_backends, make_backend_views, raise_problems
+from archgen.products.backend_choice import choose_backends, raise_problems
+from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.output_options import OutputOptions
-from archgen.products.product_inputs import ProductInputs
-from archgen.products.product_writing import refuse_leaving_links
+from archgen.products.trusted_backends import refuse_untrusted_pass
+from archgen.views.generation import GENERATION_VIEWS, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
 
@@ -68,11 +69,53 @@ def write_workspace(
     backend = _set_options(backend, request.options)
     folder = target or checked_project.output_folder / backend.id
     refuse_leaving_links(checked_project, folder)
+    if backend.passes:
+        checked_project, options, errors = _run_passes(checked_project, options, backend)
+        if errors:
+            return WorkspaceResult(folder, None, errors)
     files, findings = _render_files(checked_project, options, backend, request.host)
     if files is None:
         return WorkspaceResult(folder, None, findings)
     run = _name_run(checked_project, options, request.host)
     return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
+
+
+def _run_passes(
+    checked_project: CheckedProject, options: OutputOptions, backend: Backend
+) -> tuple[CheckedProject, OutputOptions, tuple[Diagnostic, ...]]:
+    """Return a project behind the passes of a backend, with what is selected of it, and the errors that are new."""
+    # Imported here: hardly any backend has passes.
+    from archgen.passes import UnknownPassError
+    from archgen.passes.patterns.pattern_registry import find_known_passes
+    from archgen.pipeline import transform_project
+    from archgen.products.project_views import select_elements
+
+    known_passes = find_known_passes(checked_project.loaded_project)
+    for name in backend.passes:
+        # A backend that is trusted may name a pass that is not.
+        if name in known_passes.own_files and options.trusted_revision is not None:
+            files = checked_project.loaded_project.files
+            refuse_untrusted_pass(name, known_passes.own_files[name], files, options.trusted_revision)
+    try:
+        transformed_project = transform_project(checked_project, backend.passes, known_passes.passes)
+    except UnknownPassError as error:
+        msg = f"the backend `{backend.id}` cannot be used: {error}"
+        raise OutputError(msg, f"mend `passes` in {backend.name}/backend.yaml") from None
+    known_errors = {(each.rule, each.message) for each in checked_project.findings}
+    errors = tuple(
+        each
+        for each in transformed_project.findings
+        if each.effective_severity is Severity.ERROR and (each.rule, each.message) not in known_errors
+    )
+    if options.selection is not None and not errors:
+        # Passes change ids: what the selector names is looked up in what they made.
+        selection, problems = select_elements(transformed_project, options.selector_text)
+        wrong = [problem for problem in problems if problem.severity == "error"]
+        if wrong:
+            msg = f"{wrong[0].message}, behind the passes of the backend `{backend.id}` ({', '.join(backend.passes)})"
+            raise OutputError(msg, wrong[0].help)
+        options = replace(options, selection=selection)
+    return transformed_project, options, errors
 
 
 def _set_options(backend: Backend, options: Mapping[str, str]) -> Backend:
@@ -83,6 +126,10 @@ def _set_options(backend: Backend, options: Mapping[str, str]) -> Backend:
             msg = f"the backend `{backend.id}` has no option `{name}`"
             known = f"it has {', '.join(known_names)}" if known_names else "it has none"
             raise OutputError(msg, did_you_mean(name, known_names) or known)
+    ros_generation = options.get("ros", "")
+    if ros_generation not in {"", "1", "2"}:
+        msg = f"the option `ros` is 1 or 2, not `{ros_generation}`"
+        raise OutputError(msg, "without it the project's distribution decides")
     return replace(backend, options={**backend.options, **options})
 
 
@@ -103,10 +150,22 @@ def _render_files(
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:
         return None, unmet_needs
-    views, findings = make_backend_views(ProductInputs(checked_project, options), backend, context)
+    views, findings = _make_views(checked_project, options, backend, context)
     files, problems = text.render_workspace(backend, views)
     raise_problems(problems)
     return files, findings
+
+
+def _make_views(
+    checked_project: CheckedProject, options: OutputOptions, backend: Backend, context: GenerationContext
+) -> tuple[Mapping[str, object], tuple[Diagnostic, ...]]:
+    """Return the views of a backend. What documents are made from is loaded only for one that asks for it."""
+    if GENERATION_VIEWS.keys() >= set(backend.views):
+        return make_generation_views(context, backend.views)
+    from archgen.products.backend_products import make_backend_views
+    from archgen.products.product_inputs import ProductInputs
+
+    return make_backend_views(ProductInputs(checked_project, options), backend, context)
 
 
 def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str | None) -> str:

@@ -11,6 +11,9 @@ from archgen.emit.backend_manifests import BackendFile, find_backends
 GOOD = "id: mine\ntitle: Mine\nemitter: text\nview: [record, pages]\nfiles:\n  - {template: a.j2, path: a}\n"
 
 
+WORKSPACE = GOOD.replace("files:", "makes: workspace\nfiles:").replace("path: a}", "path: a, once: true}")
+
+
 def found_at(tmp_path: Path, manifest: str | bytes, folder: str = "mine") -> list[str]:
     place = tmp_path / "backends" / folder
     place.mkdir(parents=True)
@@ -53,6 +56,11 @@ def test_a_project_without_backends(tmp_path: Path) -> None:
             GOOD.replace("[record, pages]", "all"),
             "4:1: `view` must be one of `outline`, `pages`, `record`, `graphs`, `sequences`, `tables`, `interfaces`",
         ),
+        (WORKSPACE.replace("once: true", "once: maybe"), "7:31: `files.0.once` must be `true` or `false`"),
+        (WORKSPACE.replace("once: true", "executable: [1]"), "7:31: `files.0.executable` must be `true` or `false`"),
+        (WORKSPACE.replace("once: true", "expects: x"), "7:5: `files.0` lacks the key `once`"),
+        (WORKSPACE.replace("makes: workspace", "makes: documents"), "7:31: `once` goes with `makes: workspace`"),
+        (f"{WORKSPACE}needs: [round]\n", "8:9: `needs.0` must be one of `flat`, `no_generics`"),
         (GOOD.replace("path: a", "way: a"), "6:5: `files.0` has an unknown key `way`"),
         (GOOD.replace("id: mine", "id: Mine"), "1:1: `id` is not as the schema of backends asks (Pattern)"),
         (GOOD.replace("id: mine", "id: other"), "1:1: the id is `other`, but the folder is `mine`"),

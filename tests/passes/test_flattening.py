@@ -204,3 +204,18 @@ def test_long_paths_still_give_ids() -> None:
     flat_ids = name_flat_components(ids, ids, [])
     assert len(set(flat_ids.values())) == len(ids)
     assert all(len(each.partition(".")[2]) <= 64 for each in flat_ids.values())
+
+
+def test_selectors_name_what_they_selected(tmp_path: Path) -> None:
+    views = (
+        'views: {a: {show: "2+is:drive -desk tag:safe"}, b: {show: one.**}, c: {show: one}}\n'
+        "policies: {p: {forbid: {from: two, to: desk}}}\n"
+    )
+    checked = write_project(tmp_path, ON_TYPE + views)
+    flat = yaml.safe_load(pack(transform_project(checked, ["flatten"])))
+    assert flat["views"] == {
+        "a": {"show": "2+fleet.one_drive 2+fleet.two_drive -desk tag:safe"},
+        "b": {"show": "fleet.one_drive fleet.one_watch"},
+        "c": {"show": "fleet.one_drive fleet.one_watch"},
+    }
+    assert flat["policies"]["p"]["forbid"] == {"from": "fleet.two_drive fleet.two_watch", "to": "desk"}

@@ -26,23 +26,33 @@ def lock_workspace(workspace: Path) -> Iterator[None]:
     """Keep other runs of archgen out of a workspace. Raise OutputError where one is at work."""
     folder = workspace / RECORD_FOLDER
     _refuse_link(folder)
+    new_folders = [each for each in (workspace, *workspace.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
+    try:
+        with _lock_folder(folder):
+            yield
+    finally:
+        # Only empty ones go: of a workspace that got no file.
+        with contextlib.suppress(OSError):
+            for each in (folder, *new_folders):
+                each.rmdir()
+
+
+@contextlib.contextmanager
+def _lock_folder(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder, where the system has such locks. Raise OutputError where another process does."""
     if "fcntl" not in globals():
         yield
         return
     descriptor = os.open(folder, os.O_RDONLY)
     try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            msg = f"another archgen is writing into {workspace}"
-            raise OutputError(msg, "wait until it is done, and run this again") from None
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
+    except BlockingIOError:
+        msg = f"another archgen is writing into {folder.parent}"
+        raise OutputError(msg, "wait until it is done, and run this again") from None
     finally:
         os.close(descriptor)
-        with contextlib.suppress(OSError):
-            # Only an empty one goes: of a workspace that got no file.
-            folder.rmdir()
 
 
 def carry_out(plan: WorkspacePlan, workspace: Path) -> None:

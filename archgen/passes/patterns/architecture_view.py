@@ -40,7 +40,7 @@ class ArchitectureView:
         self._types: dict[str, dict[str, ViewValue]] | None = None
         self.type_paths: dict[str, TreePath] = {}
         self.references = ViewReferences(self.elements, self._list_outputs)
-        type_entries = self._component_types.entries
+        type_entries = self._component_types.list_used(tree.root)
         inherited_ids = {name: self._component_types.list_inherited(name) for name in type_entries}
         for element in list_elements(tree.root, type_entries, inherited_ids):
             self._add(element)

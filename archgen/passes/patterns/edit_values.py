@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from archgen.model.generic_names import write_generic_name
 from archgen.passes.patterns.pattern_shapes import (
+    TYPE_KEYS,
     Anything,
     Bindings,
     Constant,
@@ -19,9 +20,6 @@ from archgen.passes.patterns.pattern_shapes import (
 )
 from archgen.passes.patterns.text_matching import resolve_text
 from archgen.schema.short_forms import ElementForm
-
-_TYPE_KEYS = frozenset({"type", "is", "same_as", "message"})
-"""Keys below which a mapping of one key is a generic type: `{Envelope: $t}`."""
 
 
 class EditError(Exception):
@@ -55,7 +53,7 @@ def fill_pattern(pattern: Pattern, bindings: Bindings, key: str = "") -> ViewVal
 
 def _fill_mapping(pattern: MappingPattern, bindings: Bindings, key: str) -> ViewValue:
     entries = {fill_key(entry.key, bindings): entry.value for entry in pattern.entries}
-    if key in _TYPE_KEYS and len(entries) == 1:
+    if key in TYPE_KEYS and len(entries) == 1:
         return _fill_term(*next(iter(entries.items())), bindings)
     return {name: fill_pattern(value, bindings, name) for name, value in entries.items()}
 

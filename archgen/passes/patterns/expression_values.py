@@ -72,7 +72,7 @@ def _has(holder: ViewValue, value: ViewValue) -> bool:
     return isinstance(holder, (dict, str)) and isinstance(value, str) and value in holder
 
 
-def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: PLR0911 - one for each function
+def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: C901, PLR0911 - one for each function
     """Return what an operand stands for. Raise WrongValueError."""
     if isinstance(operand, TextOperand):
         if isinstance(operand.pattern, Variable):
@@ -86,10 +86,14 @@ def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewV
             _ask_text(evaluate(name, bindings, view), operand): _ask_text(evaluate(value, bindings, view), operand)
             for name, value in operand.names
         }
-        if not isinstance(values[0], dict):
-            message = "`specialise` takes all that a type has: `$body` in `components: {$name: $body}`"
+        name = values[0]
+        body = (view.get_component(name) or view.get_type(name)) if isinstance(name, str) else name
+        if not isinstance(body, dict):
+            message = (
+                "`specialise` takes a type by its name, or all that it has: `$body` in `components: {$name: $body}`"
+            )
             raise WrongValueError(message)
-        return specialise(values[0], stands_for)
+        return specialise(body, stands_for)
     if operand.function == "without":
         return _leave_out(values[0], [_ask_text(value, operand) for value in values[1:]])
     texts = [_ask_text(value, operand) for value in values]
@@ -98,6 +102,8 @@ def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewV
             return "_".join(word.lower() for word in _WORD.findall(texts[0]))
         case "camel":
             return "".join(word[:1].upper() + word[1:] for word in _WORD.findall(texts[0]))
+        case "without_package":
+            return texts[0].rpartition("/")[2]
         case "unique":
             return _find_free_name(texts[0], view)
         case _:

@@ -11,6 +11,7 @@ from archgen.passes.patterns.pattern_shapes import Pattern, list_variables, pars
 
 _WORD = re.compile(r"""\s*(==|!=|[()\[\],]|"[^"]*"|'[^']*'|=|[^\s()\[\],="'!]+|\S)""")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_EXPRESSION_START = re.compile(r"""\s*(?:[A-Za-z_]+\(|[\["'])""")
 _QUOTES = ('"', "'")
 MAX_EXPRESSION_LENGTH = 1000
 _MAX_DEPTH = 20
@@ -22,6 +23,7 @@ VALUE_FUNCTIONS: Mapping[str, tuple[int, int | None]] = {
     "unique": (1, 1),
     "specialise": (1, None),
     "without": (2, None),
+    "without_package": (1, 1),
 }
 """The functions that give a value, with the least and the greatest number of what they take."""
 TEST_FUNCTIONS: Mapping[str, tuple[int, int | None]] = {"is_a": (2, 2)}
@@ -94,7 +96,9 @@ def parse_comparison(text: str) -> Comparison:
 
 
 def parse_value(text: str) -> Operand:
-    """Return what a `let` gives. Raise ExpressionError."""
+    """Return what a `let` gives: a function, a list, a quoted text, or else all of the text. Raise ExpressionError."""
+    if not _EXPRESSION_START.match(text) and len(text) <= MAX_EXPRESSION_LENGTH:
+        return TextOperand(parse_text_pattern(text, text, None))
     reader = _Reader(text)
     operand = reader.read_operand()
     reader.expect_end()

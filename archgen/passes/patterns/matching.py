@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol
 
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
+    TYPE_KEYS,
     Bindings,
     ListPattern,
     MappingPattern,
@@ -174,5 +175,6 @@ def _list_pattern_tokens(pattern: Pattern, bindings: Bindings, depth: int) -> It
                 text = resolve_text(value, bindings)
                 if text is not None:
                     yield (key, text)
-        if depth > 1:
+        # `{Envelope: $t}` is the name of a generic type, and no mapping.
+        if depth > 1 and key not in TYPE_KEYS:
             yield from _list_pattern_tokens(entry.value, bindings, depth - 1)

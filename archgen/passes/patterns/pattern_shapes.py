@@ -12,6 +12,8 @@ from typing import NamedTuple, Self
 from archgen.diagnostics.source_span import Span
 from archgen.syntax.yaml_tree import PlainValue, ScalarNode
 
+TYPE_KEYS = frozenset({"type", "is", "same_as", "message"})
+"""Keys whose values name types: a mapping of one key there is a generic type, `{Envelope: $t}`."""
 INNER_KEY = "components"
 """What stands inside of a component is in a copy of all that it has; rules find it by paths of its own."""
 ViewValue = str | list["ViewValue"] | dict[str, "ViewValue"] | None

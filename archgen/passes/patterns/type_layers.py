@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from archgen.compose.instance_overlay import InstanceOverlay
@@ -50,6 +51,25 @@ class TypeLayers:
             body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
             layers.append(Layer(path_of_type(name), body, name))
         return layers
+
+    def list_used(self, root: MappingNode) -> dict[str, MappingEntry]:
+        """Return the project's own types, and those of libraries that it uses, in order."""
+        used = {name for name in self.entries if library_of_type(name) is None}
+        groups = root.get("groups")
+        pending = [*(self.entries[name].value for name in used), *([groups] if groups is not None else [])]
+        while pending:
+            for name in set(self._list_names(pending.pop())) - used:
+                used.add(name)
+                pending.append(self.entries[name].value)
+        return {name: entry for name, entry in self.entries.items() if name in used}
+
+    def _list_names(self, node: YamlNode) -> Iterator[str]:
+        """Yield the component types that a tree names."""
+        name = self.find_type_name(node)
+        if name is not None:
+            yield name
+        for entry in node if isinstance(node, MappingNode) else ():
+            yield from self._list_names(entry.value)
 
     def list_inherited(self, name: str) -> frozenset[str]:
         """Return what stands inside of a type from the types that it is made from."""

@@ -6,8 +6,9 @@ manifests write below `view`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
 
 
@@ -49,3 +50,13 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
+
+
+def make_generation_views(
+    context: GenerationContext, names: Iterable[str]
+) -> tuple[dict[str, object], tuple[Diagnostic, ...]]:
+    """Return those of the named views that are for generators, and what they leave out, in the order of its places."""
+    views = {name: GENERATION_VIEWS[name](context) for name in names if name in GENERATION_VIEWS}
+    findings = dict.fromkeys(finding for view in views.values() for finding in view.findings)
+    data: dict[str, object] = {name: view.data for name, view in views.items()}
+    return data, tuple(sorted(findings, key=lambda finding: finding.sort_key))

@@ -16,9 +16,22 @@ from archgen.model.ros_distro import is_ros_1
 NOT_GENERATED = Rule(
     "not-generated",
     Severity.ERROR,
-    "Something of the architecture cannot be generated.\n\n"
-    "Why: a generator leaves out what it lacks words for, and makes the rest. What is left out is an error, since the "
-    "workspace is not what the architecture says.",
+    """\
+Something of the architecture cannot be generated.
+
+Why: A generator leaves out what it has no words for, and makes the rest. That is an error of the run, since the workspace is not
+what the architecture says. Only `archgen generate` finds it.
+
+Bad:
+    types:
+      Grip: {comment: how wide it is}
+    groups: {arm: {components: {gripper: {functionality: Grips., outputs: {grip: Grip}}}}}
+
+Good:
+    types:
+      Grip: {comment: how wide it is, fields: {width: {type: float64, unit: m}}}
+    groups: {arm: {components: {gripper: {functionality: Grips., outputs: {grip: Grip}}}}}
+""",
     fixed=True,
 )
 """What `archgen generate` says of an element that is left out. `archgen check` never says it."""

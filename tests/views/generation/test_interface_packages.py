@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 
 from archgen.diagnostics.source_span import Span
+from archgen.findings.generation_rules import GENERATION_RULES
+from archgen.findings.rule_pages import parse_rule_page
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.pipeline import check_project
 from archgen.views.generation import GENERATION_VIEWS
@@ -223,3 +225,14 @@ def test_names_that_become_one() -> None:
 def test_views_are_made_by_name(tmp_path: Path) -> None:
     made = {name: make(context(tmp_path, TYPES + PORTS % "Outer")) for name, make in GENERATION_VIEWS.items()}
     assert made["interfaces"].data["ros"] == 2
+
+
+def test_the_examples_of_the_rules(tmp_path: Path) -> None:
+    for rule in GENERATION_RULES:
+        page = parse_rule_page(rule)
+        found = []
+        for number, example in enumerate((page.bad, page.good)):
+            (tmp_path / str(number)).mkdir(exist_ok=True)
+            made = context(tmp_path / str(number), example)
+            found.append([*make_view(made).findings, *find_unmet_needs(made, ("one_source",))])
+        assert [[each.rule for each in findings] for findings in found] == [[rule.name], []]

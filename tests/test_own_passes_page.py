@@ -1,0 +1,41 @@
+"""The page about passes: its example of a project's own is run as it stands there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import yaml
+
+from archgen.passes.patterns.expressions import OPERATORS, TEST_FUNCTIONS, VALUE_FUNCTIONS
+from archgen.passes.patterns.pattern_registry import SHIPPED_PREFIX, find_known_passes
+from archgen.pipeline import check_project
+from archgen.products.project_passes import choose_passes, transform_by_name
+from archgen.syntax.yaml_writer import write_yaml
+from tests.running import ROOT
+
+PAGE = (ROOT / "docs" / "transformations.md").read_text(encoding="utf-8")
+
+
+def test_the_example_makes_what_the_page_says(tmp_path: Path) -> None:
+    blocks = dict(re.findall(r"```yaml\n# (\S+)\n(.*?)```", PAGE, flags=re.DOTALL))
+    wanted = yaml.safe_load(blocks.pop("result"))
+    assert sorted(blocks) == ["archgen.yaml", "passes/log_pictures.yaml"]
+    for name, text in blocks.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    checked = check_project(tmp_path)
+    assert [each for each in checked.findings if str(each.severity) == "error"] == []
+    packed = transform_by_name(checked, choose_passes(checked, ["log_pictures"])).pack_project()
+    data = yaml.safe_load(write_yaml(packed.data, packed.comments))
+    assert data["groups"]["logging"]["components"]["recorder"] == wanted
+
+
+def test_the_page_names_all_there_is() -> None:
+    for name in find_known_passes(None).passes:
+        assert f"`{name}`" in PAGE, name
+    assert f"`{SHIPPED_PREFIX}`" in PAGE
+    for word in (*VALUE_FUNCTIONS, *TEST_FUNCTIONS):
+        assert f"`{word}(" in PAGE, word
+    for word in OPERATORS:
+        assert f"`{word}`" in PAGE, word
