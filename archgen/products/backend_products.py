@@ -43,7 +43,7 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
     """Return the files of a text backend. Raise OutputError where its templates fail."""
     from archgen.emit import text
 
-    context = GenerationContext(inputs.checked_project.architecture, options=backend.options)
+    context = GenerationContext(inputs.checked_project.architecture, options=backend.options, backend=backend.id)
     views, findings = make_backend_views(inputs, backend, context)
     for finding in findings:
         inputs.options.warn(f"{finding.span}: {finding.message}")

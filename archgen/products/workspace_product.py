@@ -146,6 +146,7 @@ def _render_files(
         selection.nodes if selection else None,
         host,
         backend.options,
+        backend.id,
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:

@@ -18,6 +18,12 @@ def _make_interfaces(context: GenerationContext) -> GeneratedView:
     return interface_packages.make_view(context)
 
 
+def _make_components(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import component_records
+
+    return component_records.make_view(context)
+
+
 def _make_plan(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import start_plan_view
 
@@ -44,6 +50,7 @@ def _make_programs(context: GenerationContext) -> GeneratedView:
 
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
+    "components": _make_components,
     "plan": _make_plan,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
