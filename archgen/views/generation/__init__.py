@@ -52,9 +52,9 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "components": _make_components,
     "plan": _make_plan,
+    "programs": _make_programs,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
-    "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
 
