@@ -105,10 +105,10 @@ def check_before_writing(project: Path | None, *, keep_going: bool) -> CheckedPr
 
 def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -> Selection | None:
     """Evaluate a selector from the command line. What names nothing is wrong usage."""
-    from archgen.products import project_views
-
     if selector_text is None:
         return None
+    from archgen.products import project_views
+
     selection, problems = project_views.select_elements(checked_project, selector_text)
     report_selector_problems(problems)
     return selection

@@ -256,7 +256,7 @@ def _drop_untrusted(
     checked_project: CheckedProject, backends: tuple[str, ...], trusted_revision: TrustedRevision | None
 ) -> list[str]:
     """Return the backends that may run; warn of the others: a change of a backend must not cost its review the rest."""
-    from archgen.products.backend_products import choose_backends
+    from archgen.products.backend_choice import choose_backends
     from archgen.products.trusted_backends import UntrustedBackendError
 
     trusted_names = []

@@ -1,4 +1,4 @@
-"""Hold the hints of elements against what the project's own backends say of them: `hints_schema` in `backend.yaml`.
+"""Hold the hints of elements against what backends say of them: `hints_schema` in `backend.yaml`, the project's or a shipped one.
 
 Nothing of a backend is run. The schema is a small part of JSON Schema, without references and patterns, so that a
 stranger's costs no more time than it is long.
@@ -7,8 +7,9 @@ stranger's costs no more time than it is long.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
@@ -25,9 +26,8 @@ WRONG_HINT = Rule(
     """\
 A hint is not what the backend that it is for reads.
 
-Why: hints are data for other programs, and mean nothing to archgen. A backend of the project says in its `backend.yaml`, below
-`hints_schema`, which hints it reads, for each kind of element: a slip is found where it is written, and not in what is generated
-from it.
+Why: hints are data for other programs, and mean nothing to archgen. A backend says in its `backend.yaml`, below `hints_schema`, which
+hints it reads, for each kind of element: a slip is found where it is written, and not in what is generated from it.
 
 Bad:
 
@@ -75,15 +75,15 @@ class _BackendHints:
 
     id: str
     schemas: MappingNode
-    at: Span
+    at: Span | None
+    """None for a backend that ships with archgen."""
 
 
 def find_wrong_hints(architecture: Architecture, files: ProjectFiles) -> Iterator[Diagnostic]:
-    """Report hints that a backend of the project does not read as they are written."""
+    """Report hints that a backend, of the project or shipped, does not read as they are written."""
     _, folders, _ = next(iter(files.walk_folders("backends")), ("", [], []))
-    backends = dict.fromkeys(sorted(folders))
-    if not backends:
-        return
+    own_backends = frozenset(folders)
+    backends = own_backends | _list_shipped_backends()
     read_backends: dict[str, _BackendHints | None] = {}
     judged_places: set[tuple[Span, str]] = set()
     for each in list_annotated_elements(architecture):
@@ -92,7 +92,8 @@ def find_wrong_hints(architecture: Architecture, files: ProjectFiles) -> Iterato
             if program not in backends:
                 continue
             if program not in read_backends:
-                read_backends[program] = _read_backend(files, program)
+                is_own = program in own_backends
+                read_backends[program] = _read_backend(files, program) if is_own else _read_shipped_backend(program)
             backend = read_backends[program]
             if backend is not None:
                 for fault in _judge_hints(backend, each.kind, value):
@@ -109,7 +110,22 @@ def _read_backend(files: ProjectFiles, program: str) -> _BackendHints | None:
     manifest = read_text_file(files, path) if files.has_path(path) else None
     if manifest is None or manifest.problem or len(manifest.text) > _MAX_MANIFEST_LETTERS:
         return None
-    document, _ = parse_yaml(path, manifest.text)
+    return _parse_manifest(program, path, manifest.text)
+
+
+def _list_shipped_backends() -> frozenset[str]:
+    folder = resources.resource_path("backends")
+    return frozenset(each.name for each in folder.iterdir()) if folder.is_dir() else frozenset()
+
+
+def _read_shipped_backend(program: str) -> _BackendHints | None:
+    path = resources.resource_path("backends", program, "backend.yaml")
+    backend = _parse_manifest(program, str(path), path.read_text("utf-8")) if path.is_file() else None
+    return replace(backend, at=None) if backend else None
+
+
+def _parse_manifest(program: str, path: str, text: str) -> _BackendHints | None:
+    document, _ = parse_yaml(path, text)
     entry = document.root.entries.get("hints_schema") if document else None
     if entry is None or not isinstance(entry.value, MappingNode):
         return None
@@ -136,7 +152,7 @@ def _report_fault(backend: _BackendHints, each: AnnotatedElement, fault: HintFau
         WRONG_HINT.name,
         f"`hints.{path}` of the {each.kind.replace('_', ' ')} `{each.id}` {fault.words}",
         place,
-        labels=(Label(backend.at, "what the backend reads"),),
+        labels=(Label(backend.at, "what the backend reads"),) if backend.at else (),
         help=fault.help,
         element=each.owner_id,
     )

@@ -12,7 +12,8 @@ from pathlib import Path
 from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject
 from archgen.products import build_stamp, project_views, report_cache
-from archgen.products.backend_products import choose_backends, make_backend_product
+from archgen.products.backend_choice import choose_backends
+from archgen.products.backend_products import make_backend_product
 from archgen.products.product_inputs import Product, ProductInputs
 from archgen.products.product_table import PRODUCTS, REPORT, SITE
 from archgen.products.product_writing import StartedProducts, start_products, write_started

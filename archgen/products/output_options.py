@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from archgen.model.selector_evaluation import Selection
-from archgen.products.trusted_backends import TrustedRevision
-from archgen.views.changes.site_changes import SiteChanges
-from archgen.views.pages.report_outline import DetailLevel
+if TYPE_CHECKING:
+    from archgen.model.selector_evaluation import Selection
+    from archgen.products.trusted_backends import TrustedRevision
+    from archgen.views.changes.site_changes import SiteChanges
+    from archgen.views.pages.report_outline import DetailLevel
 
 DrawingProgress = Callable[[int, int], None]
 """Called with the number of pictures drawn so far, and of all pictures."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fnmatch
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from pathlib import Path
 from archgen.emit import file_tree
 from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
+from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.picture_drawing import DrawnPictures, draw_started_pictures
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.chart_shapes import Drawing
@@ -109,19 +109,6 @@ def make_content(inputs: ProductInputs, started_products: StartedProducts, produ
 def write_product(inputs: ProductInputs, product: Product, target: Path) -> MadeProduct:
     """Make and write a single product."""
     return write_started(inputs, start_products(inputs, (product,)), product, target)
-
-
-def refuse_leaving_links(checked_project: CheckedProject, target: Path) -> None:
-    """Refuse a place in the project's own output folder that a link leads out of the project.
-
-    A stranger's branch can hold a link called `archgen-out`. A folder that somebody names with `-o` is where he wants it.
-    """
-    own_folder = Path(os.path.normpath(checked_project.output_folder.absolute()))
-    # The last name as well, where it is a link: what is written would go through it.
-    leads_out = not Path(os.path.realpath(target)).is_relative_to(os.path.realpath(checked_project.root))
-    if leads_out and Path(os.path.normpath(target.absolute())).is_relative_to(own_folder):
-        msg = f"{target} is reached by a link that leads out of the project"
-        raise file_tree.OutputError(msg, "take the link away, or name the folder with `-o`")
 
 
 def write_product_file(checked_project: CheckedProject, target: Path, content: bytes) -> None:

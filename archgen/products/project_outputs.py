@@ -8,7 +8,8 @@ from pathlib import Path
 
 from archgen.emit import file_tree
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_products import choose_backends, render_single_file
+from archgen.products.backend_choice import choose_backends
+from archgen.products.backend_products import render_single_file
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.product_table import PACKED, REPORT, SITE, make_diagrams_product

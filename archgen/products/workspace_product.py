@@ -17,11 +17,11 @@ from archgen.emit.workspace.generated_file import GeneratedFile, fold_path
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_products import choose_backends, make_backend_views, raise_problems
+from archgen.products.backend_choice import choose_backends, raise_problems
+from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.output_options import OutputOptions
-from archgen.products.product_inputs import ProductInputs
-from archgen.products.product_writing import refuse_leaving_links
 from archgen.products.trusted_backends import refuse_untrusted_pass
+from archgen.views.generation import GENERATION_VIEWS, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
 
@@ -146,14 +146,27 @@ def _render_files(
         selection.nodes if selection else None,
         host,
         backend.options,
+        backend.id,
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:
         return None, unmet_needs
-    views, findings = make_backend_views(ProductInputs(checked_project, options), backend, context)
+    views, findings = _make_views(checked_project, options, backend, context)
     files, problems = text.render_workspace(backend, views)
     raise_problems(problems)
     return files, findings
+
+
+def _make_views(
+    checked_project: CheckedProject, options: OutputOptions, backend: Backend, context: GenerationContext
+) -> tuple[Mapping[str, object], tuple[Diagnostic, ...]]:
+    """Return the views of a backend. What documents are made from is loaded only for one that asks for it."""
+    if GENERATION_VIEWS.keys() >= set(backend.views):
+        return make_generation_views(context, backend.views)
+    from archgen.products.backend_products import make_backend_views
+    from archgen.products.product_inputs import ProductInputs
+
+    return make_backend_views(ProductInputs(checked_project, options), backend, context)
 
 
 def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str | None) -> str:

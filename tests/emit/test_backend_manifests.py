@@ -54,7 +54,7 @@ def test_a_project_without_backends(tmp_path: Path) -> None:
         (GOOD.replace("text", "tex"), "3:1: `emitter` must be one of `text`, `docx`, `site`, `graphviz`"),
         (
             GOOD.replace("[record, pages]", "all"),
-            "4:1: `view` must be one of `outline`, `pages`, `record`, `graphs`, `sequences`, `tables`, `interfaces`",
+            "4:1: `view` must be one of `outline`, `pages`, `record`, `graphs`, `sequences`, `tables`, `interfaces`, `components`, `plan`, `programs`",
         ),
         (WORKSPACE.replace("once: true", "once: maybe"), "7:31: `files.0.once` must be `true` or `false`"),
         (WORKSPACE.replace("once: true", "executable: [1]"), "7:31: `files.0.executable` must be `true` or `false`"),

@@ -67,7 +67,9 @@ def test_each_slip_has_its_place_and_words(hints: str, found: list[str], tmp_pat
 
 
 def test_without_a_schema_hints_are_free(tmp_path: Path) -> None:
-    assert check(tmp_path, "{orca: [1]}", None) == []
+    assert check(tmp_path, "{mine: [1]}", None) == []
+    # One that ships has a schema.
+    assert [each.partition(": ")[0] for each in check(tmp_path, "{orca: [1]}", None)] == ["17"]
     assert check(tmp_path, "{orca: [1]}", "id: orca\n") == []
     assert check(tmp_path, "{orca: [1]}", "hints_schema: text\n") == []
     assert check(tmp_path, "{orca: [1]}", "{no yaml") == []

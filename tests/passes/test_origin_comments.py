@@ -10,6 +10,8 @@ from archgen.passes.origin_comments import write_comment
 from archgen.pipeline import check_project, transform_project
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
+from archgen.views.pages.page_places import place_pages
+from archgen.views.shapes import Page, Section
 from tests.passes.same_meaning import EXAMPLES, pack, write_project
 
 MONITOR = ("groups", "cleaning", "components", "monitor")
@@ -41,6 +43,15 @@ def test_cards_tell_the_way_back_and_further_passes_keep_it(tmp_path: Path) -> N
     further = transform_project(checked, ["monitor"])
     assert "made[complete_names, flatten] from archgen.yaml:102:22" in pack(further)
     assert "monitor:  # archgen: made[monitor] from archgen.yaml:90:3" in pack(further)
+
+
+def test_pages_of_the_site_tell_the_way_back() -> None:
+    transformed = transform_project(check_project(EXAMPLES / "cleaning_robot"), ["monitor"])
+    lookup = make_lookup(transformed.architecture)
+    section = Section("component:cleaning.monitor", "Monitor")
+    page = Page("monitor.html", section.anchor, "Monitor", "component", section, lead="Component")
+    (placed,) = place_pages(lookup, [page])
+    assert placed.lead == "Component, made by the pass monitor from archgen.yaml:90:3"
 
 
 def test_a_comment_beside_a_silenced_finding_keeps_both(tmp_path: Path) -> None:

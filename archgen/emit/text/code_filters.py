@@ -16,7 +16,9 @@ from markupsafe import Markup
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
 
 _PLAIN_SHELL_WORD = re.compile(r"[A-Za-z0-9_@%+=:,./-]+\Z", re.ASCII)
-_LINE_BREAKS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ufeff\ud800-\udfff\u200e\u200f\u202a-\u202e\u2066-\u2069]+")
+_LINE_BREAKS = re.compile(
+    r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ufeff\ud800-\udfff\u200e\u200f\u202a-\u202e\u2066-\u2069\ufffe\uffff]+"
+)
 """Controls and all that some language or editor takes for the end of a line, or for another direction of writing."""
 _XML_FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _COMMENT_ENDS = (

@@ -10,12 +10,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from archgen.emit.markdown.mermaid_chart import escape_mermaid, write_flowchart
-from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
-from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
 from archgen.emit.safe_names import make_identifier, make_slug
 from archgen.emit.text.code_filters import CODE_FILTERS
-from archgen.emit.text.plain_graphs import graph_from_plain, sequence_from_plain
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
@@ -77,12 +73,26 @@ def _is_strange(address: str) -> bool:
 
 def draw_mermaid(graph: object) -> str:
     """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it; a large one is folded."""
+    # Imported here, as below: most backends draw nothing, and generators are run again and again.
+    from archgen.emit.markdown.mermaid_chart import write_flowchart
+    from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
+    from archgen.emit.text.plain_graphs import graph_from_plain
+
     return "\n".join(write_flowchart(fold_for_mermaid(graph_from_plain(graph)), has_stable_names=True))
 
 
 def draw_mermaid_sequence(sequence: object) -> str:
     """Write a sequence, as templates get it, as a Mermaid sequence diagram without the fence around it."""
+    from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
+    from archgen.emit.text.plain_graphs import sequence_from_plain
+
     return "\n".join(write_sequence_diagram(sequence_from_plain(sequence)))
+
+
+def _escape_mermaid(text: object) -> str:
+    from archgen.emit.markdown.mermaid_chart import escape_mermaid
+
+    return escape_mermaid(str(text))
 
 
 def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:
@@ -98,7 +108,7 @@ TEMPLATE_FILTERS: dict[str, Any] = {
     "commonmark": safe_commonmark,
     "identifier": make_identifier,
     "markdown": escape_markdown,
-    "mermaid": escape_mermaid,
+    "mermaid": _escape_mermaid,
     "mermaid_graph": draw_mermaid,
     "mermaid_sequence": draw_mermaid_sequence,
     "slug": lambda text: make_slug(str(text)),

@@ -10,6 +10,7 @@ from archgen.emit.safe_names import explain_long_path, is_safe_path
 
 _MAX_PART_BYTES = 200
 """What every file system takes as one name, with room for what other tools append."""
+_MAX_SHOWN_PATH = 120
 _TOOL_FOLDERS = frozenset({".archgen", ".git", ".hg", ".svn"})
 """Folders in which a file is an instruction to a tool: `.git/hooks/pre-commit` is run."""
 
@@ -74,7 +75,8 @@ def _list_parents(path: str) -> list[str]:
 
 
 def _name_file(file: GeneratedFile) -> str:
-    return f"`{file.path}`" + (f" ({file.place})" if file.place else "")
+    path = file.path if len(file.path) <= _MAX_SHOWN_PATH else f"{file.path[:_MAX_SHOWN_PATH]}..."
+    return f"`{path}`" + (f" ({file.place})" if file.place else "")
 
 
 def _explain_clash(first: str, second: str) -> str:

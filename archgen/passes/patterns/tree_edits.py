@@ -25,7 +25,7 @@ from archgen.passes.patterns.pattern_shapes import (
     ViewValue,
 )
 from archgen.passes.patterns.type_layers import Layer
-from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside
+from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside, path_of_type
 from archgen.passes.patterns.view_words import VIRTUAL_KEYS
 from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode, YamlNode
@@ -118,26 +118,31 @@ class TreeEditor:
             message = f"`{name}` is no id, so nothing can be called so"
             raise EditError(message, "`snake(...)` in `let` makes one of any text")
         kind = str(value.get("kind", "component"))
-        is_group = not dot and kind == "group"
+        # `parts.filter_of_pose` is a new type of the library `parts`.
+        library = parent if parent not in self._view.elements and self._tree.get(("libraries", parent)) else None
+        if library is not None:
+            parent, dot = "", ""
+        is_group = not dot and kind == "group" and library is None
         if dot and parent not in self._view.elements:
             message = f"`{key}` is to stand in `{parent}`, which there is not"
             raise EditError(message, "its path begins with that of what it stands in: `$outer.name`")
         if dot and find_instance(self._view, parent):
             message = f"`{key}` is to stand in an instance, which has what its type has"
             raise EditError(message, f"write it into the type of `{parent}`: `kind: type` finds types")
-        type_name = self._view.elements[parent].type_name if dot else None if is_group else name
+        type_name = self._view.elements[parent].type_name if dot else None if is_group else key
         path = (
             (*self._view.elements[parent].path, INNER_KEY, name)
             if dot
             else ("groups", name)
             if is_group
-            else ("component_types", name)
+            else path_of_type(key)
         )
         form = COMPONENT_FORM if dot else GROUP_FORM if is_group else COMPONENT_TYPE_FORM
         copied_from = value.path if isinstance(value, ComponentBody) else ""
         body, sources = _split_sources({k: v for k, v in value.items() if k not in VIRTUAL_KEYS}, copied_from)
         span = self._tree.find_place(origin)
-        self._tree.set(path, make_data_node(expand_value(body, form), span, copied_from), origin)
+        content = expand_value(body if library is None else _leave_library(body, library), form)
+        self._tree.set(path, make_data_node(content, span, copied_from), origin)
         inner_ids = (*self._view.elements[parent].inner_ids, name) if dot else ()
         element_kind: ElementKind = "component" if dot else "group" if is_group else "type"
         element = ViewElement(key, name, element_kind, parent if dot else None, path, type_name, inner_ids)
@@ -266,6 +271,18 @@ class TreeEditor:
             return value
         name = self._view.write_type_name(value)
         return name.removeprefix(f"{layer.path[1]}.") if layer.path[0] == "libraries" else name
+
+
+def _leave_library(body: Mapping[str, ViewValue], library: str) -> dict[str, ViewValue]:
+    """Return what is to stand in a library, whose types name one another without it."""
+    return {
+        key: _leave_library(value, library)
+        if isinstance(value, dict)
+        else value.removeprefix(f"{library}.")
+        if key in _TYPE_KEYS and isinstance(value, str)
+        else value
+        for key, value in body.items()
+    }
 
 
 def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:

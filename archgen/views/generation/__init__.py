@@ -6,8 +6,9 @@ manifests write below `view`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
 
 
@@ -17,10 +18,28 @@ def _make_interfaces(context: GenerationContext) -> GeneratedView:
     return interface_packages.make_view(context)
 
 
+def _make_components(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import component_records
+
+    return component_records.make_view(context)
+
+
 def _make_plan(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import start_plan_view
 
     return start_plan_view.make_view(context)
+
+
+def _make_ros1_launch(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import launch_view
+
+    return launch_view.make_view(context, ros=1)
+
+
+def _make_ros2_launch(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import launch_view
+
+    return launch_view.make_view(context, ros=2)
 
 
 def _make_programs(context: GenerationContext) -> GeneratedView:
@@ -31,7 +50,20 @@ def _make_programs(context: GenerationContext) -> GeneratedView:
 
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
+    "components": _make_components,
     "plan": _make_plan,
+    "ros1_launch": _make_ros1_launch,
+    "ros2_launch": _make_ros2_launch,
     "programs": _make_programs,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
+
+
+def make_generation_views(
+    context: GenerationContext, names: Iterable[str]
+) -> tuple[dict[str, object], tuple[Diagnostic, ...]]:
+    """Return those of the named views that are for generators, and what they leave out, in the order of its places."""
+    views = {name: GENERATION_VIEWS[name](context) for name in names if name in GENERATION_VIEWS}
+    findings = dict.fromkeys(finding for view in views.values() for finding in view.findings)
+    data: dict[str, object] = {name: view.data for name, view in views.items()}
+    return data, tuple(sorted(findings, key=lambda finding: finding.sort_key))

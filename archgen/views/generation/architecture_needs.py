@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import first_written_span
 from archgen.model.architecture import Architecture
+from archgen.views.generation import property_needs
 from archgen.views.generation.generation_context import GenerationContext
 
 UNMET_NEED = Rule(
@@ -121,9 +122,19 @@ def _tell(
     )
 
 
+def _find_unfit_tags(context: GenerationContext) -> Iterator[Diagnostic]:
+    return property_needs.find_unfit_tags(context, UNMET_NEED)
+
+
+def _find_unfit_values(context: GenerationContext) -> Iterator[Diagnostic]:
+    return property_needs.find_unfit_values(context, UNMET_NEED)
+
+
 _FINDERS: Mapping[str, Callable[[GenerationContext], Iterator[Diagnostic]]] = {
     "flat": _find_composed,
     "no_generics": _find_generics,
     "one_source": _find_several_sources,
     "unique_names": _find_repeated_names,
+    "distinct_tags": _find_unfit_tags,
+    "one_line_values": _find_unfit_values,
 }

@@ -58,6 +58,8 @@ class GenerationContext:
     """The only host to generate for; None for all."""
     options: Mapping[str, Any] = field(default_factory=dict)
     """What the manifest says under `options`, as texts, with what `--option` says instead."""
+    backend: str = ""
+    """The id of the backend: elements have hints for it below this name."""
 
     @property
     def is_whole(self) -> bool:
@@ -83,6 +85,15 @@ class GenerationContext:
             if (self.components is None or component_id in self.components)
             and (self.host is None or component_id in implemented)
         }
+
+    @cached_property
+    def nodes_by_component(self) -> Mapping[str, Node]:
+        """The node of each component, asked for or not, by the component's complete id; of several the first."""
+        nodes: dict[str, Node] = {}
+        for node in self.architecture.nodes.values():
+            for component_id in node.implements:
+                nodes.setdefault(component_id, node)
+        return nodes
 
     @property
     def ros_generation(self) -> int:

@@ -11,8 +11,10 @@ from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
+from archgen.views.generation.start_hints import find_wrong_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
-from archgen.views.generation.start_step_record import UNPLACED, read_hint, record_step
+from archgen.views.generation.start_step_record import UNPLACED, record_step
+from archgen.views.generation.wanted_steps import find_wanted_steps
 
 
 def make_view(context: GenerationContext) -> GeneratedView:
@@ -24,7 +26,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         step.id: record_step(step, number, names, architecture, context.ros_generation)
         for number, step in enumerate(plan.steps, start=1)
     }
-    wanted_ids = _find_wanted_steps(plan, context)
+    wanted_ids = find_wanted_steps(plan, context)
     wanted_hosts = dict.fromkeys(step.host for step in plan.steps if step.id in wanted_ids)
     steps = {step.id: step for step in plan.steps}
     folder = str(context.options.get("folder") or "") or f"/opt/{architecture.project.id}"
@@ -48,22 +50,8 @@ def make_view(context: GenerationContext) -> GeneratedView:
             "given_up": [
                 start_phrases.describe_dropped(each, steps) for each in plan.dropped if each.wait.waiting in wanted_ids
             ],
-        }
-    )
-
-
-def _find_wanted_steps(plan: StartPlan, context: GenerationContext) -> frozenset[str]:
-    """Return the steps of the wanted nodes, and those of the containers that load them."""
-    nodes = context.wanted_nodes
-    loading_containers = {node.container for node in nodes.values()}
-    return frozenset(
-        step.id
-        for step in plan.steps
-        if (
-            step.container in loading_containers or (context.components is None and context.host in {None, step.host})
-            if step.kind == "container"
-            else step.id in nodes
-        )
+        },
+        tuple(find_wrong_hints(architecture)),
     )
 
 

@@ -8,14 +8,12 @@ from typing import Any
 from archgen.bringup.plan_shapes import DEFAULT_SECONDS, StartStep, format_seconds
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
-from archgen.model.element_annotations import ElementAnnotations
 from archgen.views import start_phrases
 from archgen.views.generation.generation_context import write_place
+from archgen.views.generation.start_hints import read_hint
 
 UNPLACED = "no-host"
 """What the computer of steps without a host is called: no id has a hyphen."""
-_BACKEND = "start"
-"""The program for which hints tell a computer's `address`, and the `image` that holds a program."""
 _SEEN_FROM_AFAR = frozenset({"port", "topic", "service"})
 
 
@@ -109,10 +107,3 @@ def _find_image(step: StartStep, architecture: Architecture) -> str:
         element = architecture.nodes[step.id].annotations
     host = architecture.hosts.get(step.host or "")
     return read_hint(element, "image") or (read_hint(host.annotations, "image") if host else "")
-
-
-def read_hint(annotations: ElementAnnotations, key: str) -> str:
-    """Return what `hints: {start: {KEY: ...}}` of an element says; empty where it says nothing of that."""
-    hints = annotations.hints.get(_BACKEND)
-    value = hints.get(key) if isinstance(hints, Mapping) else None
-    return value.strip() if isinstance(value, str) else ""

@@ -24,8 +24,10 @@ def _place_page(lookup: Lookup, page: Page, place: Span) -> Page:
     made = find_made_element(lookup.architecture.made_elements, place)
     if made is None or not made.passes:
         return placed_page
-    sentence = f"{str(made).replace('`', '').capitalize()}."
-    return replace(placed_page, lead=f"{page.lead} {sentence}" if page.lead else sentence)
+    words = str(made).replace("`", "")
+    is_phrase = bool(page.lead) and page.lead[-1].isalnum()
+    lead = f"{page.lead}, {words}" if is_phrase else f"{page.lead} {words[0].upper()}{words[1:]}.".lstrip()
+    return replace(placed_page, lead=lead)
 
 
 def _list_spans(architecture: Architecture) -> Mapping[str, Span]:

@@ -121,6 +121,11 @@ def _transform(checked: CheckedProject, *names: str) -> CheckedProject:
     return made
 
 
+@pytest.mark.parametrize("name", TWINS)
+def test_rules_and_passes_agree_where_types_stand_in_a_library(name: str, tmp_path: Path) -> None:
+    _compare(_with_library(tmp_path), name)
+
+
 def test_figure_6_each_message_carries_its_sender(robot: CheckedProject) -> None:
     made = _transform(robot, "rules.envelope")
     assert made.architecture.edges == robot.architecture.edges

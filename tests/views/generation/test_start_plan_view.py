@@ -7,11 +7,13 @@ from typing import Any
 
 import pytest
 
+from archgen.bringup.start_plan import make_start_plan
 from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GenerationContext
+from archgen.views.generation.start_hints import find_wrong_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_plan_view import make_view
-from archgen.views.generation.start_step_record import read_hint
+from archgen.views.generation.start_step_record import UNPLACED, record_step
 
 PROJECT = """\
 groups:
@@ -150,13 +152,29 @@ def test_jobs_wait_for_what_shows_that_something_is_up(tmp_path: Path) -> None:
     assert list_seen_signs(robot["steps"][0]) == robot["steps"][0]["seen_signs"]
 
 
-@pytest.mark.parametrize("hints", ["{start: 3}", "{start: {image: [x]}}", "{other: {image: x}}"])
-def test_hints_of_another_kind_say_nothing(tmp_path: Path, hints: str) -> None:
+@pytest.mark.parametrize(
+    ("hints", "found"),
+    [
+        ("{start: 3}", "the hints of `a` for `start` are no mapping"),
+        ("{start: {image: [x]}}", "the hint `image` of `a` for `start` is no text"),
+        ("{start: {adress: x}}", "nobody reads the hint `adress` of `a` for `start`"),
+        ("{other: {image: x}}", ""),
+    ],
+)
+def test_hints_of_another_kind_say_nothing(tmp_path: Path, hints: str, found: str) -> None:
     path = tmp_path / "p.yaml"
     path.write_text(
         f"archgen: 1\nproject: {{id: bot, title: Bot}}\nhosts: {{a: {{hints: {hints}}}}}\n", encoding="utf-8"
     )
-    assert read_hint(check_project(path).architecture.hosts["a"].annotations, "image") == ""
+    architecture = check_project(path).architecture
+    assert read_hint(architecture.hosts["a"].annotations, "image") == ""
+    findings = list(find_wrong_hints(architecture))
+    assert "".join(each.message for each in findings) == found
+    assert [(each.span.line, each.help) for each in findings] in (
+        [],
+        [(3, "did you mean `address`?")],
+        [(3, "what is known here is `address` and `image`, each a text")],
+    )
 
 
 def test_a_project_without_nodes_starts_nothing(tmp_path: Path) -> None:
@@ -164,3 +182,20 @@ def test_a_project_without_nodes_starts_nothing(tmp_path: Path) -> None:
     path.write_text("archgen: 1\nproject: {id: bot, title: Bot}\n", encoding="utf-8")
     data = make_view(GenerationContext(check_project(path).architecture)).data
     assert (data["hosts"], data["steps"], data["jobs"], data["targets"]) == ([], [], [], [])
+
+
+def test_what_has_no_host_stands_on_a_computer_without_a_name(tmp_path: Path) -> None:
+    path = tmp_path / "p.yaml"
+    path.write_text(
+        "archgen: 1\nproject: {id: bot, title: Bot}\nnodes: {a: {kind: program, command: [x]}}\n", encoding="utf-8"
+    )
+    architecture = check_project(path).architecture
+    (step,) = make_start_plan(architecture).steps
+    record = record_step(step, 1, {step.id: step.file_name}, architecture, 2)
+    assert (record["host"], record["address"], record["within"], record["is_watched"]) == (
+        UNPLACED,
+        "localhost",
+        None,
+        False,
+    )
+    assert [each["name"] for each in make_view(GenerationContext(architecture)).data["hosts"]] == [UNPLACED]
