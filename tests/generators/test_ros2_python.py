@@ -42,12 +42,14 @@ groups:
           rate: {type: float, value: 10, unit: Hz, range: [1, 30], description: How often.}
           mode: {choices: [fast, careful], value: careful}
           names: {value: [a, "b'c"]}
+          languages: {value: [el, en], choices: [el, pl, en]}
           size: {type: integer, value: 640, range: [1, 4096], read_only: true}
           map_file: {type: string}
         timing: {rate: 10 Hz, wcet: 1 ms}
       det:
         inputs: {image: cam.image, configure: cam.info, timer: cam.info}
         outputs: {found: Words, plan: Plan, go: Fib}
+      talker_node: {outputs: {words: Words}}
       user: {functionality: 'Ends in "quotes"', inputs: {go: det.go, plan: det.plan}}
       m1: {is: motor, inputs: {target: det.found}}
       m2: {is: motor, inputs: {target: det.found}, parameters: {joint: right}}
@@ -89,7 +91,8 @@ def make_programs(folder: Path, text: str) -> tuple[dict[str, dict[str, Any]], l
 def test_instances_of_one_type_are_one_program(tmp_path: Path) -> None:
     programs, left_out = make_programs(tmp_path, ROBOT)
     assert left_out == []
-    assert list(programs) == ["cam", "det", "motor", "user"]
+    assert list(programs) == ["cam", "det", "motor", "talker_node", "user"]
+    assert (programs["talker_node"]["module"], programs["cam"]["parameters"][3]["type"]) == ("talker", "string_array")
     motor = programs["motor"]
     assert [(each["full_name"], each["remaps"]) for each in motor["nodes"]] == [
         ("/arm/m1", [{"own_name": "state", "name": "/g/m1/state"}]),
@@ -105,7 +108,7 @@ def test_what_exists_or_is_no_python_is_not_generated(tmp_path: Path) -> None:
     text = (
         "groups: {g: {components: {a: {}, b: {}, c: {}, d: {}, e: {}}}}\n"
         "nodes: {a: {implements: a, status: existing}, b: {implements: b, kind: program, command: [x]},\n"
-        "        c: {implements: c, language: cpp}, d: {implements: d, kind: composable}, e: {implements: e, status: adapted}}\n"
+        "        c: {implements: c, language: cpp}, d: {implements: d, kind: composable}, e: {implements: e}, f: {implements: e, status: adapted}}\n"
     )
     assert list(make_programs(tmp_path, text)[0]) == ["e"]
 

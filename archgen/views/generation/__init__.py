@@ -30,6 +30,18 @@ def _make_plan(context: GenerationContext) -> GeneratedView:
     return start_plan_view.make_view(context)
 
 
+def _make_ros1_launch(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import launch_view
+
+    return launch_view.make_view(context, ros=1)
+
+
+def _make_ros2_launch(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import launch_view
+
+    return launch_view.make_view(context, ros=2)
+
+
 def _make_programs(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import node_programs
 
@@ -41,6 +53,8 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "components": _make_components,
     "plan": _make_plan,
     "programs": _make_programs,
+    "ros1_launch": _make_ros1_launch,
+    "ros2_launch": _make_ros2_launch,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
 

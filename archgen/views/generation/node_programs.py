@@ -46,7 +46,7 @@ _IMPORTED_CLASSES = frozenset(
 def make_view(context: GenerationContext) -> GeneratedView:
     """Return the programs to generate: `packages`, and all their `programs`.
 
-    Nodes that exist (`status: existing`) have a program already, and what is no node of ROS has none here. The option
+    Nodes that exist (`status: existing` or `adapted`) have a program already, and what is no node of ROS has none here. The option
     `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
     """
     language = str(context.options.get("language") or "python")
@@ -110,10 +110,15 @@ def name_program(architecture: Architecture, node: Node) -> str:
     return make_ros_name(type_name or node.id)
 
 
+def _name_module(program_name: str) -> str:
+    """Return the module of a program: `planner` of the program `planner_node`, since its node stands in `planner_node.py`."""
+    return make_snake_name(make_snake_name(program_name).removesuffix("_node"))
+
+
 def _is_generated(node: Node, language: str) -> bool:
     # What a container loads is a library of C++.
     usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
-    return node.status != "existing" and not node.is_program and (node.language or usual_language) == language
+    return node.status in {None, "planned"} and not node.is_program and (node.language or usual_language) == language
 
 
 def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:
@@ -162,8 +167,8 @@ def _record_program(
     record: dict[str, object] = {
         "package": package_name,
         "executable": program_name,
-        "module": make_snake_name(program_name),
-        "class_name": make_camel_name(program_name),
+        "module": _name_module(program_name),
+        "class_name": make_camel_name(_name_module(program_name)),
         "title": components[0].title if len(components) == 1 and components[0].component_type is None else first.title,
         "description": first.description or " ".join(functionalities),
         "is_lifecycle": "lifecycle" in first.kinds,
@@ -177,7 +182,7 @@ def _record_program(
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),
-        "python_imports": _import_in_python(sections, make_camel_name(program_name)),
+        "python_imports": _import_in_python(sections, make_camel_name(_name_module(program_name))),
         "place": write_place(_find_place(architecture, first)),
     }
     return record, [*findings, *parameter_findings]

@@ -72,7 +72,7 @@ def _record_parameter(
         "description": declaration.description or "",
         "lowest": limits[0] if has_limits else None,
         "highest": limits[1] if has_limits else None,
-        "choices": [_convert_value(each, ros_type) for each in declaration.choices or ()],
+        "choices": [_convert_value(each, ros_type.removesuffix("_array")) for each in declaration.choices or ()],
         "read_only": declaration.read_only,
         "place": write_place(declaration.at if parameters[0].declaration else parameters[0].at),
     }
@@ -87,8 +87,11 @@ def _find_ros_type(parameters: Iterable[EffectiveParameter]) -> str | None:
             base_type = _ROS_TYPES.get(written.removesuffix("[]"))
             return None if base_type is None else f"{base_type}_array" if written.endswith("[]") else base_type
         choices = (parameter.declaration.choices if parameter.declaration else None) or ()
-        for value in (*choices, *([parameter.value] if parameter.is_known else [])):
-            found_types.add(_infer_ros_type(value))
+        values = [parameter.value] if parameter.is_known else []
+        # The choices of a list are those of its items.
+        is_list = any(isinstance(each, list | tuple) for each in values)
+        found_types.update(_infer_ros_type([each] if is_list else each) for each in choices)
+        found_types.update(_infer_ros_type(each) for each in values)
     if found_types == {"integer", "double"}:
         return "double"
     if found_types == {"integer_array", "double_array"}:

@@ -14,6 +14,7 @@ from archgen.views.generation.generation_context import GeneratedView, Generatio
 from archgen.views.generation.start_hints import find_wrong_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_step_record import UNPLACED, record_step
+from archgen.views.generation.wanted_steps import find_wanted_steps
 
 
 def make_view(context: GenerationContext) -> GeneratedView:
@@ -25,7 +26,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         step.id: record_step(step, number, names, architecture, context.ros_generation)
         for number, step in enumerate(plan.steps, start=1)
     }
-    wanted_ids = _find_wanted_steps(plan, context)
+    wanted_ids = find_wanted_steps(plan, context)
     wanted_hosts = dict.fromkeys(step.host for step in plan.steps if step.id in wanted_ids)
     steps = {step.id: step for step in plan.steps}
     folder = str(context.options.get("folder") or "") or f"/opt/{architecture.project.id}"
@@ -51,21 +52,6 @@ def make_view(context: GenerationContext) -> GeneratedView:
             ],
         },
         tuple(find_wrong_hints(architecture)),
-    )
-
-
-def _find_wanted_steps(plan: StartPlan, context: GenerationContext) -> frozenset[str]:
-    """Return the steps of the wanted nodes, and those of the containers that load them."""
-    nodes = context.wanted_nodes
-    loading_containers = {node.container for node in nodes.values()}
-    return frozenset(
-        step.id
-        for step in plan.steps
-        if (
-            step.container in loading_containers or (context.components is None and context.host in {None, step.host})
-            if step.kind == "container"
-            else step.id in nodes
-        )
     )
 
 
