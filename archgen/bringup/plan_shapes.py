@@ -107,6 +107,10 @@ class RosLaunch:
     file_values: Mapping[str, object] = field(default_factory=dict)
     own_values: Mapping[str, object] = field(default_factory=dict)
     value_commands: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    arguments: tuple[str, ...] = ()
+    """What the program gets before the arguments of ROS."""
+    remaps: Mapping[str, str] = field(default_factory=dict)
+    """New names by those that the program uses."""
 
     @property
     def full_name(self) -> str:

@@ -12,6 +12,11 @@ from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.ros_distro import is_ros_1
 
 _FLOAT_TYPES = frozenset({"float", "float[]"})
+_ACTION_PARTS = {
+    1: ("/goal", "/cancel", "/status", "/feedback", "/result"),
+    2: ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", "/_action/feedback", "/_action/status"),
+}
+"""What an action consists of, by generation of ROS: a new name for the action alone reaches none of them."""
 
 
 def describe_node_launch(architecture: Architecture, node: Node) -> RosLaunch | None:
@@ -42,7 +47,20 @@ def describe_node_launch(architecture: Architecture, node: Node) -> RosLaunch | 
         file_values=give((each.name, each.value) for each in node.file_values),
         own_values=own_values,
         value_commands={name: words for name, words in commands.items() if name not in own_values},
+        arguments=node.arguments,
+        remaps=_find_remaps(architecture, node),
     )
+
+
+def _find_remaps(architecture: Architecture, node: Node) -> Mapping[str, str]:
+    """Return the new names of a node: of its ports, as far as they are called otherwise in the program, and further ones."""
+    remaps: dict[str, str] = {}
+    if any(use.own_name for use in node.uses):
+        for endpoint in architecture.endpoints:
+            if endpoint.node == node.id and endpoint.own_name and endpoint.medium == "ros":
+                parts = _ACTION_PARTS[1 if is_ros_1(architecture.distro) else 2] if endpoint.flow == "action" else ("",)
+                remaps |= {f"{endpoint.own_name}{part}": f"{endpoint.name}{part}" for part in parts}
+    return {**node.remaps, **remaps}
 
 
 def describe_container_launch(architecture: Architecture, container: Container) -> RosLaunch:

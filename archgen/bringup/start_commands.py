@@ -49,7 +49,17 @@ def build_command(architecture: Architecture, node: Node, launch: RosLaunch | No
         verb = ("load", launch.container) if launch.container else ("standalone",)
         namespace = ("--node-namespace", launch.namespace) if launch.namespace != "/" else ()
         names = ("--node-name", launch.name, *namespace)
-        return ("ros2", "component", *verb, launch.package, launch.plugin, *names, *list_loading_options(launch))
+        remaps = tuple(word for pair in _list_remaps(launch) for word in ("-r", pair))
+        return (
+            "ros2",
+            "component",
+            *verb,
+            launch.package,
+            launch.plugin,
+            *names,
+            *remaps,
+            *list_loading_options(launch),
+        )
     return _run_in_ros_2(launch)
 
 
@@ -61,12 +71,18 @@ def _run_in_ros_2(launch: RosLaunch) -> tuple[str, ...]:
     if not launch.package or not launch.executable:
         return ()
     namespace = ("-r", f"__ns:={launch.namespace}") if launch.namespace != "/" else ()
-    names = ("-r", f"__node:={launch.name}", *namespace)
-    return ("ros2", "run", launch.package, launch.executable, "--ros-args", *names, *list_ros_2_options(launch))
+    remaps = tuple(word for pair in _list_remaps(launch) for word in ("-r", pair))
+    names = ("-r", f"__node:={launch.name}", *namespace, *remaps)
+    program = (launch.package, launch.executable, *launch.arguments)
+    return ("ros2", "run", *program, "--ros-args", *names, *list_ros_2_options(launch))
+
+
+def _list_remaps(launch: RosLaunch) -> tuple[str, ...]:
+    return tuple(f"{own_name}:={name}" for own_name, name in launch.remaps.items())
 
 
 def _build_ros_1_command(node: Node, launch: RosLaunch) -> tuple[str, ...]:
-    words = (*_name_in_ros_1(launch), *list_ros_1_options(launch))
+    words = (*launch.arguments, *_name_in_ros_1(launch), *_list_remaps(launch), *list_ros_1_options(launch))
     if "nodelet" in node.kinds and launch.plugin:
         verb = ("load", launch.plugin, launch.container) if launch.container else ("standalone", launch.plugin)
         return ("rosrun", "nodelet", "nodelet", *verb, *words)

@@ -121,7 +121,7 @@ class _Sketch:
             key,
             options.get("port"),
             topics,
-            options.get("message"),
+            message=options.get("message"),
             internal="port" not in options,
             at=at,
             topic_places=(at,) * len(topics),

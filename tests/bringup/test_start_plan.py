@@ -282,3 +282,49 @@ def test_of_many_components_with_loops_none_is_lost(derived: Derived) -> None:
     plan = make_start_plan(architecture)
     assert len(plan.steps) == count
     assert plan == make_start_plan(architecture)
+
+
+@pytest.mark.parametrize(
+    ("distro", "expected"),
+    [
+        (
+            "jazzy",
+            {
+                "a": "ros2 run p a --fast a b --ros-args -r __node:=a -r /tf:=tf -r out:=/g/a/o",
+                "b": "ros2 component load /box p p::B --node-name b -r in:=/g/a/o",
+            },
+        ),
+        (
+            "noetic",
+            {
+                "a": "rosrun p a --fast a b __name:=a /tf:=tf out:=/g/a/o",
+                "b": "rosrun nodelet nodelet load p::B /box __name:=b in:=/g/a/o",
+            },
+        ),
+    ],
+)
+def test_programs_get_their_arguments_and_new_names(derived: Derived, distro: str, expected: dict[str, str]) -> None:
+    text = """
+ros: {distro: %s}
+groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Empty}}, b: {inputs: {o: a.o}}}}}
+nodes:
+  a: {implements: a, package: p, executable: a, arguments: [--fast, a b], remaps: {/tf: tf}, publishes: {o: {own_name: out}}}
+  b: {implements: b, kind: [composable, nodelet], package: p, plugin: "p::B", container: box, subscribes: {o: {own_name: in}}}
+containers: {box: }
+"""
+    plan = make_start_plan(derived(text % distro))
+    assert {step.id: " ".join(step.command) for step in plan.steps if step.id != "box"} == expected
+
+
+def test_new_names_reach_all_parts_of_an_action(derived: Derived) -> None:
+    text = """
+groups: {g: {components: {a: {outputs: {o: A}}}}}
+types: {A: nav2_msgs/action/Spin}
+nodes: {a: {implements: a, package: p, executable: a, serves: {o: {name: /turn, own_name: spin}}}}
+"""
+    (step,) = make_start_plan(derived(text)).steps
+    assert step.ros is not None
+    assert list(step.ros.remaps.items())[:2] == [
+        ("spin/_action/send_goal", "/turn/_action/send_goal"),
+        ("spin/_action/cancel_goal", "/turn/_action/cancel_goal"),
+    ]

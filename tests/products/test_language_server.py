@@ -92,7 +92,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanguageServer]
         ("requirements:\n  R-9:\n    use_cases: [|]", "UC-9"),
         ("chains:\n  k:\n    requirements: [|]", "R-7 R-8"),
         ("chains:\n  k:\n    through:\n      - |", "skin_driver touch.skin skin motion.brake brake touch.skin.force skin.force"),
-        ("links:\n  l:\n    connects: [|]", "arm_pc"),
+        ("links:\n  l:\n    connects: [|]", "arm_pc motion.brake brake touch.skin skin"),
         ("ros:\n  distro: |", "jazzy humble kilted lyrical rolling noetic"),
         ("rules:\n  unread-output: |", "note off warning error"),
         ("rules:\n  late-chain:\n    |", "severity margin"),

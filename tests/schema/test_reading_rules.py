@@ -12,6 +12,7 @@ from archgen import project, schema
 from archgen.diagnostics.diagnostic import Rule
 from archgen.link.slice_merging import RULES as MERGING
 from archgen.link.slice_merging import merge_documents
+from archgen.passes.patterns.pattern_registry import find_wrong_passes
 from archgen.pipeline import ALL_RULES
 
 RULES = (*schema.RULES, *project.RULES, *MERGING)
@@ -33,7 +34,10 @@ def found(root: Path, files: dict[str, str]) -> set[str]:
         (root / name).parent.mkdir(exist_ok=True)
         (root / name).write_text(text)
     loaded = project.load_project(root)
-    return {d.rule for d in (*loaded.diagnostics, *merge_documents(loaded.documents, loaded.lost_keys)[1])}
+    wrong_passes = find_wrong_passes(loaded.files, loaded.sources)
+    return {
+        d.rule for d in (*loaded.diagnostics, *merge_documents(loaded.documents, loaded.lost_keys)[1], *wrong_passes)
+    }
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)

@@ -75,4 +75,4 @@ class LaunchRemaps:
 
 def is_generated(node: Node) -> bool:
     """Whether a generator makes the program of a node: nobody says that it exists, and nothing else starts it."""
-    return node.status != "existing" and not node.is_program and not node.command
+    return node.status in {None, "planned"} and not node.is_program and not node.command

@@ -118,13 +118,18 @@ def _name_module(program_name: str) -> str:
 def _is_generated(node: Node, language: str) -> bool:
     # What a container loads is a library of C++.
     usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
-    return node.status in {None, "planned"} and not node.is_program and (node.language or usual_language) == language
+    return (
+        node.status in {None, "planned"}
+        and not (node.is_program or node.command)
+        and (node.language or usual_language) == language
+    )
 
 
 def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:
     index: dict[str, list[Endpoint]] = {}
     for endpoint in architecture.endpoints:
-        index.setdefault(endpoint.node, []).append(endpoint)
+        if endpoint.medium == "ros":
+            index.setdefault(endpoint.node, []).append(endpoint)
     return index
 
 
