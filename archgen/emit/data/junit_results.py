@@ -86,11 +86,6 @@ def _case_name(diagnostic: Diagnostic) -> str:
 
 def _case_lines(diagnostic: Diagnostic, sources: SourceTexts, *, fails: bool) -> Iterator[str]:
     """Yield the finding as a terminal shows it, with lines and marks."""
-    if diagnostic.variants:
-        yield "      <properties>"
-        for name in diagnostic.variants:
-            yield f'        <property name="variant" value="{_escape_attribute(name)}"/>'
-        yield "      </properties>"
     text = "\n".join(_escape_text(line) for line in render_finding_text(diagnostic, sources))
     if fails:
         message = _escape_attribute(diagnostic.message)
