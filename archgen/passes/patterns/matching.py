@@ -124,11 +124,10 @@ class _Search(NamedTuple):
                     return None
             else:
                 bindings = {**bindings, key.name: name}
-            if kind == "component":
-                for other in self.distinct:
-                    if other != key.name and bindings.get(other) == name:
-                        return None
-            return bindings
+            taken_by_other = kind == "component" and any(
+                other != key.name and bindings.get(other) == name for other in self.distinct
+            )
+            return None if taken_by_other else bindings
         return next(match_value(key, name, bindings, self.budget), None)
 
     def _choose_entry(

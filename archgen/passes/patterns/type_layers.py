@@ -54,13 +54,14 @@ class TypeLayers:
 
     def list_used(self, root: MappingNode) -> dict[str, MappingEntry]:
         """Return the project's own types, and those of libraries that it uses, in order."""
-        used = {name for name in self.entries if library_of_type(name) is None}
+        used = dict.fromkeys(name for name in self.entries if library_of_type(name) is None)
         groups = root.get("groups")
         pending = [*(self.entries[name].value for name in used), *([groups] if groups is not None else [])]
         while pending:
-            for name in set(self._list_names(pending.pop())) - used:
-                used.add(name)
-                pending.append(self.entries[name].value)
+            for name in self._list_names(pending.pop()):
+                if name not in used:
+                    used[name] = None
+                    pending.append(self.entries[name].value)
         return {name: entry for name, entry in self.entries.items() if name in used}
 
     def _list_names(self, node: YamlNode) -> Iterator[str]:

@@ -105,9 +105,8 @@ def name_program(architecture: Architecture, node: Node) -> str:
     """Return the executable of a node: what it says, else that of its component's type, else its own id."""
     if node.executable:
         return node.executable
-    types = {architecture.components[each].component_type for each in node.implements}
-    type_name = next(iter(types)) if len(types) == len(node.implements) == 1 else None
-    return make_ros_name(type_name or node.id)
+    only_component = architecture.components[node.implements[0]] if len(node.implements) == 1 else None
+    return make_ros_name((only_component.component_type if only_component else None) or node.id)
 
 
 def _name_module(program_name: str) -> str:

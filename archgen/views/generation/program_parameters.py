@@ -97,16 +97,19 @@ def _find_ros_type(parameters: Iterable[EffectiveParameter]) -> str | None:
     if found_types == {"integer_array", "double_array"}:
         return "double_array"
     # A parameter that nobody ever gave a value is text in most programs that read it; its node says so otherwise.
-    return (next(iter(found_types)) or None) if len(found_types) == 1 else None if found_types else "string"
+    if not found_types:
+        return "string"
+    return (min(found_types) or None) if len(found_types) == 1 else None
 
 
 def _infer_ros_type(value: object) -> str:
     """Return the type of a value in ROS; empty for what is none."""
     if isinstance(value, list | tuple):
         item_types = {_infer_ros_type(each) for each in value} or {"string"}
-        item_type = "double" if item_types == {"integer", "double"} else item_types.pop()
-        is_plain = item_type in _ROS_TYPES.values() and item_types <= {"integer", "double"}
-        return f"{item_type}_array" if is_plain else ""
+        if item_types == {"integer", "double"}:
+            return "double_array"
+        item_type = min(item_types)
+        return f"{item_type}_array" if len(item_types) == 1 and item_type in _ROS_TYPES.values() else ""
     # A boolean is an integer in Python, but not in ROS.
     python_types = {bool: "bool", int: "integer", float: "double", str: "string"}
     return python_types.get(type(value), "")
