@@ -12,11 +12,11 @@ from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.ros_distro import is_ros_1
 
 _FLOAT_TYPES = frozenset({"float", "float[]"})
-_ACTION_PARTS = {
+ACTION_PARTS = {
     1: ("/goal", "/cancel", "/status", "/feedback", "/result"),
     2: ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", "/_action/feedback", "/_action/status"),
 }
-"""What an action consists of, by generation of ROS: a new name for the action alone reaches none of them."""
+"""What an action consists of, as ends of its name, by generation of ROS: a new name for the action alone reaches none."""
 
 
 def describe_node_launch(architecture: Architecture, node: Node) -> RosLaunch | None:
@@ -58,7 +58,7 @@ def _find_remaps(architecture: Architecture, node: Node) -> Mapping[str, str]:
     if any(use.own_name for use in node.uses):
         for endpoint in architecture.endpoints:
             if endpoint.node == node.id and endpoint.own_name and endpoint.medium == "ros":
-                parts = _ACTION_PARTS[1 if is_ros_1(architecture.distro) else 2] if endpoint.flow == "action" else ("",)
+                parts = ACTION_PARTS[1 if is_ros_1(architecture.distro) else 2] if endpoint.flow == "action" else ("",)
                 remaps |= {f"{endpoint.own_name}{part}": f"{endpoint.name}{part}" for part in parts}
     return {**node.remaps, **remaps}
 

@@ -36,15 +36,15 @@ Bad:
     groups:
       driving:
         components:
-          motor: {functionality: Turns the wheel., hints: {orca: {tags: Car}}}
+          motor: {functionality: Turns the wheel., hints: {firmware: {pins: A4}}}
     nodes: {motor: {implements: motor}}
-    # file: backends/orca/backend.yaml
-    id: orca
-    title: Orca
+    # file: backends/firmware/backend.yaml
+    id: firmware
+    title: Firmware
     emitter: text
     view: record
     hints_schema:
-      component: {type: object, additionalProperties: false, properties: {tag: {type: string}}}
+      component: {type: object, additionalProperties: false, properties: {pin: {type: string}}}
 
 Good:
 
@@ -53,15 +53,15 @@ Good:
     groups:
       driving:
         components:
-          motor: {functionality: Turns the wheel., hints: {orca: {tag: Car}}}
+          motor: {functionality: Turns the wheel., hints: {firmware: {pin: A4}}}
     nodes: {motor: {implements: motor}}
-    # file: backends/orca/backend.yaml
-    id: orca
-    title: Orca
+    # file: backends/firmware/backend.yaml
+    id: firmware
+    title: Firmware
     emitter: text
     view: record
     hints_schema:
-      component: {type: object, additionalProperties: false, properties: {tag: {type: string}}}
+      component: {type: object, additionalProperties: false, properties: {pin: {type: string}}}
 """,
 )
 _MAX_MANIFEST_LETTERS = 65_536

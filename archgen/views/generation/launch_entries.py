@@ -19,8 +19,8 @@ from archgen.views.generation.launch_parameters import (
     record_container_parameters,
     record_node_parameters,
 )
-from archgen.views.generation.launch_remaps import LaunchRemaps, is_generated
-from archgen.views.generation.node_programs import name_package, name_program
+from archgen.views.generation.launch_remaps import LaunchRemaps
+from archgen.views.generation.node_programs import is_generated, name_package, name_program
 
 _MANAGER_PACKAGE = "nav2_lifecycle_manager"
 _NO_PARAMETERS: Mapping[str, Any] = {"files": [], "written": [], "filled": []}

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
+from archgen.bringup.ros_launches import ACTION_PARTS
 from archgen.derivation.ros_names import resolve_ros_name
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node
-from archgen.views.generation.node_programs import name_package, name_program
+from archgen.views.generation.node_programs import is_generated, name_package, name_program
 from archgen.views.generation.program_ports import record_ports
-
-_ACTION_PARTS: Mapping[int, Sequence[str]] = {
-    1: ("goal", "cancel", "status", "feedback", "result"),
-    2: ("_action/send_goal", "_action/cancel_goal", "_action/get_result", "_action/feedback", "_action/status"),
-}
-"""What an action consists of, by generation of ROS: a new name for the action alone reaches none of them."""
 
 
 class LaunchRemaps:
@@ -40,7 +35,7 @@ class LaunchRemaps:
             # What the program says resolves to the name by itself: there is nothing to tell.
             if resolve_ros_name(own_name, node) == name:
                 continue
-            suffixes = [f"/{part}" for part in _ACTION_PARTS[self._ros]] if flow == "action" else [""]
+            suffixes = ACTION_PARTS[self._ros] if flow == "action" else ("",)
             for suffix in suffixes:
                 names.setdefault(f"{own_name}{suffix}", f"{name}{suffix}")
         for own_name, name in node.remaps.items():
@@ -71,8 +66,3 @@ class LaunchRemaps:
 
     def _name_both(self, node: Node) -> tuple[str, str]:
         return name_package(self._architecture, node), name_program(self._architecture, node)
-
-
-def is_generated(node: Node) -> bool:
-    """Whether a generator makes the program of a node: nobody says that it exists, and nothing else starts it."""
-    return node.status in {None, "planned"} and not node.is_program and not node.command

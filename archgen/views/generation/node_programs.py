@@ -50,7 +50,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
     """
     language = str(context.options.get("language") or "python")
-    nodes = [each for each in context.wanted_nodes.values() if _is_generated(each, language)]
+    nodes = [each for each in context.wanted_nodes.values() if is_generated(each) and _is_in_language(each, language)]
     endpoints = _index_endpoints(context.architecture)
     programs: dict[tuple[str, str], list[Node]] = {}
     for node in nodes:
@@ -114,14 +114,15 @@ def _name_module(program_name: str) -> str:
     return make_snake_name(make_snake_name(program_name).removesuffix("_node"))
 
 
-def _is_generated(node: Node, language: str) -> bool:
+def is_generated(node: Node) -> bool:
+    """Whether generators make the program of a node: nobody says that it exists, and nothing else starts it."""
+    return node.status in {None, "planned"} and not (node.is_program or node.command)
+
+
+def _is_in_language(node: Node, language: str) -> bool:
     # What a container loads is a library of C++.
     usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
-    return (
-        node.status in {None, "planned"}
-        and not (node.is_program or node.command)
-        and (node.language or usual_language) == language
-    )
+    return (node.language or usual_language) == language
 
 
 def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:
@@ -140,7 +141,7 @@ def _find_mixed_packages(
     others = {
         name_package(context.architecture, node): node
         for node in context.architecture.nodes.values()
-        if _is_generated(node, other_language)
+        if is_generated(node) and _is_in_language(node, other_language)
     }
     told = set[str]()
     for (package_name, _), nodes in programs.items():
