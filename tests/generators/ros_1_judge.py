@@ -34,16 +34,24 @@ def main() -> None:
     end = time.monotonic() + WAITING_SECONDS
     last: dict[str, dict[str, list[str]]] = {}
     while time.monotonic() < end:
-        graph = read_graph(master)
+        time.sleep(1)
+        try:
+            graph = read_graph(master)
+        except OSError:
+            # The master is not there yet.
+            continue
         if set(graph) >= wanted and graph == last:
             break
         last = graph
-        time.sleep(1)
     types: dict[str, Any] = dict(master.getTopicTypes())
     for node in last.values():
         for service in node["serves"]:
             # The judge asks each node itself: the master does not know what a service is.
-            types[service] = None if service.endswith(("/get_loggers", "/set_logger_level")) else rosservice.get_service_type(service)
+            types[service] = (
+                None
+                if service.endswith(("/get_loggers", "/set_logger_level"))
+                else rosservice.get_service_type(service)
+            )
     parameters = {name: master.getParam(name) for name in master.getParamNames()}
     sys.stdout.write(json.dumps({"graph": last, "types": types, "parameters": parameters}) + "\n")
 

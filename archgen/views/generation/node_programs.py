@@ -27,7 +27,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
     """
     if is_ros_1(context.architecture.distro) != (ros == 1):
-        return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(context.architecture, ros),))
+        return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
     language = str(context.options.get("language") or "python")
     nodes = [each for each in context.wanted_nodes.values() if is_generated(each) and _is_in_language(each, language)]
     endpoints = _index_endpoints(context.architecture)
@@ -77,7 +77,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     return GeneratedView({"packages": list(packages.values()), "programs": records}, tuple(findings))
 
 
-def _tell_other_ros(architecture: Architecture, ros: int) -> Diagnostic:
+def _tell_other_ros(ros: int) -> Diagnostic:
     return tell_left_out(
         f"the project is made for ROS {3 - ros}: it has no nodes for ROS {ros}",
         NO_SPAN,

@@ -72,9 +72,7 @@ def _import_classes(
     list_classes: Callable[[str, Mapping[str, object]], tuple[str, list[str]]],
     taken_names: Collection[str],
 ) -> list[dict[str, object]]:
-    listed = [
-        (port, *list_classes(section, port)) for section in PORT_SECTIONS.values() for port in sections[section]
-    ]
+    listed = [(port, *list_classes(section, port)) for section in PORT_SECTIONS.values() for port in sections[section]]
     modules_by_name: dict[str, set[str]] = {}
     for _, module, names in listed:
         for name in names:
