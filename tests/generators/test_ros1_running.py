@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,6 @@ from tests.ros_1_environment import (
 from tests.running import ROOT, archgen
 
 pytestmark = pytest.mark.ros
-ACTION_PARTS = {"serves": (("status", "feedback", "result"), ("goal", "cancel"))}
 
 
 def write_project(folder: Path, text: str) -> Architecture:
@@ -38,13 +36,14 @@ def generate_workspace(project: Path, workspace: Path, *words: str) -> None:
         archgen("generate", backend, "-o", workspace, *words, cwd=project, status=0)
 
 
-def judge_graph(environment: dict[str, str], architecture: Architecture) -> Any:
+def judge_graph(environment: dict[str, str], architecture: Architecture) -> dict[str, Any]:
     """Return what another process sees of the graph when all nodes are there."""
     names = [each.full_name for each in architecture.nodes.values()]
     judge = [SYSTEM_PYTHON, str(ROOT / "tests" / "generators" / "ros_1_judge.py"), *names]
     done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
     assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    observed: dict[str, Any] = json.loads(done.stdout)
+    return observed
 
 
 def list_modelled(architecture: Architecture) -> tuple[set[tuple[str, str, str]], dict[str, str]]:
@@ -79,7 +78,7 @@ def list_modelled(architecture: Architecture) -> tuple[set[tuple[str, str, str]]
     return uses, types
 
 
-def list_observed(observed: Any) -> set[tuple[str, str, str]]:
+def list_observed(observed: dict[str, Any]) -> set[tuple[str, str, str]]:
     """Return the same of a graph, without what ROS 1 gives to every node, and its own node."""
     return {
         (node, use, name)
@@ -94,7 +93,7 @@ ROS_OWN_NAMES = {"/rosout", "/rosout_agg"}
 ROS_OWN_PARAMETERS = {"/rosdistro", "/roslaunch", "/rosversion", "/run_id"}
 
 
-def assert_same_graph(observed: Any, architecture: Architecture) -> None:
+def assert_same_graph(observed: dict[str, Any], architecture: Architecture) -> None:
     uses, types = list_modelled(architecture)
     assert list_observed(observed) == uses
     observed_types = {
@@ -115,9 +114,9 @@ def assert_same_graph(observed: Any, architecture: Architecture) -> None:
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Iterator[Path]:
+def folder(tmp_path: Path) -> Path:
     require_ros_1()
-    yield tmp_path
+    return tmp_path
 
 
 def test_the_cleaning_robot_runs_as_its_model_says(folder: Path) -> None:
