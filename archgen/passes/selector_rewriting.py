@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
+from archgen.model.selector_keys import matches_wildcard
 from archgen.model.selector_parser import parse_selector, split_words
+from archgen.passes.project_tree import ProjectTree, list_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
 _SELECTOR_PATHS = {
@@ -25,6 +27,41 @@ def rewrite_selectors(section: MappingEntry, rename_word: RenameWord) -> Mapping
         for path in _SELECTOR_PATHS[section.key]:
             value = _rewrite_at(value, (element.key, *path), rename_word)
     return MappingEntry(section.key, section.key_span, value)
+
+
+def rename_in_selectors(tree: ProjectTree, rename_word: RenameWord) -> None:
+    """Rename words in all selectors of a tree."""
+    for name in _SELECTOR_PATHS:
+        section = tree.root.entries.get(name)
+        rewritten = rewrite_selectors(section, rename_word) if section else None
+        for path, node in list_paths(rewritten.value, (name,)) if rewritten else ():
+            if isinstance(node, ScalarNode) and node is not tree.get(path):
+                tree.set(path, node.text, path)
+
+
+def rename_by_key(key: str, new_names: Collection[tuple[str, str]], known_names: Collection[str]) -> RenameWord:
+    """Return what renames the values of a key: old names to new ones, `*` in them included.
+
+    `known_names` are all that there are now: a word that still selects some of these stays beside the new ones.
+    """
+    prefix = f"{key}:"
+
+    def rename(word: str) -> list[str] | None:
+        if not word.startswith(prefix):
+            return None
+        value = " ".join(word.removeprefix(prefix).strip('"').split())
+        names = dict.fromkeys(new for old, new in new_names if matches_wildcard(value, old))
+        kept = [word] if any(matches_wildcard(value, each) for each in known_names) else []
+        return [
+            *kept,
+            *(
+                f'{prefix}"{name}"' if " " in name else f"{prefix}{name}"
+                for name in names
+                if not matches_wildcard(value, name)
+            ),
+        ]
+
+    return rename
 
 
 def list_selected(architecture: Architecture, word: str) -> list[str]:
