@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from archgen.passes.patterns.pattern_registry import find_known_passes
+from archgen.passes.patterns.result_checks import check_result
 from archgen.pipeline import CheckedProject, check_project, transform_project
-from tests.passes.patterns.transforming import data_of, said, transform
+from tests.passes.patterns.transforming import data_of, pass_of, said, transform, tree_of
 from tests.passes.same_meaning import pack, write_project
 
 ROBOT = "groups: {g: {components: {a: {title: A, outputs: {p: Pose}}}}}\ntypes: {Pose: geometry_msgs/msg/Pose}\n"
@@ -103,3 +104,16 @@ def test_all_that_names_a_type_is_bound_by_specialise(tmp_path: Path) -> None:
     assert component_types["made"]["operations"] == data_of(
         '{ask: {request: {past: "Pose[]"}, response: Pose}, get: {response: Pose}}'
     )
+
+
+def test_what_was_wrong_before_is_not_the_passs(tmp_path: Path) -> None:
+    made_by = pass_of("- {find: {components: {$c: }}, drop: {components: {$c: }}}")
+    before, after = tree_of(ROBOT, tmp_path), tree_of(ROBOT, tmp_path)
+    component = ("groups", "g", "components", "a")
+    for tree in (before, after):
+        tree.set((*component, "role"), "nonsense", component)
+    assert list(check_result(made_by, before.root, after.root)) == []
+    after.set((*component, "status"), "nonsense", component)
+    (found,) = check_result(made_by, before.root, after.root)
+    assert found.message == "the pass `tried` writes what no file may hold: `status` cannot be `nonsense`"
+    assert after.get_text((*component, "status")) == "nonsense"
