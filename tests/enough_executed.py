@@ -46,7 +46,9 @@ class LeaveTheRestOut:
 
     def __init__(self, measured: Coverage) -> None:
         self._measured = measured
-        self._lines_by_file: dict[str, set[int]] = {file: set() for file in measured.get_option("run:include") or ()}
+        files = measured.get_option("run:include")
+        assert isinstance(files, list)
+        self._lines_by_file: dict[str, set[int]] = {file: set() for file in files}
         self._read_already: set[Path] = set()
 
     @pytest.hookimpl(tryfirst=True)
