@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span, first_written_span
@@ -13,10 +12,11 @@ from archgen.model.node import Endpoint, Node
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
+from archgen.views.generation.program_differences import find_program_differences
 from archgen.views.generation.program_parameters import list_node_values, record_parameters
 from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports
+from archgen.views.generation.program_timers import list_timers
 
-_NANOSECONDS = 10**9
 _IMPORTED_CLASSES = frozenset(
     [
         "ActionClient",
@@ -66,6 +66,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         )
         records.append(record)
         findings += program_findings
+        findings += find_program_differences(program_name, program_nodes, endpoints)
         package = packages.setdefault(
             package_name,
             {
@@ -183,7 +184,7 @@ def _record_program(
         "namespace": first.namespace if len(nodes) == 1 else "/",
         "threads": first.threads,
         "reentrant": first.reentrant,
-        "timers": list(_list_timers(first)),
+        "timers": list(list_timers(first)),
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),
@@ -222,24 +223,6 @@ def _find_place(architecture: Architecture, node: Node) -> Span:
     """Return where a node is written; of one that archgen adds, its component."""
     components = (architecture.components[each] for each in node.implements)
     return first_written_span(node.at, *(each.at for each in components))
-
-
-def _list_timers(node: Node) -> Iterator[dict[str, object]]:
-    """Yield what runs by the clock: a timer for each component of the node that is periodic."""
-    for component, timing in node.timing.items():
-        period = timing.period.value if timing.period else None
-        if period is None and timing.rate and timing.rate.value:
-            period = Fraction(_NANOSECONDS) / timing.rate.value
-        if period and timing.behaviour in {None, "periodic"}:
-            name = "" if len(node.timing) == 1 else make_snake_name(component.rpartition(".")[2])
-            yield {"key": name, "component": component, "period_ns": round(period), "period_s": _format_seconds(period)}
-
-
-def _format_seconds(duration_ns: Fraction) -> str:
-    """Return a duration in seconds as code has it: `0.1`."""
-    return f"{float(duration_ns) / _NANOSECONDS:.9f}".rstrip("0").removesuffix(".") + (
-        "" if duration_ns % _NANOSECONDS else ".0"
-    )
 
 
 def _import_in_python(sections: Mapping[str, Sequence[dict[str, object]]], class_name: str) -> list[dict[str, object]]:
