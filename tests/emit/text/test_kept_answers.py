@@ -14,6 +14,7 @@ from archgen.emit import text
 from archgen.emit.backend_manifests import Backend, BackendFile
 from archgen.emit.text import kept_answers
 from archgen.emit.text.kept_answers import open_answer_store
+from archgen.emit.text.template_limits import TemplateLimits
 
 DATA = {"name": "robot"}
 
@@ -41,7 +42,7 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> list[bytes]:
     requests: list[bytes] = []
     run_worker = text._run_worker  # noqa: SLF001 - whether it runs is what is asked here
 
-    def counted(request: bytes, limits: text.TemplateLimits) -> Mapping[str, Any]:
+    def counted(request: bytes, limits: TemplateLimits) -> Mapping[str, Any]:
         requests.append(request)
         return run_worker(request, limits)
 
