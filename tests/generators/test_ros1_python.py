@@ -115,8 +115,8 @@ def test_it_is_written_as_ros_developers_write(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "flake8", "--isolated", *AMENT_FLAKE8, str(tmp_path / "w"), *scripts]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
     assert (done.returncode, done.stdout) == (0, "")
-    for path in [*scripts, *(tmp_path / "w").rglob("test/*.py")]:
-        assert Path(path).stat().st_mode & 0o111, path
+    for path in [*(tmp_path / "w").rglob("scripts/*"), *(tmp_path / "w").rglob("test/*.py")]:
+        assert path.stat().st_mode & 0o111, path
 
 
 def test_own_code_is_asked_for_what_the_model_gained(tmp_path: Path) -> None:
