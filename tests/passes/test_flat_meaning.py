@@ -6,7 +6,11 @@ from pathlib import Path
 
 import yaml
 
+from archgen.passes.flat_frames import FlatFrames
+from archgen.passes.flat_steps import FlatSteps
+from archgen.passes.linked_tree import LinkedTree
 from archgen.pipeline import CheckedProject, transform_project
+from archgen.syntax.yaml_tree import node_to_data
 from tests.passes.same_meaning import check_packed, pack, write_project
 
 STARTED = """\
@@ -176,3 +180,17 @@ nodes: {n: {implements: left, package: p, executable: e}}
         "r_seen": "g.right_motor",
     }
     check_packed(transformed, tmp_path / "packed")
+
+
+def test_what_no_component_wrote_stays_as_it_is(tmp_path: Path) -> None:
+    checked = write_project(tmp_path, BOX + "use_cases: {u: {title: U}, v: {steps: [{from: nobody, to: box}]}}\n")
+    architecture = checked.architecture
+    outline = LinkedTree(checked.loaded_project, checked.merged_table, architecture.interfaces).outline
+    flat_ids = {each: f"g.{each.rpartition('.')[2]}" for each in architecture.components}
+    assert FlatFrames(architecture, outline, flat_ids).write_section(None) is None
+    section = checked.merged_table.entries["use_cases"]
+    rewritten = FlatSteps(architecture, flat_ids).rewrite_use_cases(section)
+    assert node_to_data(rewritten.value) == {
+        "u": {"title": "U"},
+        "v": {"steps": [{"from": "nobody", "to": "g.first"}]},
+    }
