@@ -236,7 +236,7 @@ def test_nodl_says_what_a_node_has(lab: CheckedProject, tmp_path: Path) -> None:
         "speed": {
             "type": "double",
             "default_value": 1.5,
-            "description": "Unit: m/s",
+            "description": "(m/s)",
             "validation": {"bounds<>": [0.0, 2.0]},
         },
         "mode": {
