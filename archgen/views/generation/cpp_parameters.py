@@ -76,5 +76,6 @@ def _has_library_values(parameter: Mapping[str, Any]) -> bool:
     if parameter["choices"] and parameter["type"].startswith("bool"):
         return False
     default = parameter["default"]
-    values = [*(default if isinstance(default, list) else [default]), *parameter["choices"]]
-    return all(_PLAIN_TEXT.match(each) for each in values if isinstance(each, str))
+    values = [*(default if isinstance(default, list) else [default]), *parameter["choices"], parameter["lowest"]]
+    # The least number has no literal in C++.
+    return all(_PLAIN_TEXT.match(each) if isinstance(each, str) else each != -(2**63) for each in values)
