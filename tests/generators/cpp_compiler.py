@@ -38,7 +38,16 @@ def compile_package(package: Path, folder: Path, include_folders: list[Path] | N
     unit.write_text("\n".join(lines) + "\n", encoding="utf-8")
     own = [package / "include", headers]
     system = [STAND_INS, *include_folders]
-    command = ["g++", "-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unused-function"]
+    command = [
+        "g++",
+        "-std=c++17",
+        "-fsyntax-only",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+        "-Wno-unused-function",
+    ]
     command += [f"-I{each}" for each in own] + [word for each in system for word in ("-isystem", str(each))]
     done = subprocess.run([*command, str(unit)], capture_output=True, text=True, check=False)  # noqa: S603 - a compiler
     return done.stderr if done.returncode == 0 else done.stderr or "failed"
@@ -104,9 +113,11 @@ def _declare_struct(name: str, tree: Mapping[str, Any]) -> Iterator[str]:
         cpp_type = f"std::vector<{_TYPES[base]}>" if array else _TYPES[base]
         yield f"{cpp_type} {key}{' = ' + _write_value(entry['default_value']) if 'default_value' in entry else ''};"
         for values in (entry.get("validation") or {}).values():
-            yield f"void check_{key}({cpp_type} value = {_write_value(values[0] if array else values[-1])});" if (
-                array
-            ) else f"void check_{key}(std::vector<{_TYPES[base]}> values = {_write_value(_flatten(values))});"
+            yield (
+                f"void check_{key}({cpp_type} value = {_write_value(values[0] if array else values[-1])});"
+                if (array)
+                else f"void check_{key}(std::vector<{_TYPES[base]}> values = {_write_value(_flatten(values))});"
+            )
         yield f'const char * {key}_description = "{_escape(entry.get("description", ""))}";'
     yield "};"
 

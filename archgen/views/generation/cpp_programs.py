@@ -26,9 +26,7 @@ def name_plugin(node: Node, package_name: str, program_name: str) -> str:
     return node.plugin or f"{make_identifier_in('cpp', package_name)}::{make_camel_name(program_name)}"
 
 
-def find_bad_names(
-    package_name: str, program_name: str, nodes: Sequence[Node], place: Span
-) -> tuple[Diagnostic, ...]:
+def find_bad_names(package_name: str, program_name: str, nodes: Sequence[Node], place: Span) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the names of a program: with such names nothing can be built."""
     shown = f"the program of `{nodes[0].id}` is left out:"
     if not _PACKAGE_NAME.match(package_name):

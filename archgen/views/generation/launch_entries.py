@@ -13,6 +13,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name
 from archgen.model.node import Node
 from archgen.views import start_phrases
+from archgen.views.generation.cpp_programs import name_plugin
 from archgen.views.generation.generation_context import write_place
 from archgen.views.generation.launch_parameters import (
     read_simulated_time,
@@ -20,7 +21,6 @@ from archgen.views.generation.launch_parameters import (
     record_node_parameters,
 )
 from archgen.views.generation.launch_remaps import LaunchRemaps
-from archgen.views.generation.cpp_programs import name_plugin
 from archgen.views.generation.node_programs import is_generated, name_package, name_program
 
 _MANAGER_PACKAGE = "nav2_lifecycle_manager"
