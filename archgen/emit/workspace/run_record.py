@@ -1,7 +1,8 @@
 """What a backend wrote into a workspace: `.archgen/BACKEND.json`, a file's digests, and the runs that made it.
 
 A run is a project with the part of it that was asked for (`--select`, `--host`). A file belongs to all runs that made it: it is
-removed when none of them makes it any more, so that partners who generate their parts alone do not disturb each other.
+removed when none of them makes it any more, so that partners who generate their parts alone do not disturb each other. A run
+for everything stands for all of its parts.
 """
 
 from __future__ import annotations
@@ -57,9 +58,9 @@ def read_run_record(workspace: Path, backend: str) -> RunRecord:
         raise _refuse(path, "it is no plain file")
     try:
         data = json.loads(path.read_bytes())
-        files = {str(name): _read_file(name, entry) for name, entry in data["files"].items()}
         if data["archgen"] != _FORMAT:
             raise _refuse(path, "another version of archgen wrote it")
+        files = {str(name): _read_file(name, entry) for name, entry in data["files"].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise _refuse(path, "it is damaged") from None
     return RunRecord(backend, files)

@@ -46,26 +46,29 @@ def make_view(context: GenerationContext, ros: int) -> GeneratedView:
     remaps = LaunchRemaps(architecture, ros)
     wanted_ids = find_wanted_steps(plan, context)
     findings: list[Diagnostic] = []
+    entries: dict[str, dict[str, Any]] = {}
+    for step in plan.steps:
+        if step.kind == "container":
+            entry, entry_findings = record_container_entry(architecture, step, ros)
+        else:
+            managed = [each for each in plan.steps if step.id in each.manager]
+            entry, entry_findings = record_node_entry(architecture, step, remaps, managed, ros)
+        entries[step.id] = entry
+        findings += entry_findings if step.id in wanted_ids else ()
     hosts: list[dict[str, Any]] = []
     for host in dict.fromkeys(step.host for step in plan.steps if step.id in wanted_ids):
         steps = [step for step in plan.steps if step.host == host and step.id in wanted_ids]
-        entries = []
-        for step in steps:
-            if step.kind == "container":
-                entry, entry_findings = record_container_entry(architecture, step, ros)
-            else:
-                managed = [each for each in plan.steps if step.id in each.manager]
-                entry, entry_findings = record_node_entry(architecture, step, remaps, managed, ros)
-            entries.append(entry)
-            findings += entry_findings
-        hosts.append(_record_host(context, host, steps, entries, ros))
+        hosts.append(_record_host(context, host, steps, [entries[step.id] for step in steps], ros))
     written = [
         {**each, "package": package, "place": entry["place"]}
         for host in hosts
         for entry in host["entries"]
         for each in entry["written"]
     ]
-    packages = [{**facts, **_list_dependencies(hosts, package, ros)}] if hosts else []
+    # The package is that of all parts: each of them may be generated into it alone.
+    has_states = any(step.transitions and step.ros for step in plan.steps)
+    package_record = {**facts, **_list_dependencies(list(entries.values()), package, ros, has_states=has_states)}
+    packages = [package_record] if hosts else []
     return GeneratedView({**data, "hosts": hosts, "packages": packages, "parameter_files": written}, tuple(findings))
 
 
@@ -111,21 +114,22 @@ def _group_by_phase(entries: list[dict[str, Any]], ros: int) -> list[dict[str, A
     return phases
 
 
-def _list_dependencies(hosts: list[dict[str, Any]], own_package: str, ros: int) -> dict[str, Any]:
+def _list_dependencies(
+    all_entries: list[dict[str, Any]], own_package: str, ros: int, *, has_states: bool
+) -> dict[str, Any]:
     """Return what the package of the launch files needs, and what else stands in it."""
-    entries = [entry for host in hosts for entry in host["entries"] if entry["form"] != "nobody"]
+    entries = [entry for entry in all_entries if entry["form"] != "nobody"]
     used = {entry["package"] for entry in entries if entry["package"]}
     used |= {file["package"] for entry in entries for file in entry["files"] if file["package"]}
     used |= {
         part["package"] for entry in entries for each in entry["filled"] for part in each["parts"] if part["package"]
     }
     has_programs = any(entry["form"] == "program" for entry in entries)
-    has_states = any(host["states"] for host in hosts)
     return {
         "dependencies": sorted(used - {own_package}),
         "has_parameters": any(entry["written"] for entry in entries),
         "has_programs": has_programs,
         "has_states": has_states,
         "script": "run_program" if ros == 1 and has_programs else "set_states" if ros != 1 and has_states else "",
-        "not_started": [entry["step"] for host in hosts for entry in host["entries"] if entry["form"] == "nobody"],
+        "not_started": [entry["step"] for entry in all_entries if entry["form"] == "nobody"],
     }

@@ -7,15 +7,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
+from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
 from archgen.model.ros_distro import is_ros_1
-from archgen.views.generation.cpp_programs import complete_cpp_program, find_bad_names, list_cpp_libraries
+from archgen.views.generation.cpp_programs import complete_cpp_program, list_cpp_libraries
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
 from archgen.views.generation.program_differences import find_program_differences
 from archgen.views.generation.program_imports import import_in_ros_1, import_in_ros_2
+from archgen.views.generation.program_names import find_bad_names
 from archgen.views.generation.program_parameters import list_node_values, record_parameters
 from archgen.views.generation.program_ports import record_ports
 from archgen.views.generation.program_timers import list_timers
@@ -30,7 +31,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     if is_ros_1(context.architecture.distro) != (ros == 1):
         return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
     language = str(context.options.get("language") or "python")
-    nodes = [each for each in context.wanted_nodes.values() if is_generated(each) and _is_in_language(each, language)]
+    nodes = _list_nodes_of_packages(context, language)
     endpoints = _index_endpoints(context.architecture)
     programs: dict[tuple[str, str], list[Node]] = {}
     for node in nodes:
@@ -42,13 +43,11 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     records: list[dict[str, object]] = []
     made_nodes: list[Sequence[Node]] = []
     for (package_name, program_name), program_nodes in sorted(programs.items()):
-        if language == "cpp":
-            bad_names = find_bad_names(
-                package_name, program_name, program_nodes, _find_place(context.architecture, program_nodes[0])
-            )
-            findings += bad_names
-            if bad_names:
-                continue
+        place = _find_place(context.architecture, program_nodes[0])
+        bad_names = find_bad_names(package_name, program_name, program_nodes, place, language)
+        findings += bad_names
+        if bad_names:
+            continue
         record, program_findings = _record_program(
             context.architecture, package_name, program_name, program_nodes, endpoints
         )
@@ -67,7 +66,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
                 "programs": [],
                 "dependencies": [],
                 "has_values": False,
-                "place": write_place(_find_place(context.architecture, program_nodes[0])),
+                "place": write_place(place),
             },
         )
         package["programs"].append(record)  # type: ignore[attr-defined]
@@ -117,7 +116,7 @@ def name_program(architecture: Architecture, node: Node) -> str:
 
 def _name_module(program_name: str) -> str:
     """Return the module of a program: `planner` of the program `planner_node`, since its node stands in `planner_node.py`."""
-    return make_snake_name(make_snake_name(program_name).removesuffix("_node"))
+    return make_identifier_in("python", make_snake_name(make_snake_name(program_name).removesuffix("_node")))
 
 
 def is_generated(node: Node) -> bool:
@@ -129,6 +128,14 @@ def _is_in_language(node: Node, language: str) -> bool:
     # What a container loads is a library of C++.
     usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
     return (node.language or usual_language) == language
+
+
+def _list_nodes_of_packages(context: GenerationContext, language: str) -> list[Node]:
+    """Return the nodes to generate: those of each package of which one is asked for, since a package is made whole."""
+    architecture = context.architecture
+    nodes = [each for each in architecture.nodes.values() if is_generated(each) and _is_in_language(each, language)]
+    packages = {name_package(architecture, each) for each in nodes if each.id in context.wanted_nodes}
+    return [each for each in nodes if name_package(architecture, each) in packages]
 
 
 def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:

@@ -162,6 +162,16 @@ def test_partners_generate_their_parts_in_one_folder(tmp_path: Path) -> None:
     assert texts(tmp_path) == {}
 
 
+def test_a_run_for_everything_stands_for_all_of_its_parts(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1", b="1"), "robot --host arm_pc")
+    generate(tmp_path, files(c="1"), "robot_2 --host arm_pc")
+    generate(tmp_path, files(a="1", b="1", d="1"), "robot")
+    # The host is gone: nobody can generate for it any more.
+    assert verbs(generate(tmp_path, files(a="1"), "robot")) == {"a": "same", "b": "removed", "d": "removed"}
+    assert verbs(generate(tmp_path, [], "robot --host arm_pc")) == {}
+    assert texts(tmp_path) == {"a": "1", "c": "1"}
+
+
 def test_two_backends_know_of_each_other(tmp_path: Path) -> None:
     generate(tmp_path, files(a="1"), backend="code")
     generate(tmp_path, files(b="1"), backend="other")
@@ -236,6 +246,13 @@ def test_a_damaged_record_is_refused(tmp_path: Path, text: str) -> None:
     with pytest.raises(OutputError, match="does not say what archgen wrote"):
         generate(tmp_path, files(a="1"))
     assert texts(tmp_path) == {}
+
+
+def test_a_record_of_a_newer_archgen_is_no_damage(tmp_path: Path) -> None:
+    (tmp_path / ".archgen").mkdir()
+    (tmp_path / ".archgen" / "code.json").write_text('{"archgen": 2, "files": {"x": {"digest": "0"}}}')
+    with pytest.raises(OutputError, match="another version of archgen wrote it"):
+        generate(tmp_path, files(a="1"))
 
 
 def test_a_record_says_what_it_read(tmp_path: Path) -> None:
