@@ -46,6 +46,7 @@ from archgen.link import (
 )
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.interface_sources import TypeMessages
+from archgen.link.link_memory import LinkMemory
 from archgen.link.project_packing import PackedAttachments, PackedProject, has_packed_path, pack_project
 from archgen.link.project_types import declare_project_types
 from archgen.link.report_chapters import ReportChapters
@@ -312,12 +313,13 @@ def _read_origins(checked_project: CheckedProject) -> CheckedProject:
 def _judge_in_variants(
     merged_project: _MergedProject, analysis_memory: AnalysisMemory, variant_names: Sequence[str] | None
 ) -> CheckedProject:
-    checked_project = _judge_merged(merged_project, analysis_memory)
     if "variants" not in merged_project.table.entries:
-        return checked_project
+        return _judge_merged(merged_project, analysis_memory)
     from archgen.findings import variant_findings
 
-    judge = _VariantJudge(merged_project, checked_project, analysis_memory)
+    part_memory = PartMemory()
+    checked_project = _judge_merged(merged_project, analysis_memory, part_memory)
+    judge = _VariantJudge(merged_project, checked_project, analysis_memory, part_memory)
     judged_names = variant_order.list_judged(checked_project.architecture.variants)
     analysis_memory.make_room(len(judged_names) + 1)
     variants = {
@@ -451,22 +453,36 @@ class UnknownVariantError(Exception):
         super().__init__(f"no variant named `{name}`: {help_line}")
 
 
+class PartMemory:
+    """The parts of a project that its variants have in common."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self.linked = LinkMemory()
+
+
 class _VariantJudge:
     """Judges a project in its variants; steps that several have in common are laid over it once."""
 
     def __init__(
-        self, merged_project: _MergedProject, checked_project: CheckedProject, analysis_memory: AnalysisMemory
+        self,
+        merged_project: _MergedProject,
+        checked_project: CheckedProject,
+        analysis_memory: AnalysisMemory,
+        part_memory: PartMemory | None = None,
     ) -> None:
         from archgen.link.variants import variant_laying, variant_order
 
         loaded_project = merged_project.loaded_project
         self._merged_project = merged_project
         self._memory = analysis_memory
+        self._parts = part_memory or PartMemory()
         self._variants = checked_project.architecture.variants
         self._written = mapping_values.get_mapping(merged_project.table, "variants").entries
         self._order = variant_order
         self._layer = variant_laying.VariantLayer(
-            loaded_project.lost_keys, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
+            loaded_project.lost_keys, loaded_project.incomplete_libraries, loaded_project.describe_missing_type,
+            self._parts.linked,
         )
         base = replace(merged_project, table=variant_laying.remove_variants(merged_project.table))
         self._merged: dict[tuple[str, ...], _MergedProject] = {(): base}
@@ -478,7 +494,7 @@ class _VariantJudge:
     def judge_steps(self, steps: tuple[str, ...]) -> CheckedProject:
         if steps not in self._checked:
             merged_project = self._lay_steps(steps)
-            self._checked[steps] = replace(_judge_merged(merged_project, self._memory), steps=steps)
+            self._checked[steps] = replace(_judge_merged(merged_project, self._memory, self._parts), steps=steps)
         return self._checked[steps]
 
     def _lay_steps(self, steps: tuple[str, ...]) -> _MergedProject:
@@ -541,15 +557,18 @@ def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
     return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
 
 
-def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:
-    """Run the stages behind merging."""
+def _judge_merged(
+    merged_project: _MergedProject, analysis_memory: AnalysisMemory, part_memory: PartMemory | None = None
+) -> CheckedProject:
+    """Run the stages behind merging; what `part_memory` knows from another variant is not made anew."""
+    linked_parts = part_memory.linked if part_memory else None
     loaded_project, merged_table = merged_project.loaded_project, merged_project.table
     merge_findings, reading_errors = merged_project.diagnostics, merged_project.reading_errors
     damaged_elements = merged_project.damaged_elements
     expansion = compose.expand_project(
         merged_table, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
     )
-    outline = element_outline.build_outline(expansion)
+    outline = element_outline.build_outline(expansion, linked_parts)
     declared_types = declare_project_types(loaded_project, merged_table, expansion, outline, damaged_elements)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
@@ -562,6 +581,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
         lost_keys=loaded_project.lost_keys,
         damaged_elements=damaged_elements,
         is_partial=loaded_project.partial,
+        memory=linked_parts,
     )
     # A project of one file is a whole: like its `sources`, what it names lies elsewhere.
     is_folder = loaded_project.first_file == project.PROJECT_FILE

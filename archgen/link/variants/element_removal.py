@@ -10,6 +10,7 @@ from collections.abc import Callable, Collection, Iterator
 from archgen.compose import ExpandedProject
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline, build_outline
+from archgen.link.link_memory import LinkMemory
 from archgen.link.project_linking import make_resolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SOURCE_KINDS, SourceReferences
@@ -27,12 +28,18 @@ _LEAST_ENDS = 2
 class ElementRemover:
     """Takes elements out of one merged project; `removed` says afterwards which."""
 
-    def __init__(self, expansion: ExpandedProject, leaves: frozenset[str], nodes: frozenset[str]) -> None:
+    def __init__(
+        self,
+        expansion: ExpandedProject,
+        leaves: frozenset[str],
+        nodes: frozenset[str],
+        memory: LinkMemory | None = None,
+    ) -> None:
         """Take the project with all types written out, and the leaves and nodes that go by complete ids."""
-        self._outline: ElementOutline = build_outline(expansion)
+        self._outline: ElementOutline = build_outline(expansion, memory)
         self._expansion = expansion
         self.removed: RemovedElements = find_removed(self._outline, leaves, nodes)
-        self._resolver: ReferenceResolver = make_resolver(expansion.root, self._outline, [])
+        self._resolver: ReferenceResolver = make_resolver(expansion.root, self._outline, [], memory=memory)
         self._sources = SourceReferences(self._outline, self._resolver) if self._outline.expansion else None
         self._changed_shells = self._list_changed_shells()
 

@@ -11,6 +11,7 @@ from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
+from archgen.link.link_memory import LinkMemory
 from archgen.link.missing_keys import find_incomplete
 from archgen.link.variants.change_targets import ChangeTargets, list_declared_anew
 from archgen.link.variants.element_removal import ElementRemover
@@ -39,11 +40,13 @@ class VariantLayer:
         lost_keys: frozenset[str] = frozenset(),
         incomplete_libraries: frozenset[str] = frozenset(),
         describe_missing_type: MissingTypeDescriber | None = None,
+        memory: LinkMemory | None = None,
     ) -> None:
         """Take what is known of files and libraries that could not be read, as for writing types out."""
         self._lost_keys = lost_keys
         self._incomplete_libraries = incomplete_libraries
         self._describe_missing_type = describe_missing_type
+        self._memory = memory
 
     def lay_variant(
         self, root: MappingNode, variant: MappingEntry, find_architecture: Callable[[], Architecture]
@@ -113,7 +116,7 @@ class VariantLayer:
         if not leaves and not selected.nodes:
             return root
         expansion = expand_project(root, self._incomplete_libraries, self._describe_missing_type)
-        remover = ElementRemover(expansion, leaves, selected.nodes)
+        remover = ElementRemover(expansion, leaves, selected.nodes, self._memory)
         diagnostics += _find_lost_changes(changes, remover.removed.components)
         return prune_selectors(remover.remove_from(root), remover.removed, evaluator)
 
