@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen import analyses, compose, derivation, findings, link, project, schema
+from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
@@ -459,6 +460,7 @@ class PartMemory:
     def __init__(self) -> None:
         """Start empty."""
         self.linked = LinkMemory()
+        self.derived = DerivedParts()
 
 
 class _VariantJudge:
@@ -590,7 +592,9 @@ def _judge_merged(
     )
     for path, text in read_parameters.texts.items():
         loaded_project.sources.add_text(path, text)
-    architecture = derivation.derive_low_level(read_parameters.architecture)
+    architecture = derivation.derive_low_level(
+        read_parameters.architecture, part_memory.derived if part_memory else None
+    )
     commit_day = find_commit_day(loaded_project.files, architecture)
     if commit_day is not None:
         architecture = replace(architecture, commit_day=commit_day)
