@@ -319,10 +319,10 @@ def _judge_in_variants(
     from archgen.findings import variant_findings
 
     part_memory = PartMemory()
+    analysis_memory.make_room(len(mapping_values.get_mapping(merged_project.table, "variants").entries) + 1)
     checked_project = _judge_merged(merged_project, analysis_memory, part_memory)
     judge = _VariantJudge(merged_project, checked_project, analysis_memory, part_memory)
     judged_names = variant_order.list_judged(checked_project.architecture.variants)
-    analysis_memory.make_room(len(judged_names) + 1)
     variants = {
         name: judge.judge_steps(judge.list_steps([name]))
         for name in judged_names

@@ -13,6 +13,7 @@ from archgen.derivation.reading_endpoints import WriterIndex, derive_reading_end
 from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
+from archgen.model.known_parts import KnownParts
 from archgen.model.node import Endpoint, FlowKind, Node, Topic
 
 
@@ -33,79 +34,86 @@ class DerivedParts:
     def __init__(self) -> None:
         """Start empty."""
         self._settings: object = None
-        self._planned: dict[str, tuple[Component, Node]] = {}
-        self._node_parts: dict[str, tuple[NodePart, ...]] = {}
-        self._writing: dict[str, tuple[tuple[NodePart, ...], tuple[Endpoint, ...]]] = {}
-        self._reading: dict[str, _KnownReading] = {}
-        self._topics: dict[tuple[str, FlowKind], Topic] = {}
+        self._planned: KnownParts[tuple[Component, Node]] = KnownParts()
+        self._forget_parts()
+
+    def _forget_parts(self) -> None:
+        self._node_parts: KnownParts[tuple[NodePart, ...]] = KnownParts()
+        self._writing: KnownParts[tuple[tuple[NodePart, ...], tuple[Endpoint, ...]]] = KnownParts()
+        self._reading: KnownParts[_KnownReading] = KnownParts()
+        self._topics: dict[FlowKind, KnownParts[Topic]] = {}
 
     def start_version(self, architecture: Architecture, shared_topics: frozenset[str]) -> None:
         """Forget everything where types are mapped to other messages, or other topics are shared by all nodes."""
         types = {name: (each.message, each.size and each.size.text) for name, each in architecture.types.items()}
         if self._settings != (types, shared_topics):
             self._settings = (types, shared_topics)
-            self._node_parts, self._writing, self._reading, self._topics = {}, {}, {}, {}
+            self._forget_parts()
 
     def find_planned(self, component: Component, node_id: str) -> Node | None:
         """Return the node with this id that was planned for a component in another version."""
-        known_component, known_node = self._planned.get(component.id, (None, None))
-        return known_node if known_component is component and known_node and known_node.id == node_id else None
+        known_parts = self._planned.list_known(component.id)
+        return next((node for known, node in known_parts if known is component and node.id == node_id), None)
 
     def keep_planned(self, component: Component, node: Node) -> None:
         """Remember the node that is planned for a component."""
-        self._planned[component.id] = (component, node)
+        self._planned.keep_part(component.id, (component, node))
 
     def recall_parts(self, node_parts: Mapping[str, tuple[NodePart, ...]]) -> dict[str, tuple[NodePart, ...]]:
         """Return the parts of nodes, as the same objects where they are as in another version."""
         return {node_id: self._recall_part(node_id, parts) for node_id, parts in node_parts.items()}
 
     def _recall_part(self, node_id: str, parts: tuple[NodePart, ...]) -> tuple[NodePart, ...]:
-        known = self._node_parts.get(node_id, ())
-        if len(known) == len(parts) and all(map(_is_same_part, known, parts)):
-            return known
-        self._node_parts[node_id] = parts
+        for known in self._node_parts.list_known(node_id):
+            if len(known) == len(parts) and all(map(_is_same_part, known, parts)):
+                return known
+        self._node_parts.keep_part(node_id, parts)
         return parts
 
     def derive_writing(self, architecture: Architecture, node_id: str, parts: tuple[NodePart, ...]) -> Sequence[Endpoint]:
         """Return what a node writes."""
-        known = self._writing.get(node_id)
-        if known is not None and known[0] is parts:
-            return known[1]
+        for known_parts, known_endpoints in self._writing.list_known(node_id):
+            if known_parts is parts:
+                return known_endpoints
         endpoints = tuple(each for part in parts for each in derive_writing_endpoints(architecture, part))
-        self._writing[node_id] = (parts, endpoints)
+        self._writing.keep_part(node_id, (parts, endpoints))
         return endpoints
 
     def derive_reading(self, index: WriterIndex, node_id: str, parts: tuple[NodePart, ...]) -> Sequence[Endpoint]:
         """Return what a node reads."""
-        known, feeds = self._reading.get(node_id), tuple(_list_feeds(index, parts))
-        if (
-            known is not None
-            and known.parts is parts
-            and known.feeds == feeds
-            and known.topic_ports == _list_topic_ports(index, known.endpoints)
-        ):
-            return known.endpoints
+        feeds = tuple(_list_feeds(index, parts))
+        for known in self._reading.list_known(node_id):
+            if (
+                known.parts is parts
+                and known.feeds == feeds
+                and known.topic_ports == _list_topic_ports(index, known.endpoints)
+            ):
+                return known.endpoints
         endpoints = tuple(each for part in parts for each in derive_reading_endpoints(index, part))
-        self._reading[node_id] = _KnownReading(parts, feeds, _list_topic_ports(index, endpoints), endpoints)
+        reading = _KnownReading(parts, feeds, _list_topic_ports(index, endpoints), endpoints)
+        self._reading.keep_part(node_id, reading)
         return endpoints
 
     def find_topic(
         self, name: str, flow: FlowKind, writers: Sequence[Endpoint], readers: Sequence[Endpoint]
     ) -> Topic | None:
         """Return a topic of another version that has the same users."""
-        known = self._topics.get((name, flow))
-        is_same = (
-            known is not None
-            and len(known.writers) == len(writers)
-            and len(known.readers) == len(readers)
-            and all(map(operator.is_, known.writers, writers))
-            and all(map(operator.is_, known.readers, readers))
+        known_topics = self._topics.setdefault(flow, KnownParts()).list_known(name)
+        return next(
+            (
+                known
+                for known in known_topics
+                if len(known.writers) == len(writers)
+                and len(known.readers) == len(readers)
+                and all(map(operator.is_, known.writers, writers))
+                and all(map(operator.is_, known.readers, readers))
+            ),
+            None,
         )
-        return known if is_same else None
 
     def keep_topic(self, topic: Topic) -> None:
         """Remember a topic."""
-        self._topics[topic.name, topic.flow] = topic
+        self._topics.setdefault(topic.flow, KnownParts()).keep_part(topic.name, topic)
 
 
 def _is_same_part(known: NodePart, part: NodePart) -> bool:

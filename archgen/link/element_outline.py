@@ -11,7 +11,7 @@ from archgen.compose.project_expansion import ComponentShell
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
-from archgen.link.link_memory import KnownPorts, LinkMemory
+from archgen.link.link_memory import LinkMemory, OutlinedPorts
 from archgen.link.promise_reading import read_deprecation, read_promise
 from archgen.model.component import Output
 from archgen.model.port_media import ROS
@@ -131,10 +131,11 @@ def _recall_ports(
     element_outline: ElementOutline, component_id: str, body: MappingNode, memory: LinkMemory
 ) -> None:
     """Outline the ports of a component, those that are known from another version without making them anew."""
-    known, middleware = memory.ports.get(component_id), element_outline.middleware
-    if known is not None and known.body is body and known.middleware == middleware:
-        element_outline.inputs[component_id], element_outline.outputs[component_id] = known.inputs, known.outputs
-        return
+    middleware = element_outline.middleware
+    for known in memory.ports.list_known(component_id):
+        if known.body is body and known.middleware == middleware:
+            element_outline.inputs[component_id], element_outline.outputs[component_id] = known.inputs, known.outputs
+            return
     _outline_ports(element_outline, component_id, body)
     inputs, outputs = element_outline.inputs[component_id], element_outline.outputs[component_id]
     is_plain = len(inputs) == len(mapping_values.get_mapping(body, "inputs").entries) and all(
@@ -142,7 +143,7 @@ def _recall_ports(
         for entry in mapping_values.get_mapping(body, "outputs")
     )
     if is_plain:  # nothing else is noted of it
-        memory.ports[component_id] = KnownPorts(body, middleware, inputs, outputs)
+        memory.ports.keep_part(component_id, OutlinedPorts(body, middleware, inputs, outputs))
 
 
 def _outline_ports(element_outline: ElementOutline, component_id: str, body: MappingNode) -> None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from archgen.link.reference_resolution import Answer
 from archgen.model.component import Component, Output
+from archgen.model.known_parts import KnownParts
 from archgen.model.node import Node
 from archgen.model.path_resolver import PathIndex, index_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -19,7 +20,7 @@ _MAX_INDEXES = 4
 """Indexes of paths that are remembered for each kind: variants differ in few ways."""
 
 
-class KnownPorts(NamedTuple):
+class OutlinedPorts(NamedTuple):
     """The ports of a component as outlined from its body."""
 
     body: MappingNode
@@ -28,7 +29,7 @@ class KnownPorts(NamedTuple):
     outputs: dict[str, Output]
 
 
-class KnownLeaf(NamedTuple):
+class LinkedLeaf(NamedTuple):
     """A component that holds no others, with all that it was made from besides its entry."""
 
     entry: MappingEntry
@@ -40,7 +41,7 @@ class KnownLeaf(NamedTuple):
     component: Component
 
 
-class KnownNode(NamedTuple):
+class LinkedNode(NamedTuple):
     """A node, with all that it was made from besides its entry."""
 
     entry: MappingEntry
@@ -57,9 +58,9 @@ class LinkMemory:
 
     def __init__(self) -> None:
         """Start empty."""
-        self.ports: dict[str, KnownPorts] = {}
-        self.leaves: dict[str, KnownLeaf] = {}
-        self.nodes: dict[str, KnownNode] = {}
+        self.ports: KnownParts[OutlinedPorts] = KnownParts()
+        self.leaves: KnownParts[LinkedLeaf] = KnownParts()
+        self.nodes: KnownParts[LinkedNode] = KnownParts()
         self._indexes: dict[str, list[tuple[tuple[str, ...], PathIndex]]] = {}
 
     def index_paths(self, kind: str, paths: Iterable[str]) -> PathIndex:

@@ -15,7 +15,7 @@ from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
-from archgen.link.link_memory import KnownLeaf, LinkMemory
+from archgen.link.link_memory import LinkedLeaf, LinkMemory
 from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
 from archgen.link.port_sources import PortSources
@@ -167,31 +167,26 @@ class _GroupDeclarer:
         if self.memory is None:
             return self._declare_written(group_id, entry)
         component_id, resolver, wiring = f"{group_id}.{entry.key}", self.resolver, self.wiring
-        known, outputs = self.memory.leaves.get(component_id), self.outline.outputs[component_id]
-        if (
-            known is not None
-            and known.entry is entry
-            and known.outputs is outputs
-            and known.group_owners == self.owners[group_id]
-            and resolver.gives_answers(known.answers)
-            and wiring.brings_same(known.component)
-            and known.source_media == wiring.list_source_media(known.component)
-        ):
-            wiring.take_over(known.component)
-            self.owners[component_id] = known.component.owners
-            return known.component
+        outputs = self.outline.outputs[component_id]
+        for known in self.memory.leaves.list_known(component_id):
+            if (
+                known.entry is entry
+                and known.outputs is outputs
+                and known.group_owners == self.owners[group_id]
+                and resolver.gives_answers(known.answers)
+                and wiring.brings_same(known.component)
+                and known.source_media == wiring.list_source_media(known.component)
+            ):
+                wiring.take_over(known.component)
+                self.owners[component_id] = known.component.owners
+                return known.component
         with resolver.listen() as heard:
             component = self._declare_written(group_id, entry)
-        # Outputs that promise something are no longer what the outline knows; they may be replaced by others'.
-        if heard.is_flawless and component_id in self.memory.ports:
-            self.memory.leaves[component_id] = KnownLeaf(
-                entry,
-                outputs,
-                self.owners[group_id],
-                wiring.list_source_media(component),
-                tuple(heard.answers),
-                component,
-            )
+        # The outputs are those of another version only where nothing else is said of them: see `_recall_ports`.
+        if heard.is_flawless:
+            media, owners = wiring.list_source_media(component), self.owners[group_id]
+            linked = LinkedLeaf(entry, outputs, owners, media, tuple(heard.answers), component)
+            self.memory.leaves.keep_part(component_id, linked)
         return component
 
     def _declare_written(self, group_id: str, entry: MappingEntry) -> Component:

@@ -15,7 +15,7 @@ from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
-from archgen.link.link_memory import KnownNode, LinkMemory
+from archgen.link.link_memory import LinkedNode, LinkMemory
 from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.port_resolution import PortResolver
@@ -81,22 +81,23 @@ def _recall_node(
     """Return a node, one that is known from another version of the project without declaring it anew."""
     components = tuple(context.components[each] for each in implemented.implements[node_id])
     shared_flags = tuple(each.id in context.timing_merger.shared_components for each in components)
-    known, resolver, containers = memory.nodes.get(node_id), context.resolver, context.containers
-    if (
-        known is not None
-        and known.entry is entry
-        and len(known.components) == len(components)
-        and all(map(operator.is_, known.components, components))
-        and known.shared_flags == shared_flags
-        and resolver.gives_answers(known.answers)
-        and (not known.node.container or containers[known.node.container].host == known.container_host)
-    ):
-        return known.node
+    resolver, containers = context.resolver, context.containers
+    for known in memory.nodes.list_known(node_id):
+        if (
+            known.entry is entry
+            and len(known.components) == len(components)
+            and all(map(operator.is_, known.components, components))
+            and known.shared_flags == shared_flags
+            and resolver.gives_answers(known.answers)
+            and (not known.node.container or containers[known.node.container].host == known.container_host)
+        ):
+            return known.node
     with resolver.listen() as heard:
         node = _declare_node(node_id, entry, context, implemented)
     if heard.is_flawless:
         host = containers[node.container].host if node.container else None
-        memory.nodes[node_id] = KnownNode(entry, components, shared_flags, host, tuple(heard.answers), node)
+        linked = LinkedNode(entry, components, shared_flags, host, tuple(heard.answers), node)
+        memory.nodes.keep_part(node_id, linked)
     return node
 
 

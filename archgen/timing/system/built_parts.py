@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from archgen.model.component import Component
+from archgen.model.known_parts import KnownParts
 from archgen.model.node import Endpoint, Node
 from archgen.timing.figures.tick_unit import TickUnit
 from archgen.timing.system.timing_system import Activity
@@ -27,26 +28,25 @@ class BuiltParts:
 
     def __init__(self) -> None:
         """Start empty."""
-        self._tick_unit: TickUnit | None = None
-        self._activities: dict[str, tuple[ActivitySource, Activity]] = {}
+        self._by_unit: dict[TickUnit, KnownParts[tuple[ActivitySource, Activity]]] = {}
+        self._activities: KnownParts[tuple[ActivitySource, Activity]] = KnownParts()
 
     def start_version(self, tick_unit: TickUnit) -> None:
-        """Forget everything where durations are counted in another unit."""
-        if self._tick_unit != tick_unit:
-            self._tick_unit, self._activities = tick_unit, {}
+        """Take up what is known of the versions in which durations are counted in the same unit."""
+        self._activities = self._by_unit.setdefault(tick_unit, KnownParts())
 
     def find_activity(self, name: str, source: ActivitySource) -> Activity | None:
         """Return an activity that was built from the same."""
-        known_source, activity = self._activities.get(name, (None, None))
-        is_same = (
-            known_source is not None
-            and known_source.node is source.node
-            and known_source.component is source.component
-            and known_source.shared_flags == source.shared_flags
-            and all(map(operator.is_, known_source.endpoints, source.endpoints))
-        )
-        return activity if is_same else None
+        for known, activity in self._activities.list_known(name):
+            if (
+                known.node is source.node
+                and known.component is source.component
+                and known.shared_flags == source.shared_flags
+                and all(map(operator.is_, known.endpoints, source.endpoints))
+            ):
+                return activity
+        return None
 
     def keep_activity(self, name: str, source: ActivitySource, activity: Activity) -> None:
         """Remember an activity."""
-        self._activities[name] = (source, activity)
+        self._activities.keep_part(name, (source, activity))
