@@ -143,6 +143,8 @@ def _list_below(element: str, body: MappingNode) -> Iterator[NamedFile]:
 
 
 def _list_own(element: str, body: MappingNode) -> Iterator[NamedFile]:
+    if "urls" not in body.entries and "image" not in body.entries:  # nearly everything
+        return
     urls = mapping_values.get_mapping(body, "urls")
     for entry in urls:
         scalar = mapping_values.get_scalar(urls, entry.key)

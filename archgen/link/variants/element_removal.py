@@ -131,6 +131,9 @@ class ElementRemover:
     def _prune_ports(self, ports: MappingEntry, component_id: str, side: str) -> MappingEntry:
         kept: dict[str, MappingEntry] = {}
         for port in mapping_values.get_body(ports):
+            if "from" not in mapping_values.get_body(port).entries:
+                kept[port.key] = port
+                continue
             entries = dict(mapping_values.get_body(port).entries)
             find_target = self._find_source if side == "inputs" else self._find_given
             self._prune_sources(entries, lambda scalar, find=find_target: find(scalar, component_id))  # type: ignore[misc]
