@@ -54,6 +54,7 @@ from archgen.link.report_chapters import ReportChapters
 from archgen.link.variants import variant_order
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
+from archgen.model.known_parts import KnownParts
 from archgen.model.variant import BASE_NAME
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.project.commit_days import find_commit_day
@@ -461,6 +462,7 @@ class PartMemory:
         """Start empty."""
         self.linked = LinkMemory()
         self.derived = DerivedParts()
+        self.named_files: named_files.FilesByGroup = KnownParts()
 
 
 class _VariantJudge:
@@ -483,7 +485,9 @@ class _VariantJudge:
         self._written = mapping_values.get_mapping(merged_project.table, "variants").entries
         self._order = variant_order
         self._layer = variant_laying.VariantLayer(
-            loaded_project.lost_keys, loaded_project.incomplete_libraries, loaded_project.describe_missing_type,
+            loaded_project.lost_keys,
+            loaded_project.incomplete_libraries,
+            loaded_project.describe_missing_type,
             self._parts.linked,
         )
         base = replace(merged_project, table=variant_laying.remove_variants(merged_project.table))
@@ -603,7 +607,9 @@ def _judge_merged(
     missing_pictures = chapter_pictures.find_missing_pictures(
         project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
     )
-    files_by_element = tuple(named_files.list_named_files(merged_table))
+    files_by_element = tuple(
+        named_files.list_named_files(merged_table, part_memory.named_files if part_memory else None)
+    )
     project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
     named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
     missing_files = (

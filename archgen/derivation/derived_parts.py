@@ -70,7 +70,9 @@ class DerivedParts:
         self._node_parts.keep_part(node_id, parts)
         return parts
 
-    def derive_writing(self, architecture: Architecture, node_id: str, parts: tuple[NodePart, ...]) -> Sequence[Endpoint]:
+    def derive_writing(
+        self, architecture: Architecture, node_id: str, parts: tuple[NodePart, ...]
+    ) -> Sequence[Endpoint]:
         """Return what a node writes."""
         for known_parts, known_endpoints in self._writing.list_known(node_id):
             if known_parts is parts:

@@ -127,9 +127,7 @@ def diagnose_undeclared_inputs(outline: ElementOutline) -> Iterator[Diagnostic]:
         )
 
 
-def _recall_ports(
-    element_outline: ElementOutline, component_id: str, body: MappingNode, memory: LinkMemory
-) -> None:
+def _recall_ports(element_outline: ElementOutline, component_id: str, body: MappingNode, memory: LinkMemory) -> None:
     """Outline the ports of a component, those that are known from another version without making them anew."""
     middleware = element_outline.middleware
     for known in memory.ports.list_known(component_id):

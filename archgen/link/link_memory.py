@@ -6,7 +6,7 @@ entry is the same object, and whose references mean what they meant, is the same
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from archgen.link.reference_resolution import Answer
@@ -18,6 +18,10 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _MAX_INDEXES = 4
 """Indexes of paths that are remembered for each kind: variants differ in few ways."""
+
+
+NameList = tuple[tuple[str, tuple[str, ...]], ...]
+"""All names of a version, by kind: in two versions with the same ones each reference means the same."""
 
 
 class OutlinedPorts(NamedTuple):
@@ -37,6 +41,7 @@ class LinkedLeaf(NamedTuple):
     group_owners: tuple[str, ...]
     source_media: tuple[str, ...]
     """What the outputs travel over that its inputs read, in the order of connections."""
+    names: object
     answers: tuple[Answer, ...]
     component: Component
 
@@ -49,6 +54,7 @@ class LinkedNode(NamedTuple):
     shared_flags: tuple[bool, ...]
     """For each of its components, whether other nodes implement it, too."""
     container_host: str | None
+    names: object
     answers: tuple[Answer, ...]
     node: Node
 
@@ -62,6 +68,15 @@ class LinkMemory:
         self.leaves: KnownParts[LinkedLeaf] = KnownParts()
         self.nodes: KnownParts[LinkedNode] = KnownParts()
         self._indexes: dict[str, list[tuple[tuple[str, ...], PathIndex]]] = {}
+        self._name_lists: list[NameList] = []
+
+    def recall_names(self, *spans_by_kind: Mapping[str, Iterable[str]]) -> NameList:
+        """Return all names of a version, as the same object where another version has the same."""
+        names = tuple((kind, tuple(ids)) for spans in spans_by_kind for kind, ids in spans.items())
+        known = next((each for each in self._name_lists if each == names), None)
+        if known is None:
+            self._name_lists = [names, *self._name_lists[: _MAX_INDEXES - 1]]
+        return known or names
 
     def index_paths(self, kind: str, paths: Iterable[str]) -> PathIndex:
         """Return the index of the ids of a kind; an earlier one where they are the same."""

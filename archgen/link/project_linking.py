@@ -69,7 +69,9 @@ def link_project(  # noqa: PLR0913 - all by name
     containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
-        implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger, memory), implemented
+        implemented.root,
+        NodeContext(element_outline, resolver, components, containers, timing_merger, memory),
+        implemented,
     )
     requirements = declare_requirements(root, resolver)
     use_cases = declare_use_cases(root, resolver)
@@ -127,7 +129,7 @@ def link_project(  # noqa: PLR0913 - all by name
     return architecture, tuple(diagnostics)
 
 
-def make_resolver(
+def make_resolver(  # noqa: PLR0913, PLR0917 - what a resolver knows
     root: MappingNode,
     element_outline: ElementOutline,
     diagnostics: list[Diagnostic],
@@ -153,4 +155,7 @@ def make_resolver(
         for kind, section in PLAIN_SECTIONS.items()
     }
     make_index = memory.index_paths if memory else None
-    return ReferenceResolver(spans, plain_spans, diagnostics, lost_keys, damaged_elements, make_index=make_index)
+    all_names = memory.recall_names(spans, plain_spans) if memory else None
+    return ReferenceResolver(
+        spans, plain_spans, diagnostics, lost_keys, damaged_elements, make_index=make_index, all_names=all_names
+    )

@@ -73,6 +73,8 @@ class ReferenceResolver:
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     make_index: Callable[[str, Iterable[str]], PathIndex] | None = None
     """What indexes the ids of a kind, where somebody remembers these."""
+    all_names: object = None
+    """What stands for all names of this version: with the same object each reference means the same in another one."""
     answers: list[Answer] | None = None
     """What was resolved since somebody began to listen, None where nobody does."""
     names: PathResolver = field(init=False)

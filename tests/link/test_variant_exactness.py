@@ -208,3 +208,21 @@ def test_what_variants_share_is_as_if_each_had_been_judged_alone(
         if alone.analysis is not None and variant.analysis is not None:
             assert list_all(alone.analysis.system) == list_all(variant.analysis.system), name
             assert alone.analysis == variant.analysis, name
+
+
+def test_a_variant_takes_over_what_it_does_not_change(tmp_path: Path) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text(
+        "archgen: 1\n"
+        "groups: {g: {components: {a: {outputs: {o: Data}}, b: {inputs: {i: a.o}}, c: {inputs: {i: a.o}}}}}\n"
+        "types: {Data: {message: std_msgs/msg/String}}\n"
+        "nodes: {a: {implements: a}, b: {implements: b}}\n"
+        "variants: {v: {changes: {groups: {g: {components: {b: {title: Other}}}}}}, w: {drop: [nodes.b]}}\n",
+        encoding="utf-8",
+    )
+    checked = pipeline.check_project(file)
+    for variant, changed in (("v", {"g.b"}), ("w", set())):
+        own, shared = checked.variants[variant].architecture, checked.architecture
+        assert {name for name in own.components if own.components[name] is not shared.components[name]} == changed
+    assert checked.variants["v"].architecture.nodes["a"] is checked.architecture.nodes["a"]
+    assert checked.variants["v"].architecture.topics["/g/a/o"] is not None

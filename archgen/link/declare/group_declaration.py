@@ -173,7 +173,7 @@ class _GroupDeclarer:
                 known.entry is entry
                 and known.outputs is outputs
                 and known.group_owners == self.owners[group_id]
-                and resolver.gives_answers(known.answers)
+                and (known.names is resolver.all_names or resolver.gives_answers(known.answers))
                 and wiring.brings_same(known.component)
                 and known.source_media == wiring.list_source_media(known.component)
             ):
@@ -185,7 +185,7 @@ class _GroupDeclarer:
         # The outputs are those of another version only where nothing else is said of them: see `_recall_ports`.
         if heard.is_flawless:
             media, owners = wiring.list_source_media(component), self.owners[group_id]
-            linked = LinkedLeaf(entry, outputs, owners, media, tuple(heard.answers), component)
+            linked = LinkedLeaf(entry, outputs, owners, media, resolver.all_names, tuple(heard.answers), component)
             self.memory.leaves.keep_part(component_id, linked)
         return component
 

@@ -88,7 +88,7 @@ def _recall_node(
             and len(known.components) == len(components)
             and all(map(operator.is_, known.components, components))
             and known.shared_flags == shared_flags
-            and resolver.gives_answers(known.answers)
+            and (known.names is resolver.all_names or resolver.gives_answers(known.answers))
             and (not known.node.container or containers[known.node.container].host == known.container_host)
         ):
             return known.node
@@ -96,7 +96,8 @@ def _recall_node(
         node = _declare_node(node_id, entry, context, implemented)
     if heard.is_flawless:
         host = containers[node.container].host if node.container else None
-        linked = LinkedNode(entry, components, shared_flags, host, tuple(heard.answers), node)
+        answers = tuple(heard.answers)
+        linked = LinkedNode(entry, components, shared_flags, host, resolver.all_names, answers, node)
         memory.nodes.keep_part(node_id, linked)
     return node
 

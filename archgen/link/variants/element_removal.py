@@ -15,9 +15,11 @@ from archgen.link.project_linking import make_resolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SOURCE_KINDS, SourceReferences
 from archgen.link.variants.removed_elements import RemovedElements, find_idle_places, find_removed
+from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import ElementRef
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
+_HOLDING_KEYS = frozenset({"from", "node", "components"})
 _TYPE_KEYS = frozenset({"is", "same_as"})
 _USE_KEYS = ("publishes", "subscribes", "serves", "calls")
 _START_REFERENCES = frozenset({"after", "by"})
@@ -34,14 +36,30 @@ class ElementRemover:
         leaves: frozenset[str],
         nodes: frozenset[str],
         memory: LinkMemory | None = None,
+        architecture: Architecture | None = None,
     ) -> None:
-        """Take the project with all types written out, and the leaves and nodes that go by complete ids."""
+        """Take the project with all types written out, and the leaves and nodes that go by complete ids.
+
+        `architecture` is its architecture, where that is known.
+        """
         self._outline: ElementOutline = build_outline(expansion, memory)
         self._expansion = expansion
         self.removed: RemovedElements = find_removed(self._outline, leaves, nodes)
         self._resolver: ReferenceResolver = make_resolver(expansion.root, self._outline, [], memory=memory)
         self._sources = SourceReferences(self._outline, self._resolver) if self._outline.expansion else None
         self._changed_shells = self._list_changed_shells()
+        self._untouched = self._list_untouched(architecture) if architecture and expansion.is_plain else frozenset()
+
+    def _list_untouched(self, architecture: Architecture) -> frozenset[str]:
+        """Return the components that read nothing of what goes."""
+        if self._outline.undeclared_inputs:  # what they read is in no architecture
+            return frozenset()
+        touched = {
+            each.input.rpartition(".")[0]
+            for each in architecture.connections
+            if self._is_removed(ElementRef(each.kind, each.target))
+        }
+        return frozenset(self._outline.components.keys() - touched)
 
     def _list_changed_shells(self) -> frozenset[str]:
         """Return the composed components that stay, and in which something goes."""
@@ -99,6 +117,8 @@ class ElementRemover:
 
     def _prune_component(self, part: MappingEntry, component_id: str) -> MappingEntry:
         body = mapping_values.get_body(part)
+        if component_id in self._untouched and _HOLDING_KEYS.isdisjoint(body.entries):
+            return part
         if component_id in self._changed_shells and not _TYPE_KEYS.isdisjoint(body.entries):
             body = self._write_out(component_id, body)
         entries = dict(body.entries)
