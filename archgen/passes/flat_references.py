@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from archgen.analyses import analyse_timing
@@ -37,7 +37,64 @@ class FlatReferences:
         for name in ("views", "policies"):
             if name in sections:
                 rewritten[name] = rewrite_selectors(sections[name], self._rename_word)
+        if "policies" in rewritten:
+            rewritten["policies"] = self._rewrite_accepted(rewritten["policies"])
         return rewritten
+
+    def rewrite_start(self, body: MappingNode, own_leaves: Collection[str]) -> MappingNode:
+        """Return what a node says, with the components that it waits for, or that bring it up, called as now.
+
+        `own_leaves` are the components that the node implements: it waits for the others of what is around them.
+        """
+        start = body.get("start")
+        if not isinstance(start, MappingNode):
+            return body
+        entries = dict(start.entries)
+        for key, has_several in (("after", True), ("by", False)):
+            scalars = mapping_values.get_scalars(start, key)
+            named = {name: each.span for each in scalars for name in self._name_started(each.text, own_leaves)}
+            items = [ScalarNode(name, name, span) for name, span in named.items()]
+            if items:
+                value = SequenceNode(list(items), entries[key].value.span) if has_several else items[0]
+                entries[key] = MappingEntry(key, entries[key].key_span, value)
+        written = body.entries["start"]
+        rewritten = MappingEntry("start", written.key_span, MappingNode(entries, start.span))
+        return MappingNode({**body.entries, "start": rewritten}, body.span)
+
+    def _name_started(self, text: str, own_leaves: Collection[str]) -> list[str]:
+        """Return what is started where a component is: all leaves inside of a composed one."""
+        target = self.linked.resolver.names.resolve_path(text, ("component",)).unique_element
+        if target is None:
+            return [text]
+        inside = [target.id, *self.linked.outline.list_inside(target.id)]
+        leaves = [each for each in inside if each in self.linked.outline.components]
+        others = [each for each in leaves if each not in own_leaves]
+        return [self.flat_ids[each] for each in others or leaves or inside if each in self.flat_ids]
+
+    def _rewrite_accepted(self, section: MappingEntry) -> MappingEntry:
+        """Return policies whose exceptions name the inputs of leaves."""
+        policies: dict[str, MappingEntry] = {}
+        for policy in mapping_values.get_body(section):
+            policies[policy.key] = policy
+            body = mapping_values.get_body(policy)
+            accepted = body.get("accepted")
+            if isinstance(accepted, MappingNode):
+                inputs: dict[str, MappingEntry] = {}
+                for each in accepted:
+                    for name in self._name_inputs(each.key):
+                        inputs.setdefault(name, MappingEntry(name, each.key_span, each.value))
+                written = body.entries["accepted"]
+                rewritten = MappingEntry("accepted", written.key_span, MappingNode(inputs, accepted.span))
+                value = MappingNode({**body.entries, "accepted": rewritten}, body.span)
+                policies[policy.key] = MappingEntry(policy.key, policy.key_span, value)
+        return MappingEntry(section.key, section.key_span, MappingNode(policies, section.value.span))
+
+    def _name_inputs(self, text: str) -> list[str]:
+        target = self.linked.resolver.names.resolve_path(text, ("input",)).unique_element
+        if target is None:
+            return [text]
+        leaf_ports = [each.rpartition(".") for each in self.architecture.leaf_ports_of("input", target.id)]
+        return [f"{self.flat_ids[leaf]}.{name}" for leaf, _, name in leaf_ports if leaf in self.flat_ids] or [text]
 
     def _rewrite_elements(self, section: MappingEntry, key: str) -> MappingEntry:
         entries: dict[str, MappingEntry] = {}

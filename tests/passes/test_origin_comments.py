@@ -7,6 +7,7 @@ from pathlib import Path
 from archgen.diagnostics.source_span import Span
 from archgen.model.made_elements import MadeElement, find_made_element
 from archgen.passes.origin_comments import write_comment
+from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import check_project, transform_project
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
@@ -66,6 +67,19 @@ def test_a_comment_beside_a_silenced_finding_keeps_both(tmp_path: Path) -> None:
     file.parent.mkdir()
     file.write_text(pack(transformed), encoding="utf-8")
     assert "unread-output" not in {each.rule for each in check_project(file).findings}
+
+
+def test_comments_of_passes_that_are_rules_are_read(tmp_path: Path) -> None:
+    checked = write_project(
+        tmp_path, "component_types: {a: {functionality: X}}\ngroups: {g: {components: {r: {is: a}}}}\n"
+    )
+    known = find_known_passes(checked.loaded_project).passes
+    transformed = transform_project(checked, ["rules.resolve_instances"], known)
+    file = tmp_path / "packed" / "made.yaml"
+    file.parent.mkdir()
+    file.write_text(pack(transformed), encoding="utf-8")
+    assert "made[rules.resolve_instances]" in pack(transformed)
+    assert pack(check_project(file)) == pack(transformed)
 
 
 def test_places_cannot_break_out_of_comments() -> None:
