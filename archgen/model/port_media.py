@@ -127,6 +127,11 @@ def label_of_carrier(carrier: Topic | Endpoint) -> str:
     return carrier.name if carrier.medium == ROS else f"{name_on_medium(carrier)} ({name_medium(carrier.medium)})"
 
 
+def key_of_channel(carrier: Topic | Endpoint) -> str:
+    """Return the key of a channel, or of what an endpoint uses, among the architecture's channels."""
+    return make_channel_key(carrier.name, carrier.flow)
+
+
 def name_on_medium(carrier: Topic | Endpoint) -> str:
     """Return the name of a topic or channel without the word of its medium."""
     return carrier.name if carrier.medium == ROS else carrier.name.removeprefix(f"{carrier.medium} ")
