@@ -157,3 +157,13 @@ def test_hints_at_parameters_are_judged_once_where_they_are_written(
     (tmp_path / "backends" / "orca" / "backend.yaml").write_text(manifest, encoding="utf-8")
     findings = [each for each in check_project(tmp_path).findings if each.rule == WRONG_HINT.name]
     assert [f"{each.span.line}:{each.span.column}: {each.message}" for each in findings] == found
+
+
+@pytest.mark.parametrize(
+    ("limits", "faults"),
+    [("minimum: 1e3", 1), ("maximum: .5", 1), ("minimum: .nan", 0), ("minimum: -.inf", 0), ("minimum: true", 0)],
+)
+def test_limits_count_however_they_are_written(limits: str, faults: int) -> None:
+    document, _ = parse_yaml("schema", limits)
+    assert document is not None
+    assert len(list(list_hint_faults(document.root, 7))) == faults
