@@ -143,7 +143,12 @@ def describe_carried(port: Input | Output) -> str:
         return "a message"
     if port.medium == PHYSICAL:
         return "a physical quantity"
-    return f"data {_STORES.get(port.medium) or f'over {name_medium(port.medium)}'}"
+    return f"data {describe_way(port.medium)}"
+
+
+def describe_way(medium: str) -> str:
+    """Return in words how data goes that is no ROS: over a medium, or by being put somewhere."""
+    return _STORES.get(medium) or f"over {name_medium(medium)}"
 
 
 def flow_of_port(port: Input | Output, carried_type: ConceptualType | None) -> PortFlow:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from archgen.model.component import Component
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
-from archgen.model.port_media import ROS, key_of_channel, name_medium, name_on_medium
+from archgen.model.port_media import ROS, describe_way, key_of_channel, name_medium, name_on_medium
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
 from archgen.views.elements.annotation_facts import list_annotation_facts
@@ -117,7 +117,7 @@ def _channel_page(lookup: Lookup, channel: Topic) -> Page:
     blocks += _endpoint_blocks(lookup, channel, channel.readers, reader)
     crumb = ("Topics, services and actions", "page:topics")
     section = Section(f"channel:{key_of_channel(channel)}", name_on_medium(channel), tuple(blocks))
-    return make_page(section, "channels", crumb, f"{_CHANNEL_TITLES[channel.flow]} over {medium}")
+    return make_page(section, "channels", crumb, f"{_CHANNEL_TITLES[channel.flow]} {describe_way(channel.medium)}")
 
 
 def _topic_page(lookup: Lookup, topic: Topic) -> Page:
