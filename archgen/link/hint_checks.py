@@ -17,6 +17,7 @@ from archgen.link import mapping_values
 from archgen.link.hint_schemas import HintFault, list_hint_faults
 from archgen.model.annotated_elements import list_annotated_elements
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component, ComponentType
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode
@@ -124,8 +125,9 @@ def _list_hinted(architecture: Architecture) -> Iterator[_HintedPart]:
             yield _HintedPart(
                 each.kind, each.id, each.owner_id, annotations.hints, annotations.hint_places, each.element.at
             )
-    types = (each for each in architecture.component_types.values() if each.library is None)
-    for holder in (*types, *architecture.list_described_components()):
+    types = [each for each in architecture.component_types.values() if each.library is None]
+    holders: tuple[ComponentType | Component, ...] = (*types, *architecture.list_described_components())
+    for holder in holders:
         for parameter in holder.parameters.values():
             if parameter.hints:
                 id_ = f"{holder.id}.{parameter.name}"

@@ -17,7 +17,7 @@ from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables
 from archgen.views.pages.host_pages import make_host_pages
 from archgen.views.search.implementation_entries import make_channel_entries
-from archgen.views.shapes import Facts, Inlines
+from archgen.views.shapes import Facts, Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows
 
 ROBOT = """
@@ -151,13 +151,15 @@ def test_each_has_a_page_that_is_linked_and_a_card(lookup: Lookup) -> None:
     assert (page.title, page.lead, page.path) == ("fleet/pose", "Data over MQTT", "channels/mqtt-fleet-pose.html")
     facts, senders, readers = page.section.blocks
     assert isinstance(facts, Facts)
+    assert isinstance(senders, Table)
+    assert isinstance(readers, Table)
     assert [(name, text(value)) for name, value in facts.rows] == [
         ("Medium", "MQTT"),
         ("Type", "Pose"),
         ("Size", "100 B"),
         ("Hosts", "Pc"),
     ]
-    assert [[text(cell) for cell in row] for block in (senders, readers) for row in block.rows] == [  # type: ignore[union-attr]
+    assert [[text(cell) for cell in row] for block in (senders, readers) for row in block.rows] == [
         ["drone", "Drone", "pose"],
         ["screen", "Screen", "pose"],
     ]

@@ -146,7 +146,7 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
 def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ...], role: str) -> list[Block]:
     if not endpoints:
         return [Paragraph(inline_text.to_inlines(Text(f"{role}s. ", strong=True), Text("None.", muted=True)))]
-    rows = tuple(
+    rows: tuple[tuple[Inlines, ...], ...] = tuple(
         (
             inline_text.to_inlines(inline_text.node_link(lookup.architecture.nodes[endpoint.node])),
             _component_cell(lookup, endpoint.component),
