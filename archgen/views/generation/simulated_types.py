@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_identifier_in, make_lower_camel_name
-from archgen.model.known_interfaces import Interface, InterfaceField
+from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.views.generation.generation_context import tell_left_out, write_place
 from archgen.views.generation.java_names import JAVA_CLASS_NAMES, choose_java_spellings
 from archgen.views.generation.name_clashes import find_name_clashes
@@ -166,15 +166,12 @@ class SimulatedTypes:
         if slots > _MOST_SLOTS:
             self._leave_out(key, f"`{key}` has {len(fields)} fields, more than a record of Java can have", span)
             return
-        constants = definition.constants[part] if definition.constants else ()
-        names = [
-            *((name_java_field(each.name), f"{key}.{each.name}", span) for each in fields),
-            *((make_identifier_in("java", each.name), f"{key} {each.name}", span) for each in constants),
-        ]
+        names = [(name_java_field(each.name), f"{key}.{each.name}", span) for each in fields]
         clashes = list(find_name_clashes(names, "field"))
         self.findings += clashes
         clashing = {each.element for each in clashes}
         kept = [each for each in fields if f"{key}.{each.name}" not in clashing]
+        constants = list(self._keep_constants(key, kept, definition.constants[part] if definition.constants else (), span))
         types = {each.name: self._find_field_type(each) for each in kept}
         own_names = [class_name, "List", "Collections", "Named", "Values"]
         spellings = self.spell_in_java(types.values(), java_package, own_names)
@@ -184,8 +181,28 @@ class SimulatedTypes:
         record["constants"] = [
             {"name": each.name, "kind": _name_kind(each.type), "value": value, "comment": each.comment}
             for each in constants
-            if f"{key} {each.name}" not in clashing and (value := _read_default(each.value, _name_kind(each.type))) is not None
+            if (value := _read_default(each.value, _name_kind(each.type))) is not None
         ]
+
+    def _keep_constants(
+        self, key: str, fields: Iterable[InterfaceField], constants: Iterable[InterfaceConstant], span: Span
+    ) -> Iterator[InterfaceConstant]:
+        """Yield the constants of a record whose names are those of nothing else in it; report the others."""
+        taken = {name for each in fields for name in (name_java_field(each.name), make_identifier_in("python", each.name))}
+        for each in constants:
+            name = make_identifier_in("java", each.name)
+            if name in taken:
+                self.findings.append(
+                    tell_left_out(
+                        f"the constant `{each.name}` of `{key}` is left out: another name in it gives `{name}`, too",
+                        span,
+                        element=key.partition(" ")[0],
+                        help_line="give it another name",
+                    )
+                )
+            else:
+                taken.add(name)
+                yield each
 
     def _leave_out(self, key: str, message: str, span: Span) -> None:
         self._left_out.add(key)
