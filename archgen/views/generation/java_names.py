@@ -25,13 +25,15 @@ def choose_java_spellings(names: Mapping[str, str], package: str, own_names: Ite
     A class that is named by its last word is imported, unless it stands in the same package. `own_names` mean something
     else in the file.
     """
-    full_names = set(names.values())
-    counts = Counter(each.rpartition(".")[2] for each in full_names)
+    counts = Counter(_get_last_word(each) for each in set(names.values()))
     taken = JAVA_CLASS_NAMES.union(own_names)
-    return {
-        key: full_name
-        if full_name.rpartition(".")[2] in taken and not full_name == f"{package}.{full_name.rpartition('.')[2]}"
-        or counts[full_name.rpartition(".")[2]] > 1
-        else full_name.rpartition(".")[2]
-        for key, full_name in names.items()
-    }
+    spellings: dict[str, str] = {}
+    for key, full_name in names.items():
+        word = _get_last_word(full_name)
+        means_another = word in taken and full_name != f"{package}.{word}"
+        spellings[key] = full_name if means_another or counts[word] > 1 else word
+    return spellings
+
+
+def _get_last_word(full_name: str) -> str:
+    return full_name.rpartition(".")[2]

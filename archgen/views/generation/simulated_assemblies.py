@@ -21,6 +21,14 @@ _PYTHON_ATTRIBUTES = frozenset(("add", "components", "connect", "include", "list
 
 
 @dataclass(frozen=True, slots=True)
+class MadeClasses:
+    """The classes of components, and what is recorded of them, by the ids of the components."""
+
+    classes: Mapping[str, SimulatedClass]
+    records: Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
 class Part:
     """A part of an assembly: a component, or another assembly."""
 
@@ -50,35 +58,34 @@ def collect_assemblies(architecture: Architecture, classes: Mapping[str, Simulat
     assemblies = {"": whole}
     for component_id in classes:
         component = architecture.components[component_id]
-        chain = [each for each in architecture.list_around(component)][::-1]
+        chain = list(architecture.list_around(component))[::-1]
         if component_id in architecture.shells:
             chain.append(architecture.shells[component_id])
         group = architecture.groups[component.group]
         package = make_identifier_in("java", make_snake_name(group.id))
-        around = _enter(assemblies, whole, group.id, ClassName(package, f"{group.id} group"), group.id, group)
+        around = assemblies.setdefault(
+            group.id, Assembly(group.id, ClassName(package, f"{group.id} group"), group.title, group.at)
+        )
+        whole.children[group.id, True] = group.id
         for shell in chain:
             words = shell.id.removeprefix(f"{group.id}.").replace(".", " ")
-            around = _enter(assemblies, around, shell.id, ClassName(package, words), shell.name, shell)
+            around.children[shell.id, True] = shell.name
+            around = assemblies.setdefault(
+                shell.id, Assembly(shell.id, ClassName(package, words), shell.title, shell.at)
+            )
         name = "rest" if component_id in architecture.shells else component.name
         around.children[component_id, False] = name
     return assemblies
 
 
-def _enter(
-    assemblies: dict[str, Assembly], around: Assembly, element_id: str, class_name: ClassName, name: str, element: Any
-) -> Assembly:
-    around.children[element_id, True] = name
-    return assemblies.setdefault(element_id, Assembly(element_id, class_name, element.title, element.at))
-
-
-def place_parts(
-    context: GenerationContext, assembly: Assembly, left_out: frozenset[str]
-) -> Iterator[Diagnostic]:
+def place_parts(context: GenerationContext, assembly: Assembly, left_out: frozenset[str]) -> Iterator[Diagnostic]:
     """Give an assembly its parts, but for those whose names fall together, which are yielded, and those left out already."""
     architecture = context.architecture
     parts: dict[str, Part] = {}
     spans: dict[str, Span] = {}
     for (part_id, is_assembly), name in assembly.children.items():
+        if part_id in left_out:
+            continue
         element = architecture.find_component(part_id) or architecture.groups[part_id]
         python_name = make_identifier_in("python", make_snake_name(name))
         python_name = f"{python_name}_" if python_name in _PYTHON_ATTRIBUTES else python_name
@@ -86,11 +93,16 @@ def place_parts(
         parts[key] = Part(part_id, is_assembly, name_java_field(name), python_name)
         spans[key] = element.at
     dropped = set[str]()
-    for names in ({key: each.java_name for key, each in parts.items()}, {key: each.python_name for key, each in parts.items()}):
-        for clash in find_name_clashes([(name, key, spans[key]) for key, name in names.items() if key not in dropped], "name"):
+    for names in (
+        {key: each.java_name for key, each in parts.items()},
+        {key: each.python_name for key, each in parts.items()},
+    ):
+        for clash in find_name_clashes(
+            [(name, key, spans[key]) for key, name in names.items() if key not in dropped], "name"
+        ):
             dropped.add(clash.element or "")
             yield clash
-    assembly.parts = [each for key, each in parts.items() if key not in dropped and each.id not in left_out]
+    assembly.parts = [each for key, each in parts.items() if key not in dropped]
 
 
 def find_ways(assemblies: Mapping[str, Assembly]) -> dict[str, tuple[Part, ...]]:
@@ -107,17 +119,12 @@ def find_ways(assemblies: Mapping[str, Assembly]) -> dict[str, tuple[Part, ...]]
 
 
 def record_assembly(
-    context: GenerationContext,
-    assembly: Assembly,
-    classes: Mapping[str, SimulatedClass],
-    records: Mapping[str, Mapping[str, Any]],
-    assemblies: Mapping[str, Assembly],
-    base: str,
+    context: GenerationContext, assembly: Assembly, classes: MadeClasses, assemblies: Mapping[str, Assembly], base: str
 ) -> tuple[dict[str, object], list[Diagnostic]]:
     """Return an assembly as data, and what is odd about when its components are active."""
     findings: list[Diagnostic] = []
     names = {
-        f"{each.is_assembly} {each.id}": assemblies[each.id].name if each.is_assembly else classes[each.id].name
+        f"{each.is_assembly} {each.id}": assemblies[each.id].name if each.is_assembly else classes.classes[each.id].name
         for each in assembly.parts
     }
     package = f"{base}.{assembly.name.package}".rstrip(".")
@@ -140,12 +147,12 @@ def record_assembly(
         }
         if not part.is_assembly:
             component = context.architecture.components[part.id]
-            input_names = [each["name"] for each in records[part.id]["inputs"]]
+            input_names = [each["name"] for each in classes.records[part.id]["inputs"]]
             record["timing"], finding = record_activation(context, component, input_names)
             record["place"] = write_place(component.at)
             record["settings"] = [
                 {**each, "value": each["values"].get(part.id), "is_given": part.id in each["values"]}
-                for each in records[part.id]["parameters"]
+                for each in classes.records[part.id]["parameters"]
             ]
             findings += [finding] if finding else []
         parts.append(record)

@@ -64,7 +64,6 @@ class SimulatedClass:
     """What each port holds, by `input`, `output`, `client` or `server` and its name: request and answer of what is called."""
     ports: dict[tuple[str, str], Input | Output] = field(default_factory=dict)
 
-
     def find_port(self, port: Input | Output) -> PortNames | None:
         """Return the names of a port of an instance; None for what is left out."""
         directions = ("input", "client") if isinstance(port, Input) else ("output", "server")
@@ -86,9 +85,7 @@ def name_class(architecture: Architecture, component: Component) -> ClassName:
             return ClassName("types", " ".join([type_name.replace("<", " of "), *reversed(parts)]))
         parts.append(around.name)
         around = architecture.shells.get(around.parent or "")
-    return ClassName(
-        make_identifier_in("java", make_snake_name(component.group)), " ".join(reversed(parts))
-    )
+    return ClassName(make_identifier_in("java", make_snake_name(component.group)), " ".join(reversed(parts)))
 
 
 def collect_classes(context: GenerationContext, types: SimulatedTypes) -> dict[str, SimulatedClass]:
@@ -98,28 +95,28 @@ def collect_classes(context: GenerationContext, types: SimulatedTypes) -> dict[s
     classes: dict[str, SimulatedClass] = {}
     for component_id in context.wanted_components:
         component = architecture.components[component_id]
-        name = name_class(architecture, component)
+        class_name = name_class(architecture, component)
         if component_id in architecture.shells:
             # What nothing inside of a composed component carries yet.
-            name = ClassName(name.package, f"{name.words} rest")
-        own = classes[component_id] = by_name.setdefault(name, SimulatedClass(name))
+            class_name = ClassName(class_name.package, f"{class_name.words} rest")
+        own = classes[component_id] = by_name.setdefault(class_name, SimulatedClass(class_name))
         own.components.append(component)
         for port in component.ports:
             own.ports.setdefault((_name_direction(architecture, port), port.name), port)
     for own in by_name.values():
-        for (direction, name), _ in own.ports.items():
+        for direction, name in own.ports:
             if direction in {"output", "server"}:
                 own.port_types[direction, name] = _join_types(
                     _find_types(architecture, types, each.outputs[name])
                     for each in own.components
                     if name in each.outputs
                 )
-    sources = _index_sources(architecture)
+    sent_types = _list_sent_types(architecture, types, classes)
     for own in by_name.values():
         for direction, name in own.ports:
             if direction in {"input", "client"}:
                 own.port_types[direction, name] = _join_types(
-                    _list_reader_types(architecture, types, classes, sources, own, name)
+                    _list_reader_types(architecture, types, sent_types, own, name)
                 )
     return classes
 
@@ -129,7 +126,7 @@ def _name_direction(architecture: Architecture, port: Input | Output) -> str:
     if isinstance(port, Input) and port.type is None and port.connections:
         # An input without a type of its own has that of what it reads.
         first = next((output for each in port.connections for output in each.outputs), None)
-        flow = architecture.flow_of(architecture.outputs[first]) if first in architecture.outputs else flow
+        flow = architecture.flow_of(architecture.outputs[first]) if first else flow
     if flow == "topic":
         return "input" if isinstance(port, Input) else "output"
     return "client" if isinstance(port, Input) else "server"
@@ -142,36 +139,36 @@ def _find_types(architecture: Architecture, types: SimulatedTypes, port: Input |
     return list(types.find_call_types(port.type))[:parts]
 
 
-def _index_sources(architecture: Architecture) -> Mapping[str, Sequence[str]]:
-    sources: dict[str, list[str]] = {}
+def _list_sent_types(
+    architecture: Architecture, types: SimulatedTypes, classes: Mapping[str, SimulatedClass]
+) -> Mapping[str, Sequence[list[ValueType]]]:
+    """Return what the sources of each input send or answer, by the complete id of the input."""
+    sent_types: dict[str, list[list[ValueType]]] = {}
     for edge in architecture.edges:
-        sources.setdefault(edge.input, []).append(edge.output)
-    return sources
+        source = architecture.outputs[edge.output]
+        source_class = classes.get(source.component)
+        if source_class is not None:
+            found = source_class.port_types[_name_direction(architecture, source), source.name]
+        else:
+            found = _find_types(architecture, types, source)
+        sent_types.setdefault(edge.input, []).append(found)
+    return sent_types
 
 
 def _list_reader_types(
     architecture: Architecture,
     types: SimulatedTypes,
-    classes: Mapping[str, SimulatedClass],
-    sources: Mapping[str, Sequence[str]],
+    sent_types: Mapping[str, Sequence[list[ValueType]]],
     own: SimulatedClass,
     name: str,
 ) -> Iterator[list[ValueType]]:
     """Yield what the input of each instance expects and is sent."""
     for component in own.components:
         port = component.inputs.get(name)
-        if port is None:
-            continue
-        if port.type is not None:
-            yield _find_types(architecture, types, port)
-        for output_id in sources.get(port.id, ()):
-            source = architecture.outputs[output_id]
-            source_class = classes.get(source.component)
-            direction = _name_direction(architecture, source)
-            if source_class is not None:
-                yield source_class.port_types[direction, source.name]
-            else:
-                yield _find_types(architecture, types, source)
+        if port is not None:
+            if port.type is not None:
+                yield _find_types(architecture, types, port)
+            yield from sent_types.get(port.id, ())
 
 
 def _join_types(listed: Iterable[list[ValueType]]) -> list[ValueType]:
@@ -205,7 +202,9 @@ def record_class(
     findings += parameter_findings
     own_names = [own.name.java, f"{own.name.java}Behaviour", "Behaviour", "Parameters"]
     all_types = [each for listed in own.port_types.values() for each in listed]
-    server_types = [each for (direction, _), listed in own.port_types.items() if direction == "server" for each in listed]
+    server_types = [
+        each for (direction, _), listed in own.port_types.items() if direction == "server" for each in listed
+    ]
     package = f"{base}.{own.name.package}"
     spellings = types.spell_in_java(all_types, package, own_names)
     ports: dict[str, list[dict[str, object]]] = {"inputs": [], "outputs": [], "clients": [], "servers": []}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import first_written_span
+from archgen.diagnostics.source_span import Span, first_written_span
 from archgen.model.code_names import make_identifier_in, make_snake_name
 from archgen.model.component import Component
 from archgen.views.generation.component_records import SetParameter, list_set_parameters
@@ -15,7 +15,12 @@ from archgen.views.generation.program_parameters import convert_value, infer_ros
 from archgen.views.generation.simulated_types import name_java_field
 from archgen.views.record_values import to_plain
 
-_KINDS = {"bool": ("boolean", "Boolean"), "integer": ("long", "Long"), "double": ("double", "Double"), "string": ("String",) * 2}
+_KINDS = {
+    "bool": ("boolean", "Boolean"),
+    "integer": ("long", "Long"),
+    "double": ("double", "Double"),
+    "string": ("String",) * 2,
+}
 _DECLARED_TYPES = {"boolean": "bool", "integer": "integer", "float": "double", "string": "string"}
 _MOST_WHOLE = 2**63
 
@@ -58,7 +63,7 @@ def _name_python_parameter(name: str) -> str:
     return make_identifier_in("python", make_snake_name(name))
 
 
-def _find_span(parameters: Iterable[SetParameter], component: Component):  # type: ignore[no-untyped-def]
+def _find_span(parameters: Iterable[SetParameter], component: Component) -> Span:
     spans = (each.declaration.at if each.declaration else each.at for each in parameters)
     return first_written_span(*spans, component.at)
 
@@ -69,7 +74,9 @@ def _record_parameter(
     values = {component: to_plain(each.value) for component, each in by_component.items() if each.value is not None}
     first = next(iter(by_component.values()))
     declaration = first.declaration
-    ros_type = _find_type([each.declaration.type for each in by_component.values() if each.declaration], values.values())
+    ros_type = _find_type(
+        [each.declaration.type for each in by_component.values() if each.declaration], values.values()
+    )
     if ros_type is None:
         return None
     base = ros_type.removesuffix("_array")

@@ -25,7 +25,9 @@ def record_activation(
         period = Fraction(_NANOSECONDS) / timing.rate.value
     mode, finding = _choose_mode(timing, period, component, input_names)
     trigger = timing.trigger
-    written = [each.rpartition(".")[2] for each in trigger.inputs] if trigger and trigger.inputs is not None else input_names
+    written = (
+        [each.rpartition(".")[2] for each in trigger.inputs] if trigger and trigger.inputs is not None else input_names
+    )
     within = trigger.within.value if trigger and trigger.within else None
     return {
         "mode": mode,

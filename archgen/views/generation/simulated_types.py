@@ -83,9 +83,7 @@ class SimulatedTypes:
         names = {each.record: self.name_java_class(each.record) for each in types if each.kind == "record"}
         return choose_java_spellings(names, package, own_names)
 
-    def list_java_imports(
-        self, types: Iterable[ValueType], spellings: Mapping[str, str], package: str
-    ) -> list[str]:
+    def list_java_imports(self, types: Iterable[ValueType], spellings: Mapping[str, str], package: str) -> list[str]:
         """Return what a file of Java imports of other packages to name records as `spell_in_java` says."""
         keys = {each.record for each in types if each.kind == "record"}
         return sorted(
@@ -171,7 +169,9 @@ class SimulatedTypes:
         self.findings += clashes
         clashing = {each.element for each in clashes}
         kept = [each for each in fields if f"{key}.{each.name}" not in clashing]
-        constants = list(self._keep_constants(key, kept, definition.constants[part] if definition.constants else (), span))
+        constants = list(
+            self._keep_constants(key, kept, definition.constants[part] if definition.constants else (), span)
+        )
         types = {each.name: self._find_field_type(each) for each in kept}
         own_names = [class_name, "List", "Collections", "Named", "Values"]
         spellings = self.spell_in_java(types.values(), java_package, own_names)
@@ -188,7 +188,9 @@ class SimulatedTypes:
         self, key: str, fields: Iterable[InterfaceField], constants: Iterable[InterfaceConstant], span: Span
     ) -> Iterator[InterfaceConstant]:
         """Yield the constants of a record whose names are those of nothing else in it; report the others."""
-        taken = {name for each in fields for name in (name_java_field(each.name), make_identifier_in("python", each.name))}
+        taken = {
+            name for each in fields for name in (name_java_field(each.name), make_identifier_in("python", each.name))
+        }
         for each in constants:
             name = make_identifier_in("java", each.name)
             if name in taken:
@@ -216,7 +218,9 @@ class SimulatedTypes:
             return found
         bound = _BOUND.fullmatch(field.array)
         size = min(int(bound[2]), _LARGEST_SIZE) if bound else None
-        return ValueType(found.kind, found.record, is_list=True, least=size or 0 if bound and not bound[1] else 0, most=size)
+        return ValueType(
+            found.kind, found.record, is_list=True, least=size or 0 if bound and not bound[1] else 0, most=size
+        )
 
     def _record_field(
         self, field: InterfaceField, value_type: ValueType, spellings: Mapping[str, str]
@@ -262,7 +266,9 @@ def _read_field_default(written: str, value_type: ValueType) -> object:
         items = ast.literal_eval(re.sub(r"\b(true|false)\b", lambda match: match[0].capitalize(), written))
     except (ValueError, SyntaxError, RecursionError, MemoryError):
         return None
-    values = [_read_default(str(each), value_type.kind) for each in items] if isinstance(items, list | tuple) else [None]
+    values = (
+        [_read_default(str(each), value_type.kind) for each in items] if isinstance(items, list | tuple) else [None]
+    )
     fits = value_type.least <= len(values) <= (_LARGEST_SIZE if value_type.most is None else value_type.most)
     return values if fits and None not in values else None
 

@@ -12,6 +12,7 @@ from archgen.views.generation.generation_context import GeneratedView, Generatio
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.simulated_assemblies import (
     Assembly,
+    MadeClasses,
     collect_assemblies,
     find_ways,
     place_parts,
@@ -51,11 +52,12 @@ def make_view(context: GenerationContext) -> GeneratedView:
     connections, unjoined = connect_assemblies(architecture, classes, ways, assemblies)
     findings += unjoined
     written = {each.id for way in ways.values() for each in way if each.is_assembly} | {""}
+    made_classes = MadeClasses(classes, records)
     assembly_records: dict[str, dict[str, object]] = {}
-    for assembly in assemblies.values():
-        if assembly.id in written:
-            assembly_record, assembly_findings = record_assembly(context, assembly, classes, records, assemblies, base)
-            assembly_records[assembly.id] = assembly_record
+    for key, assembly in assemblies.items():
+        if key in written:
+            assembly_record, assembly_findings = record_assembly(context, assembly, made_classes, assemblies, base)
+            assembly_records[key] = assembly_record
             findings += assembly_findings
     data = types.list_records()
     class_records = list({id(records[each]): records[each] for each in ways}.values())
@@ -68,7 +70,9 @@ def make_view(context: GenerationContext) -> GeneratedView:
             {"module": module, "records": [each for each in data if each["module"] == module]}
             for module in dict.fromkeys(str(each["module"]) for each in data)
         ],
-        "packages": sorted({str(each["package"]) for each in (*class_records, *assembly_records.values()) if each["package"]}),
+        "packages": sorted(
+            {str(each["package"]) for each in (*class_records, *assembly_records.values()) if each["package"]}
+        ),
         "classes": class_records,
         "assemblies": [each for key, each in assembly_records.items() if key],
         "whole": assembly_records[""],
@@ -80,7 +84,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
 
 def _name_java_base(context: GenerationContext) -> str:
     written = str(context.options.get("package") or "")
-    if _JAVA_PACKAGE.match(written) and written.split(".")[0] not in _TAKEN_PACKAGES:
+    if _JAVA_PACKAGE.match(written) and written.split(".", maxsplit=1)[0] not in _TAKEN_PACKAGES:
         return ".".join(make_identifier_in("java", each) for each in written.split("."))
     name = make_identifier_in("java", make_snake_name(context.architecture.project.id))
     return f"{name}_" if name in _TAKEN_PACKAGES else name
@@ -88,11 +92,13 @@ def _name_java_base(context: GenerationContext) -> str:
 
 def _find_class_clashes(classes: Iterable[SimulatedClass], assemblies: Iterable[Assembly]) -> Iterator[Diagnostic]:
     """Yield components and assemblies whose class, or whose behaviour's, another one has in the same package."""
-    names: list[tuple[str, str, Span]] = []
-    for each in assemblies:
-        names.append((f"{each.name.package}.{each.name.java}", each.id, each.at))
-    for own in classes:
-        first = own.components[0]
-        for name in (own.name.java, f"{own.name.java}Behaviour"):
-            names.append((f"{own.name.package}.{name}", first.id, first.at))
-    yield from find_name_clashes(names, "class")
+    names: list[tuple[str, str, Span]] = [
+        (f"{each.name.package}.{each.name.java}", each.id, each.at) for each in assemblies
+    ]
+    names += (
+        (f"{own.name.package}.{name}", own.components[0].id, own.components[0].at)
+        for own in classes
+        for name in (own.name.java, f"{own.name.java}Behaviour")
+    )
+    # Who falls together by name does so by behaviour, too: it is told once.
+    yield from {clash.element: clash for clash in reversed(list(find_name_clashes(names, "class")))}.values()

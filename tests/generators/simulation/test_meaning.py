@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests.generators.simulation.simulated_workspaces import generate, run_python
 
-COUNTING = '''\
+COUNTING = """\
 class {name}Behaviour:
     def __init__(self, component):
         self.component = component
@@ -16,14 +16,18 @@ class {name}Behaviour:
         arrived = [value for port in self.component.inputs for value in port.fresh()]
         for port in self.component.outputs:
             port.send(" ".join([self.component.id[2:], *arrived]))
-'''
+"""
 """Sends who it is, and what arrived since it was active last."""
 
 
-def run_project(folder: Path, components: str, scenario: str, until: str = "100ms", behaviour: str = COUNTING) -> list[str]:
+def run_project(
+    folder: Path, components: str, scenario: str, until: str = "100ms", behaviour: str = COUNTING
+) -> list[str]:
     """Return the trace, or what the run says of a mistake, with each component of the group `g` as the behaviour says."""
     (folder / "archgen.yaml").write_text(
-        "archgen: 1\nproject: {id: lab}\nrules: {missing-detail: off}\ntypes: {T: }\ngroups: {g: {components: {\n" + components + "\n}}}\n",
+        "archgen: 1\nproject: {id: lab}\nrules: {missing-detail: off}\ntypes: {T: }\ngroups: {g: {components: {\n"
+        + components
+        + "\n}}}\n",
         "utf-8",
     )
     generate(folder, folder / "ws", backends=("python_simulation",))
@@ -93,7 +97,9 @@ def test_what_makes_a_component_active(tmp_path: Path) -> None:
     ]
     trace = run_project(tmp_path, ",\n".join(components), "\n".join(scenario), until="31ms")
     for number, (timing, expected) in enumerate(ACTIVE.items()):
-        sent = [line.replace('"', "").split(f" > g.c{number}.o c{number}") for line in trace if f" > g.c{number}.o" in line]
+        sent = [
+            line.replace('"', "").split(f" > g.c{number}.o c{number}") for line in trace if f" > g.c{number}.o" in line
+        ]
         assert ["".join(each) for each in sent] == expected, timing
 
 

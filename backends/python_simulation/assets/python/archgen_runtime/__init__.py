@@ -3,10 +3,10 @@
 from .assembly import Assembly
 from .command import run_command
 from .component import Component
+from .errors import SimulationError
 from .parameters import check_choice, check_range
 from .ports import Client, InPort, OutPort, Server
 from .scenario import apply_scenario, read_time
-from .errors import SimulationError
 from .simulation import Simulation
 from .timing import Timing
 from .values import Message, anything, items, number, record, text, truth, whole, write_value

@@ -17,6 +17,8 @@ _WORDS = {"NaN": math.nan, "Infinity": math.inf, "-Infinity": -math.inf}
 class _Token(str):
     """A number as it is written."""
 
+    __slots__ = ()
+
 
 class Kind:
     """What a value may be."""
@@ -147,7 +149,7 @@ def text(default="", name=None):
 def record(find_class, name=None):
     """Declare another message; `find_class` returns its class."""
     return dataclasses.field(
-        default_factory=lambda: find_class()(),
+        default_factory=lambda: find_class()(),  # noqa: PLW0108 - the class is not there yet
         metadata={"kind": _make_record_kind(find_class), "name": name},
     )
 
@@ -224,7 +226,9 @@ def write_value(value):
         return json.dumps(value).replace("\x7f", "\\u007f")
     if isinstance(value, (list, tuple)):
         return f"[{','.join(write_value(each) for each in value)}]"
-    fields = (f"{write_value(_name_of(each))}:{write_value(getattr(value, each.name))}" for each in dataclasses.fields(value))
+    fields = (
+        f"{write_value(_name_of(each))}:{write_value(getattr(value, each.name))}" for each in dataclasses.fields(value)
+    )
     return "{" + ",".join(fields) + "}"
 
 
