@@ -71,7 +71,10 @@ def make_view(context: GenerationContext) -> GeneratedView:
             for module in dict.fromkeys(str(each["module"]) for each in data)
         ],
         "packages": sorted(
-            {str(each["package"]) for each in (*class_records, *assembly_records.values()) if each["package"]}
+            {
+                "data",
+                *(str(each["package"]) for each in (*class_records, *assembly_records.values()) if each["package"]),
+            }
         ),
         "classes": class_records,
         "assemblies": [each for key, each in assembly_records.items() if key],

@@ -45,8 +45,7 @@ def test_odd_names_and_texts(tmp_path: Path) -> None:
     behaviour = tmp_path / "ws" / "java" / "src" / "class_" / "import_"
     thread = behaviour / "ThreadComponentBehaviour.java"
     thread.write_text(
-        thread.read_text("utf-8")
-        .replace(
+        thread.read_text("utf-8").replace(
             "        // F.",
             """\
         String told = component.ask.call(new class_.data.class_msgs.AskRequest(class_.data.class_msgs.StringMessage.empty())).class_();
@@ -59,7 +58,10 @@ def test_odd_names_and_texts(tmp_path: Path) -> None:
     answers.write_text(
         answers.read_text("utf-8")
         .replace("AskResponse.empty()", 'AskResponse.empty().withClass_(request.why().toString_() + "!")')
-        .replace("return GoResult.empty()", "if (request.to() == 7) {\n            feedback.accept(new class_.data.class_msgs.GoFeedback(0.5));\n        }\n        return new GoResult(request.to() == 7)"),
+        .replace(
+            "return GoResult.empty()",
+            "if (request.to() == 7) {\n            feedback.accept(new class_.data.class_msgs.GoFeedback(0.5));\n        }\n        return new GoResult(request.to() == 7)",
+        ),
         "utf-8",
     )
     build_java(tmp_path / "ws")
@@ -67,7 +69,7 @@ def test_odd_names_and_texts(tmp_path: Path) -> None:
     python = tmp_path / "ws" / "python" / "class_simulation" / "import_"
     thread = python / "thread_behaviour.py"
     thread.write_text(
-        '''\
+        """\
 from ..data import class_msgs
 
 
@@ -78,7 +80,7 @@ class ThreadComponentBehaviour:
     def fire(self):
         told = self.component.ask.call(class_msgs.AskRequest())
         self.component.go.call(class_msgs.GoGoal(to=7), lambda step: self.component.go.call(class_msgs.GoGoal()))
-''',
+""",
         "utf-8",
     )
     answers = python / "math_behaviour.py"
@@ -92,7 +94,10 @@ class ThreadComponentBehaviour:
         "utf-8",
     )
     assert run_python(tmp_path / "ws", "unittest", "-q", "class_simulation.test_architecture")[0] == 0
-    (tmp_path / "scenario.txt").write_text('5ms < import.thread.x "go"\n6ms > import.override.new {"new": [1, 2], "list": ["\\ud800"]}\n', "utf-8")
+    (tmp_path / "scenario.txt").write_text(
+        '5ms < import.thread.x {"data": "go"}\n6ms > import.override.new {"new": [1, 2], "list": ["\\ud800"]}\n',
+        "utf-8",
+    )
     java = run_java(tmp_path / "ws", "class_.Main", str(tmp_path / "scenario.txt"))
     traced = run_python(tmp_path / "ws", "class_simulation", str(tmp_path / "scenario.txt"))
     assert (java[0], traced[0]) == (0, 0), (java[2], traced[2])

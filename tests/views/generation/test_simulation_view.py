@@ -81,7 +81,9 @@ def test_classes_assemblies_and_connections(tmp_path: Path) -> None:
         "g.lamp.mode -> g.brain.any",
         "g.desk.ask -> g.brain.ask",
     ]
-    ports = {port["name"]: [each["java"] for each in port["types"]] for each in data["classes"] for port in each["inputs"]}
+    ports = {
+        port["name"]: [each["java"] for each in port["types"]] for each in data["classes"] for port in each["inputs"]
+    }
     assert ports == {"light": ["String"], "heat": ["Heat"], "any": ["Object"]}
     (desk,) = (each for each in data["classes"] if each["class_name"] == "Desk")
     assert [[each["java"] for each in port["types"]] for port in desk["servers"]] == [["AskRequest", "AskResponse"]]
