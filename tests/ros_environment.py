@@ -42,7 +42,7 @@ def make_ros_python() -> Path:
 
 
 def ros_environment(domain: int, log_folder: Path) -> dict[str, str]:
-    """Return the variables of a process of ROS: it sees only processes of this machine with the same domain, 0 to 101."""
+    """Return the variables of a process of ROS: it sees only those of this machine that the same test started in the same domain."""
     return {
         # Nothing of the caller's own: two environments of ROS in one process do not get along.
         "PATH": f"{ROS_FOLDER / 'bin'}{os.pathsep}{os.environ['PATH']}",
@@ -50,7 +50,8 @@ def ros_environment(domain: int, log_folder: Path) -> dict[str, str]:
         "AMENT_PREFIX_PATH": str(ROS_FOLDER),
         "VIRTUAL_ENV": str(ROS_FOLDER),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        "ROS_DOMAIN_ID": str(domain),
+        # Another run of the same test, in another checkout, would be seen as well. There are the domains 0 to 101.
+        "ROS_DOMAIN_ID": str((domain + os.getpid()) % 102),
         "ROS_LOG_DIR": str(log_folder),
     }
 

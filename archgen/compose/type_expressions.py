@@ -11,6 +11,7 @@ from archgen.model.generic_names import MAX_NAME_LENGTH, read_generic_name
 MAX_TYPE_LENGTH = 2 * MAX_NAME_LENGTH
 """So many letters the name of a bound type may have: a generic type that holds itself twice doubles it each time."""
 _WORD = re.compile(r"[^<>,]+")
+_ARRAY = re.compile(r"\[(?:<=)?[0-9]*\]\Z")
 
 
 class TypeExpression(NamedTuple):
@@ -33,9 +34,11 @@ def parse_type_expression(text: str) -> TypeExpression | None:
 
 
 def bind_type_name(text: str, bindings: Mapping[str, str]) -> str:
-    """Return a type's name with generic names replaced, also those inside of brackets."""
+    """Return a type's name, or an array of it, with generic names replaced, also those inside of brackets."""
     if text in bindings:
         return bindings[text]
+    if (array := _ARRAY.search(text)) is not None:
+        return bind_type_name(text[: array.start()], bindings) + array[0]
     if "<" not in text:
         return text
     return _WORD.sub(lambda match: _bind_word(match[0], bindings), text)

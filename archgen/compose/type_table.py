@@ -23,6 +23,8 @@ _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 _DATA_KEYS = frozenset({"parameters", "node", "hints", "properties"})
 """Keys below which nothing names a type."""
 _KEYS_OF_IDS = frozenset({"inputs", "outputs", "components", "operations"})
+OPERATION_PARTS = frozenset({"request", "response"})
+"""Keys of an operation that hold the name of a type, or those of fields by name."""
 
 MissingTypeDescriber = Callable[[str], str | None]
 """Returns what is to be known of a type that a library lacks, by its name; None for nothing."""
@@ -275,9 +277,15 @@ def bind_type_body(node: MappingNode, bindings: Mapping[str, str], *, has_ids: b
 
 def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str], *, has_ids: bool) -> YamlNode:
     if isinstance(node, MappingNode):
+        if not has_ids and key in OPERATION_PARTS:
+            fields = {
+                e.key: MappingEntry(e.key, e.key_span, _bind_value("type", e.value, bindings, has_ids=False))
+                for e in node
+            }
+            return MappingNode(fields, node.span)
         is_data = key in _DATA_KEYS and not has_ids
         return node if is_data else bind_type_body(node, bindings, has_ids=key in _KEYS_OF_IDS and not has_ids)
-    if key in _NAMING_KEYS and isinstance(node, ScalarNode) and node.value is not None:
+    if key in _NAMING_KEYS | OPERATION_PARTS and isinstance(node, ScalarNode) and node.value is not None:
         text = bind_type_name(node.text, bindings)
         return node if text == node.text else ScalarNode(text, text, node.span)
     return node

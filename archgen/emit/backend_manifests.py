@@ -6,8 +6,8 @@ untrusted input, so only the emitter `text` is open to it: its templates run in 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Mapping
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Literal
 
@@ -22,6 +22,7 @@ from archgen.emit.manifest_parsing import (
     read_valid_manifest,
     refuse_manifest,
 )
+from archgen.frozen import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,18 +77,20 @@ def read_shipped_backend(name: str) -> Backend:
     return _read_manifest(resources.resource_path("backends", name), f"backends/{name}")
 
 
-def find_backends(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
-    """Find all backends by id: those that ship, then the project's own. Return them with the diagnostics of invalid
-    ones.
+def find_backends(
+    project: Path, names: Collection[str] | None = None
+) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
+    """Find all backends by id, or those of some names: those that ship, then the project's own. Return them with the
+    diagnostics of invalid ones.
 
     A backend of the project may not take the id of one that ships.
     """
     backends = {
         folder.name: read_shipped_backend(folder.name)
-        for folder in _list_backend_folders(resources.resource_path("backends"))
+        for folder in _list_backend_folders(resources.resource_path("backends"), names)
     }
     diagnostics: list[Diagnostic] = []
-    for folder in _list_backend_folders(project / "backends"):
+    for folder in _list_backend_folders(project / "backends", names):
         try:
             _refuse_links(project / "backends", folder)
             backend = _read_own_backend(folder, backends)
@@ -97,10 +100,15 @@ def find_backends(project: Path) -> tuple[dict[str, Backend], tuple[Diagnostic, 
     return backends, tuple(diagnostics)
 
 
-def _list_backend_folders(parent: Path) -> list[Path]:
+def _list_backend_folders(parent: Path, names: Collection[str] | None) -> list[Path]:
+    """Return the folders of backends, those of some names alone: an id is the name of its folder."""
     if not parent.is_dir():
         return []
-    return sorted(path for path in parent.iterdir() if path.is_dir() and (path / BACKEND_MANIFEST).exists())
+    return sorted(
+        path
+        for path in parent.iterdir()
+        if (names is None or path.name in names) and path.is_dir() and (path / BACKEND_MANIFEST).exists()
+    )
 
 
 def _refuse_links(parent: Path, folder: Path) -> None:

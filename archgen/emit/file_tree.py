@@ -14,13 +14,13 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 
 from archgen.emit.safe_names import is_safe_path
 from archgen.emit.written_formats import explain_refusal
+from archgen.frozen import dataclass
 
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
@@ -145,10 +145,11 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
 def digest_file(path: Path) -> str | None:
     """Digest a file; None for one that is larger than any of archgen's, which a branch may put in their place."""
     # By names, here and in what walks a folder: of 5,000 files, paths as objects took half of the time.
-    return _digest_named_file(os.fspath(path), path.stat().st_size)
+    return digest_named_file(os.fspath(path), path.stat().st_size)
 
 
-def _digest_named_file(name: str, size: int) -> str | None:
+def digest_named_file(name: str, size: int) -> str | None:
+    """Digest a file of a size in bytes, by its path as text; None for one that is too large to be archgen's."""
     if size > _MAX_FILE_BYTES:
         return None
     with open(name, "rb", buffering=0) as stream:  # noqa: PTH123 - see above
@@ -241,7 +242,7 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
             name = f"{folder_name}/{path}"
             # lstat: a link that is named in the manifest is not archgen's, since archgen writes none.
             status = os.lstat(name)
-            digest = _digest_named_file(name, status.st_size) if stat.S_ISREG(status.st_mode) else None
+            digest = digest_named_file(name, status.st_size) if stat.S_ISREG(status.st_mode) else None
             if digest and (digest, path) in manifest:
                 own_digests[path] = digest
                 continue

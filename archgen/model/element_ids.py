@@ -67,8 +67,11 @@ def make_id(name: str, prefix: str) -> str:
 
 
 def make_unique_id(wanted_id: str, used_ids: AbstractSet[str]) -> str:
-    """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ..."""
-    element_id, number = wanted_id, 2
+    """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ...
+
+    One that is too long is cut.
+    """
+    element_id, number = wanted_id[:MAX_ID_LENGTH].strip("_"), 2
     while element_id in used_ids:
         ending = f"_{number}"
         element_id = wanted_id[: MAX_ID_LENGTH - len(ending)].strip("_") + ending

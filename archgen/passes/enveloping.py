@@ -103,7 +103,7 @@ class _PortNetwork:
     def list_wrapped_places(self) -> set[Span]:
         """Return the places of the types that are wrapped: neither they nor what they are connected to must stay plain."""
         for number, linked in enumerate((self._work.link(), link_types(self._work))):
-            self._add_ports(number, linked, list_existing_components(linked) if number == 0 else set())
+            self._add_ports(number, linked, list_existing_components(linked))
         blocked = {self._find(each) for each in self._blocked}
         seen = {place for place in self._type_paths if place in self._leaders}
         return {place for place in seen if self._find(place) not in blocked}

@@ -67,6 +67,19 @@ class FlatNodes:
         entries = self._keep_names(node_id or planned_id or "", (leaf_id,), entries, place)
         return MappingEntry("node", place, MappingNode(entries, place)) if entries else None
 
+    def complete_start(self, node: MappingEntry, leaf_id: str) -> MappingEntry:
+        """Return what a leaf says of its node, as it is written, with complete ids of what it starts after."""
+        if not isinstance(node.value, MappingNode) or "start" not in node.value.entries:
+            return node
+        start = self._made.find_body(leaf_id).entries["start"]
+        return MappingEntry(
+            node.key, node.key_span, MappingNode({**node.value.entries, "start": start}, node.value.span)
+        )
+
+    def list_implemented(self, node_id: str) -> tuple[str, ...]:
+        """Return the leaves that a node implements, by their complete ids before."""
+        return self._list_leaves((*self._targets.get(node_id, ()), *self._made.implements.get(node_id, ())))
+
     def write_section(self) -> dict[str, MappingEntry]:
         """Return the nodes of the project: those that are written, and those that run a composed component as one."""
         section: dict[str, MappingEntry] = {}

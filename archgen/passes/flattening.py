@@ -13,9 +13,12 @@ from archgen.passes.flat_references import FlatReferences
 from archgen.passes.flat_sources import FlatSources
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import Pass, PassWork
+from archgen.passes.project_tree import have_same_content
 from archgen.passes.tree_rebuilding import rebuild_tree
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, YamlNode
 
+_HANDED_KEYS = ("owner", "status")
+"""What a leaf has of what is around it, unless it says it itself."""
 _JOINED_LISTS = ("requirements", "tags")
 """What a leaf has of what is around it, besides its own."""
 _SHELL_KEYS = frozenset({"components", "containers", "autoconnect", "node"})
@@ -55,6 +58,8 @@ class _Flattener:
         self._parameters = HandedParameters(linked.outline, [])
         self._nodes = FlatNodes(linked, linked.expansion.root, flat_ids)
         self._run_leaves = self._nodes.list_run_leaves()
+        architecture = derivation.derive_low_level(linked.architecture)
+        self._references = FlatReferences(linked, flat_ids, architecture)
 
     def write_root(self) -> MappingNode:
         root = self._work.tree.root
@@ -65,13 +70,14 @@ class _Flattener:
             "groups", root.entries["groups"].key_span, MappingNode(groups, written_groups.span)
         )
         sections |= self._nodes.find_containers(self._linked.expansion.root)
-        nodes = self._nodes.write_section()
+        nodes = {
+            node_id: self._rewrite_node(entry, self._nodes.list_implemented(node_id))
+            for node_id, entry in self._nodes.write_section().items()
+        }
         if nodes:
             key_span = sections["nodes"].key_span if "nodes" in sections else root.span
             sections["nodes"] = MappingEntry("nodes", key_span, MappingNode(nodes, key_span))
-        architecture = derivation.derive_low_level(self._linked.architecture)
-        references = FlatReferences(self._linked, self._flat_ids, architecture)
-        sections |= references.rewrite_sections(sections)
+        sections |= self._references.rewrite_sections(sections)
         return MappingNode(sections, root.span)
 
     def _write_group(self, group: MappingEntry) -> MappingEntry:
@@ -115,6 +121,8 @@ class _Flattener:
         if "parameters" in entries and isinstance(entries["parameters"].value, MappingNode):
             filled = fill_in_parameters(entries["parameters"].value, self._parameters.find_parameters(component_id))
             entries["parameters"] = MappingEntry("parameters", entries["parameters"].key_span, filled)
+        if "frames" in entries:
+            entries["frames"] = self._references.frames.rewrite_own(entries["frames"], component_id)
         if is_deep:
             self._inherit(component_id, entries)
         is_renamed = self._flat_ids[component_id] != component_id
@@ -122,9 +130,17 @@ class _Flattener:
             entries.pop("node", None)
             own_node = None if component_id in self._run_leaves else self._nodes.write_own_node(component_id)
             if own_node is not None:
-                entries["node"] = own_node
+                entries["node"] = self._rewrite_node(own_node, (component_id,))
+        elif "node" in entries:
+            own_node = self._nodes.complete_start(entries["node"], component_id)
+            entries["node"] = self._rewrite_node(own_node, (component_id,))
         value = MappingNode(entries, body.span) if entries else entry.value
         return MappingEntry(flat_name, entry.key_span, value)
+
+    def _rewrite_node(self, entry: MappingEntry, own_leaves: tuple[str, ...]) -> MappingEntry:
+        if not isinstance(entry.value, MappingNode) or "start" not in entry.value.entries:
+            return entry
+        return MappingEntry(entry.key, entry.key_span, self._references.rewrite_start(entry.value, own_leaves))
 
     def _list_ports(self, component_id: str, *, is_shell: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return the names of the inputs and outputs that a component keeps: of a composed one those that are open."""
@@ -138,23 +154,39 @@ class _Flattener:
         )
 
     def _inherit(self, component_id: str, entries: dict[str, MappingEntry]) -> None:
-        """Give a leaf what the components around it say for all that is inside: owner, requirements and tags."""
+        """Give a leaf what the components around it say for all that is inside: owner, status, lists and properties."""
         parent = self._parents.get(component_id)
         while parent is not None:
             body = mapping_values.get_body(self._linked.outline.shells[parent].entry)
-            if "owner" in body.entries and "owner" not in entries:
-                entries["owner"] = body.entries["owner"]
-            for key in _JOINED_LISTS:
+            for key in _HANDED_KEYS:
                 if key in body.entries:
+                    entries.setdefault(key, body.entries[key])
+            for key in _JOINED_LISTS:
+                if key in body.entries and _list_items(body.entries[key]):
                     entries[key] = _join_lists(entries.get(key), body.entries[key])
+            if "properties" in body.entries:
+                entries["properties"] = _lay_over(entries.get("properties"), body.entries["properties"])
             parent = self._parents.get(parent)
 
 
 def _join_lists(own: MappingEntry | None, around: MappingEntry) -> MappingEntry:
     if own is None:
         return around
-    items = [*_list_items(own), *_list_items(around)]
-    return MappingEntry(own.key, own.key_span, SequenceNode(items, own.value.span))
+    own_items = _list_items(own)
+    added = [each for each in _list_items(around) if not any(have_same_content(each, item) for item in own_items)]
+    return MappingEntry(own.key, own.key_span, SequenceNode([*own_items, *added], own.value.span)) if added else own
+
+
+def _lay_over(own: MappingEntry | None, around: MappingEntry) -> MappingEntry:
+    if own is None or not isinstance(own.value, MappingNode) or not isinstance(around.value, MappingNode):
+        return own or around
+    return MappingEntry(
+        own.key,
+        own.key_span,
+        MappingNode(
+            {**own.value.entries, **{e.key: e for e in around.value if e.key not in own.value.entries}}, own.value.span
+        ),
+    )
 
 
 def _list_items(entry: MappingEntry) -> list[YamlNode]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from archgen.compose.type_expressions import TypeExpression, parse_type_expression
 from archgen.compose.type_table import bind_type_body, list_generic_names
 from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values
-from archgen.model.element_ids import MAX_ID_LENGTH
+from archgen.model.element_ids import make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
 from archgen.passes.pass_shape import PassWork
 from archgen.passes.written_places import find_type, list_holders, list_type_sections
@@ -20,8 +20,11 @@ _WORD_BREAK = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _TYPE_KEYS = ("is", "same_as")
 
 
-def specialise_components(work: PassWork) -> None:
-    """Replace instances of generic component types by instances of types that are made for what they stand for."""
+def specialise_components(work: PassWork) -> list[tuple[str, str]]:
+    """Replace instances of generic component types by instances of types that are made for what they stand for.
+
+    Return what generic types were called, with and without what they stand for, with the name of each type made for one.
+    """
     tree = work.tree
     names: dict[tuple[TreePath, tuple[str, ...]], str] = {}
     pending = [path for path, _ in _list_concrete(work)]
@@ -35,6 +38,14 @@ def specialise_components(work: PassWork) -> None:
         for entry in tuple(tree.get_mapping(section_path).values()):
             if list_generic_names(entry):
                 tree.drop((*section_path, entry.key))
+    return list(_list_new_names(names))
+
+
+def _list_new_names(names: Mapping[tuple[TreePath, tuple[str, ...]], str]) -> Iterator[tuple[str, str]]:
+    for (path, arguments), name in names.items():
+        prefix = f"{path[1]}." if path[0] == "libraries" else ""
+        for old_name in (f"{path[-1]}", f"{path[-1]}<{', '.join(arguments)}>"):
+            yield f"{prefix}{old_name}", f"{prefix}{name}"
 
 
 def _list_concrete(work: PassWork) -> Iterator[tuple[TreePath, MappingNode]]:
@@ -88,20 +99,13 @@ def _specialise_reference(
 def _name_specialised(work: PassWork, generic_path: TreePath, expression: TypeExpression) -> str:
     """Return an id that no other component type beside the generic one has."""
     arguments = "_and_".join(_make_id_words(argument) for argument in expression.arguments)
-    wanted = f"{generic_path[-1]}_of_{arguments}"[:MAX_ID_LENGTH].rstrip("_")
-    used_names = work.tree.get_mapping(generic_path[:-1])
-    number, name = 1, wanted
-    while name in used_names:
-        number += 1
-        ending = f"_{number}"
-        name = wanted[: MAX_ID_LENGTH - len(ending)].rstrip("_") + ending
-    return name
+    return make_unique_id(f"{generic_path[-1]}_of_{arguments}", work.tree.get_mapping(generic_path[:-1]).keys())
 
 
 def _make_id_words(type_name: str) -> str:
     """Return the words of a type's name as they stand in an id: `envelope_of_laser_pose` for `Envelope<Laser pose>`."""
     spelled = re.sub(r"\S*/(?=[^/\s]*$)", "", type_name).replace("<", " of ").replace(",", " and ")
-    words = _WORD.findall(_WORD_BREAK.sub(" ", spelled).lower())
+    words = _WORD.findall(_WORD_BREAK.sub(" ", spell_in_ascii(spelled)).lower())
     return "_".join(words) or "type"
 
 

@@ -5,25 +5,36 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from archgen.compose.type_table import OPERATION_PARTS
 from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values
 from archgen.link.data_types.generic_types import bind_name, is_bound_name
 from archgen.model.generic_names import read_generic_name
+from archgen.model.message_types import PART_KEYS
 from archgen.passes.pass_shape import PassWork
-from archgen.passes.project_tree import list_paths
+from archgen.passes.project_tree import ProjectTree, list_paths
 from archgen.passes.written_places import is_written
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
 _ARRAY = re.compile(r"(?:\[(?:<=)?[0-9]*\])?\Z")
 _PORT_SECTIONS = frozenset({"inputs", "outputs"})
-_PART_KEYS = frozenset({"request", "response", "feedback"})
 _SECTIONS = ("groups", "component_types", "libraries", "types")
-_CONTENT_KEYS = ("fields", "constants", "values", "comment", "size", "frame", *sorted(_PART_KEYS))
+_CONTENT_KEYS = ("fields", "constants", "values", "comment", "size", "frame", *PART_KEYS)
 
 
-def specialise_data_types(work: PassWork) -> None:
-    """Replace the names of bound generic types by those of types that are made for them; no generic type is left."""
-    _DataTypeSpecialiser(work).specialise_all()
+def specialise_data_types(work: PassWork) -> list[tuple[str, str]]:
+    """Replace the names of bound generic types by those of types that are made for them; no generic type is left.
+
+    Return what they were called, each with its name now.
+    """
+    specialiser = _DataTypeSpecialiser(work)
+    specialiser.specialise_all()
+    return list(specialiser.names.items())
+
+
+def list_data_type_sections(tree: ProjectTree) -> list[TreePath]:
+    """Return the paths of the mappings that hold data types: the project's own, then those of its libraries."""
+    return [("types",), *(("libraries", name, "types") for name in tree.get_mapping(("libraries",)))]
 
 
 class _DataTypeSpecialiser:
@@ -33,10 +44,11 @@ class _DataTypeSpecialiser:
         self._work = work
         self._tree = work.tree
         self._types = work.link().declared_types.types
-        self._names: dict[str, str] = {}
+        self.names: dict[str, str] = {}
+        """The names that bound types get."""
         self._written = {
             mapping_values.normalise_type_name(key): path
-            for section in self._list_type_sections()
+            for section in list_data_type_sections(self._tree)
             for key in self._tree.get_mapping(section)
             for path in ((*section, key),)
         }
@@ -55,10 +67,6 @@ class _DataTypeSpecialiser:
                 self._tree.drop(path)
         for path in generic_paths:
             self._tree.drop(path)
-
-    def _list_type_sections(self) -> list[TreePath]:
-        libraries = self._tree.get_mapping(("libraries",))
-        return [("types",), *(("libraries", name, "types") for name in libraries)]
 
     def _list_mentions(self, generic_paths: list[TreePath]) -> Iterator[TreePath]:
         """Yield the paths of all scalars that name a type and do not stand in a generic one."""
@@ -85,16 +93,16 @@ class _DataTypeSpecialiser:
 
     def _name_plainly(self, name: str, source: TreePath) -> str:
         """Return the name of the type that is made for a bound one, which is written with it."""
-        if name not in self._names:
+        if name not in self.names:
             base, arguments = read_generic_name(name)
             plain_arguments = [self._rename(argument, source) for argument in arguments]
             words = " and ".join(argument.rpartition("/")[2] for argument in plain_arguments)
-            self._names[name] = plain_name = self._find_free_name(f"{base.rpartition('/')[2]} of {words}")
+            self.names[name] = plain_name = self._find_free_name(f"{base.rpartition('/')[2]} of {words}")
             self._write_type(name, plain_name, base, arguments)
-        return self._names[name]
+        return self.names[name]
 
     def _find_free_name(self, wanted: str) -> str:
-        used_names = {*self._types, *self._names.values()}
+        used_names = {*self._types, *self.names.values()}
         number, name = 1, wanted
         while name in used_names:
             number += 1
@@ -141,13 +149,17 @@ def _names_type(path: TreePath) -> bool:
     if key == "type":
         return len(holders) > 1 and holders[-2] in _PORT_SECTIONS
     if "operations" in holders:
-        inner = path[path.index("operations") + 2 :]
-        return _names_field_type(inner)
+        return _names_operation_type(path[path.index("operations") + 2 :])
     return False
 
 
+def _names_operation_type(inner: TreePath) -> bool:
+    """Whether what stands at a path inside of an operation is the name of a type: of all that goes over, or of a field."""
+    return inner[0] in OPERATION_PARTS and len(inner) <= 2 if inner else False  # noqa: PLR2004 - the part and a field
+
+
 def _names_field_type(inner: TreePath) -> bool:
-    """Whether what stands at a path inside of a type, or of an operation, is the name of a type."""
+    """Whether what stands at a path inside of a type is the name of a type."""
     match inner:
         case ("request" | "response" | "feedback",):
             return True

@@ -10,6 +10,8 @@ from archgen.passes.tree_rebuilding import rebuild_tree
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _TYPE_KEYS = frozenset({"is", "same_as"})
+_TYPE_SELECTORS = ("is:", "library:", "deprecated:")
+"""How words of selectors begin that ask for the types of components."""
 
 
 def _resolve_instances(work: PassWork) -> None:
@@ -31,8 +33,8 @@ def _resolve_instances(work: PassWork) -> None:
 
 
 def _name_instances(work: PassWork, word: str) -> list[str] | None:
-    """Return the components that `is:` and `library:` select: nothing says any more what they are made from."""
-    return list_selected(work.link().architecture, word) if word.startswith(("is:", "library:")) else None
+    """Return the components that a word about types selects: nothing says any more what they are made from."""
+    return list_selected(work.link().architecture, word) if word.startswith(_TYPE_SELECTORS) else None
 
 
 def _write_group(group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]) -> MappingEntry:

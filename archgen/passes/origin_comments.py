@@ -18,7 +18,7 @@ from archgen.passes.project_tree import list_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 ORIGIN_MARK = "# archgen: "
-_COMMENT = re.compile(r"# archgen: (?:made\[([a-z0-9_, ]{1,400})\] )?from ([^#\r\n]{1,300})")
+_COMMENT = re.compile(r"# archgen: (?:made\[([a-z0-9_., ]{1,2000})\] )?from ([^#\r\n]{1,300})")
 _SECTIONS_OF_ELEMENTS = frozenset(
     {
         "groups",

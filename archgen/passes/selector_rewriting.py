@@ -2,23 +2,66 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Sequence
 
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
+from archgen.model.selector_keys import matches_wildcard
+from archgen.model.selector_parser import parse_selector, split_words
+from archgen.passes.project_tree import ProjectTree, list_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
-_SELECTOR_KEYS = {"views": frozenset({"show"}), "policies": frozenset({"forbid", "require"})}
-_WORD = re.compile(r"(-?(?:[0-9]*\+)?)([^+\s\"]+?)(\+[0-9]*)?\Z")
+_SELECTOR_PATHS = {
+    "views": (("show",),),
+    "policies": (("forbid", "from"), ("forbid", "to"), ("require", "of"), ("require", "inputs_from")),
+}
+"""Where views and policies have selectors."""
 RenameWord = Callable[[str], Sequence[str] | None]
-"""Returns what stands in the place of a word without its steps; None where it stays."""
+"""Returns what stands in the place of a path, or of a key with its value, in a selector; None where it stays."""
 
 
 def rewrite_selectors(section: MappingEntry, rename_word: RenameWord) -> MappingEntry:
     """Return a section of views or policies with the words of its selectors renamed."""
-    value = _rewrite_node(section.value, rename_word, _SELECTOR_KEYS[section.key], is_selector=False)
+    value = section.value
+    for element in tuple(value) if isinstance(value, MappingNode) else ():
+        for path in _SELECTOR_PATHS[section.key]:
+            value = _rewrite_at(value, (element.key, *path), rename_word)
     return MappingEntry(section.key, section.key_span, value)
+
+
+def rename_in_selectors(tree: ProjectTree, rename_word: RenameWord) -> None:
+    """Rename words in all selectors of a tree."""
+    for name in _SELECTOR_PATHS:
+        section = tree.root.entries.get(name)
+        rewritten = rewrite_selectors(section, rename_word) if section else None
+        for path, node in list_paths(rewritten.value, (name,)) if rewritten else ():
+            if isinstance(node, ScalarNode) and node is not tree.get(path):
+                tree.set(path, node.text, path)
+
+
+def rename_by_key(key: str, new_names: Collection[tuple[str, str]], known_names: Collection[str]) -> RenameWord:
+    """Return what renames the values of a key: old names to new ones, `*` in them included.
+
+    `known_names` are all that there are now: a word that still selects some of these stays beside the new ones.
+    """
+    prefix = f"{key}:"
+
+    def rename(word: str) -> list[str] | None:
+        if not word.startswith(prefix):
+            return None
+        value = " ".join(word.removeprefix(prefix).strip('"').split())
+        names = dict.fromkeys(new for old, new in new_names if matches_wildcard(value, old))
+        kept = [word] if any(matches_wildcard(value, each) for each in known_names) else []
+        return [
+            *kept,
+            *(
+                f'{prefix}"{name}"' if " " in name else f"{prefix}{name}"
+                for name in names
+                if not matches_wildcard(value, name)
+            ),
+        ]
+
+    return rename
 
 
 def list_selected(architecture: Architecture, word: str) -> list[str]:
@@ -27,26 +70,38 @@ def list_selected(architecture: Architecture, word: str) -> list[str]:
     return [each for each in architecture.components if each in selection.components]
 
 
-def _rewrite_node(node: YamlNode, rename_word: RenameWord, keys: Collection[str], *, is_selector: bool) -> YamlNode:
-    if isinstance(node, MappingNode):
-        entries = {
-            e.key: MappingEntry(
-                e.key,
-                e.key_span,
-                _rewrite_node(e.value, rename_word, keys, is_selector=is_selector or e.key in keys),
-            )
-            for e in node
-        }
-        return MappingNode(entries, node.span)
-    if not is_selector or not isinstance(node, ScalarNode) or node.value is None:
+def _rewrite_at(node: YamlNode, path: tuple[str, ...], rename_word: RenameWord) -> YamlNode:
+    """Return a tree with the selector at a path rewritten."""
+    if path:
+        entry = node.entries.get(path[0]) if isinstance(node, MappingNode) else None
+        if not isinstance(node, MappingNode) or entry is None:
+            return node
+        value = _rewrite_at(entry.value, path[1:], rename_word)
+        if value is entry.value:
+            return node
+        return MappingNode({**node.entries, entry.key: MappingEntry(entry.key, entry.key_span, value)}, node.span)
+    if not isinstance(node, ScalarNode) or node.value is None:
         return node
-    text = " ".join(_rewrite_word(word, rename_word) for word in node.text.split(" "))
-    return node if text == node.text else ScalarNode(text, text, node.span)
+    words = list(split_words(node.text))
+    renamed_words = [_rewrite_word(word, rename_word) for word in words]
+    if renamed_words == words:
+        return node
+    text = " ".join(renamed_words)
+    return ScalarNode(text, text, node.span)
 
 
 def _rewrite_word(word: str, rename_word: RenameWord) -> str:
-    match = _WORD.match(word)
-    names = rename_word(match[2]) if match else None
-    if match is None or not names:
+    parsed_words = parse_selector(word).words
+    if len(parsed_words) != 1:
         return word
-    return " ".join(f"{match[1]}{name}{match[3] or ''}" for name in names)
+    first, last = parsed_words[0].atom, parsed_words[0].range_end
+    before, after = word[: first.start], word[(last or first).end :]
+    names = _rename_atom(word[first.start : first.end], rename_word)
+    if last is not None:
+        ends = _rename_atom(word[last.start : last.end], rename_word)
+        names = [f"{name}..{end}" for name in names for end in ends]
+    return " ".join(f"{before}{name}{after}" for name in names)
+
+
+def _rename_atom(atom: str, rename_word: RenameWord) -> list[str]:
+    return list(rename_word(atom) or (atom,))

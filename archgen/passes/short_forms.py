@@ -22,6 +22,7 @@ _HOLDERS = ("component_types", "groups")
 
 def _complete_names(work: PassWork) -> None:
     work.findings += name_listed_elements(work.tree.root)
+    work.tree.edit_count += 1
     for path in _list_elements(work, _NAMING_KEYS):
         naming_value = work.tree.get((*path, _NAMING_KEYS[str(path[-2])]))
         if naming_value is not None and naming_value.span == work.tree.find_place(path):
@@ -30,6 +31,7 @@ def _complete_names(work: PassWork) -> None:
 
 def _normalise_connections(work: PassWork) -> None:
     work.findings += move_targets(work.tree.root)
+    work.tree.edit_count += 1
     sources = work.loaded_project.sources
     for path in _list_elements(work, ("inputs",)):
         written = work.tree.get((*path, "from"))

@@ -42,7 +42,10 @@ def choose_backends(
         return ()
     from archgen.emit import backend_manifests
 
-    backends_by_name, problems = backend_manifests.find_backends(checked_project.root)
+    backends_by_name, problems = backend_manifests.find_backends(checked_project.root, names)
+    if any(name not in backends_by_name or backends_by_name[name].emitter not in CALLED_EMITTERS for name in names):
+        # All of them are read only for the message that lists them.
+        backends_by_name, problems = backend_manifests.find_backends(checked_project.root)
     # Only manifests of backends that are asked for count; a broken one beside them must not stop the build.
     raise_problems([p for p in problems if any(f"backends/{name}/" in p.span.file for name in names)])
     for name in names:

@@ -138,6 +138,8 @@ def _render_files(
 ) -> tuple[tuple[GeneratedFile, ...] | None, tuple[Diagnostic, ...]]:
     """Return the files of a backend, and what could not be generated; no files where its needs do not hold."""
     from archgen.emit import text
+    from archgen.emit.text.kept_answers import open_answer_store
+    from archgen.products.report_cache import cache_folder
 
     architecture, selection = checked_project.architecture, options.selection
     context = GenerationContext(
@@ -147,12 +149,13 @@ def _render_files(
         host,
         backend.options,
         backend.id,
+        options.level or "implementation",
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:
         return None, unmet_needs
     views, findings = _make_views(checked_project, options, backend, context)
-    files, problems = text.render_workspace(backend, views)
+    files, problems = text.render_workspace(backend, views, answer_store=open_answer_store(cache_folder()))
     raise_problems(problems)
     return files, findings
 

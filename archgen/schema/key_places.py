@@ -84,7 +84,9 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
         return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
     if key in _GIVER_KEYS and kind != "Output":
         return f"write it at the output that it is about: `outputs: {{OUTPUT: {{{key}: ...}}}}`"
-    home = _find_kind(key, _PORT_HOMES if is_port else tuple(_HOMES))
+    # Beside the sections stands what should have a group around it: its `components` are meant, not those of a component.
+    homes = _PORT_HOMES if is_port else tuple(_HOMES) if path else ("group", *_HOMES)
+    home = _find_kind(key, homes)
     if home is None:
         return _find_section_help(key, path)
     component = f"{path[1]}.{path[3]}" if path[:1] == ("groups",) and len(path) > 3 else None  # noqa: PLR2004

@@ -25,7 +25,16 @@ DECLARATION_KEYS = (
 _TELLING_KEYS = frozenset({"value", "type", "choices", "from"})
 """One of them makes a mapping with keys of a declaration only a declaration."""
 _TEXT_KEYS = frozenset({"type", "unit", "description", "visibility", "from"})
-_TYPE_WORDS = frozenset({"boolean", "integer", "float", "string"})
+_TYPE_WORDS = frozenset({"boolean", "integer", "float", "string", "bool", "int", "double", "number", "text", "str"})
+"""Types as archgen and other tools call them: who writes one of them means a declaration."""
+_WORDS_OF_OTHERS = {
+    **dict.fromkeys(("default", "default_value"), "write the value as `value`"),
+    **dict.fromkeys(
+        ("min", "max", "minimum", "maximum", "lower", "upper", "bounds", "validation"),
+        "write what it may be as `range: [LOWEST, HIGHEST]` or `choices: [...]`",
+    ),
+}
+"""What generate_parameter_library and dynamic_reconfigure call the same."""
 _LIMIT_COUNT = 2
 
 
@@ -114,7 +123,10 @@ class _SetExpander:
         if not isinstance(type_node, ScalarNode) or type_node.text.removesuffix("[]") not in _TYPE_WORDS:
             return
         for entry in parameter_set:
-            if entry.key not in DECLARATION_KEYS and (guess := did_you_mean(entry.key, DECLARATION_KEYS)):
+            if entry.key in DECLARATION_KEYS:
+                continue
+            guess = _WORDS_OF_OTHERS.get(entry.key) or did_you_mean(entry.key, DECLARATION_KEYS)
+            if guess:
                 self.diagnostics.append(
                     Diagnostic(
                         "unknown-key",

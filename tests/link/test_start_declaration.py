@@ -148,3 +148,28 @@ def test_instances_and_what_is_inside_inherit(tmp_path: Path) -> None:
     assert (command_of("other").command, command_of("other").package) == ((), "q")
     assert [target.id for target in start_of("copy").after] == ["g.simulator"]
     assert start_of("copy").phase == "core"
+
+
+def test_names_in_types_mean_what_stands_beside_them(tmp_path: Path) -> None:
+    text = """\
+component_types:
+  arm:
+    components:
+      motor: {title: M, node: {package: p, executable: m, start: base}}
+      watch: {title: W, node: {package: p, executable: w, start: {after: motor}}}
+groups:
+  g:
+    components:
+      left: {is: arm}
+      right: {is: arm}
+      base: {title: B, node: {package: p, executable: b}}
+"""
+    checked = check(tmp_path, text)
+    assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
+    starts = {name: node.start for name, node in checked.architecture.nodes.items() if node.start}
+    assert {name: [each.id for each in start.after] for name, start in starts.items()} == {
+        "left_motor": ["g.base"],
+        "left_watch": ["g.left.motor"],
+        "right_motor": ["g.base"],
+        "right_watch": ["g.right.motor"],
+    }

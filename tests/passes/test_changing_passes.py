@@ -139,6 +139,33 @@ def test_types_made_from_types_and_instances_add_only_what_is_theirs(tmp_path: P
     assert not [each for each in transformed.findings if str(each.severity) == "error"]
 
 
+def test_what_stands_in_something_that_exists_is_left_alone(tmp_path: Path) -> None:
+    checked = write_project(
+        tmp_path,
+        "component_types: {kept: {status: existing, outputs: {p: Scan}}}\n"
+        "groups:\n  g:\n    components:\n"
+        "      box:\n        status: existing\n        outputs: {q: {from: a.q}}\n        components: {a: {outputs: {q: Scan, z: Scan}}}\n"
+        "      ours: {inputs: {q: {type: Scan, from: box.q}}, outputs: {x: Scan}}\n"
+        "types: {Scan: sensor_msgs/msg/LaserScan}\n",
+    )
+    transformed = transform_project(checked, ["envelope", "monitor"])
+    outputs = {name: port.type for name, port in transformed.architecture.outputs.items() if not name.endswith("state")}
+    assert outputs == {"g.box.a.q": "Scan", "g.box.a.z": "Scan", "g.ours.x": "Envelope<Scan>"}
+    data = yaml.safe_load(pack(transformed))
+    assert data["component_types"]["kept"]["outputs"] == {"p": {"type": "Scan"}}
+    assert list(data["groups"]["g"]["components"]["box"]["components"]) == ["a"]
+    assert data["groups"]["g"]["components"]["monitor"]["inputs"] == {"ours_state": {"from": ["ours.state"]}}
+
+
+def test_long_names_give_ports_that_are_ids(tmp_path: Path) -> None:
+    name = "a" * 64
+    checked = write_project(
+        tmp_path,
+        f"groups: {{g: {{components: {{{name}: {{outputs: {{p: Scan}}}}}}}}}}\ntypes: {{Scan: sensor_msgs/msg/LaserScan}}\n",
+    )
+    check_packed(transform_project(checked, ["monitor"]), tmp_path / "packed")
+
+
 def test_all_passes_over_the_cleaning_robot(tmp_path: Path) -> None:
     names = ("monitor", "envelope", "remove_generics", "flatten")
     transformed = transform_project(check_project(EXAMPLES / "cleaning_robot"), names)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.passes import PASSES, Pass, PassWork, UnknownPassError, order_passes
+from archgen.passes import PASSES, Pass, PassWork, ProjectTree, UnknownPassError, order_passes
 from archgen.pipeline import check_project, transform_project
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -88,3 +88,17 @@ def test_a_connection_that_stands_at_its_source_says_so(tmp_path: Path) -> None:
     ((path, origin),) = transformed.provenance.items()
     assert path == ("groups", "g", "components", "b", "inputs", "y", "from", 0)
     assert (origin.passes, str(origin.at)) == (("normalise_connections",), "archgen.yaml:4:41")
+
+
+def test_the_linker_is_asked_again_once_a_target_has_moved(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(
+        "groups: {g: {components: {a: {outputs: {x: Pose}}, b: {inputs: {y: {type: Pose}}}}}}\n"
+    )
+    checked = check_project(tmp_path)
+    work = PassWork(checked.loaded_project, ProjectTree(checked.merged_table), checked.architecture.interfaces)
+    output = ("groups", "g", "components", "a", "outputs", "x")
+    work.tree.set((*output, "to"), ["b.y"], output)
+    assert work.link().joined_sources.list_sources(("input", "g.b.y")) == ()
+    PASSES["normalise_connections"].run(work)
+    (source,) = work.link().joined_sources.list_sources(("input", "g.b.y"))
+    assert source.target.id == "g.a.x"

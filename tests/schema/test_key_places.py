@@ -35,6 +35,7 @@ def _component(text: str) -> str:
         (_component("hosts: {}"), "`hosts` is a section of its own: it begins in the first column"),
         ("nodes: {n: {depth: 3}}", "its keys are `implements`"),
         ("distro: jazzy", "write it below `ros`: `ros: {distro: ...}`"),
+        ("components: {a: {role: sink}}", "write it as `groups: {GROUP: {components: ...}}`"),
         ("title: My robot", "write it below `project`: `project: {title: ...}`"),
         ("lidar: {package: urg, status: planned}", "put it below `nodes:`, indented"),
         ("perception: {components: {a: }}", "put it below `groups:`, indented"),

@@ -61,6 +61,16 @@ def test_values_are_declarations_and_sets_dotted_names(parameters: str, normal_f
             ["18 unknown-key: the declaration of the parameter `x` has no key `valeu` | did you mean `value`?"],
         ),
         (
+            "{x: {type: double, default: 1}}",
+            ["19 unknown-key: the declaration of the parameter `x` has no key `default` | write the value as `value`"],
+        ),
+        (
+            "{x: {type: int, value: 1, min: 0}}",
+            ["26 unknown-key: the declaration of the parameter `x` has no key `min` | write what it may be as `range: [LOWEST, HIGHEST]` or `choices: [...]`"],
+        ),
+        # A set of a plugin's parameters: nothing says that one parameter is meant.
+        ("{x: {type: nav2::Planner, default: 1}}", []),
+        (
             "{x: {value: 1, range: [2, 1]}}",
             ["22 wrong-value: a range is the least and the greatest number | write both: `range: [0, 1.5]`"],
         ),

@@ -13,16 +13,17 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from archgen.cache.file_store import FileStore
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import FileTree, list_files_below, make_file_tree
 from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
 from archgen.emit.safe_names import assign_safe_paths, explain_long_path
+from archgen.emit.text.kept_answers import NO_ANSWERS, keep_answer, load_answer, make_answer_key
 from archgen.emit.text.template_limits import TemplateLimits
 from archgen.emit.workspace.generated_file import GeneratedFile, find_path_problems
 from archgen.resources import worker_environment
-from archgen.views.shapes import shape_to_plain
 
 DEFAULT_LIMITS = TemplateLimits()
 _PACKAGE_ROOT = Path(__file__).resolve().parents[3]
@@ -50,13 +51,17 @@ def render_backend(
 
 
 def render_workspace(
-    backend: Backend, views: Mapping[str, object], limits: TemplateLimits = DEFAULT_LIMITS
+    backend: Backend,
+    views: Mapping[str, object],
+    limits: TemplateLimits = DEFAULT_LIMITS,
+    answer_store: FileStore = NO_ANSWERS,
 ) -> tuple[tuple[GeneratedFile, ...], tuple[Diagnostic, ...]]:
     """Render the files of a backend that makes a workspace, with the paths that its manifest says.
 
-    Where a template fails or a path is no good there are no files, but diagnostics.
+    Where a template fails or a path is no good there are no files, but diagnostics. What templates wrote from the same
+    data is taken from the store.
     """
-    answer = _render_files(backend, views, limits)
+    answer = _render_files(backend, views, limits, answer_store)
     if "error" in answer:
         return (), (_make_diagnostic(backend, answer),)
     try:
@@ -74,25 +79,41 @@ def render_workspace(
     return (() if problems else tuple(files)), problems
 
 
-def _render_files(backend: Backend, views: Mapping[str, object], limits: TemplateLimits) -> Mapping[str, Any]:
-    """Render all files in a process of their own, and return its answer."""
-    request = {
-        "templates": str(backend.folder / "templates"),
+def _render_files(
+    backend: Backend, views: Mapping[str, object], limits: TemplateLimits, answer_store: FileStore = NO_ANSWERS
+) -> Mapping[str, Any]:
+    """Render all files in a process of their own, and return its answer, or one to the same request that is kept."""
+    templates = backend.folder / "templates"
+    content = {
+        "templates": str(templates),
         "files": [asdict(file) for file in backend.files],
-        "data": {name: shape_to_plain(views[name]) for name in backend.views},
-        "options": shape_to_plain(backend.options),
+        "data": {name: views[name] for name in backend.views},
+        "options": dict(backend.options),
         "escapes": {name: dict(table) for name, table in backend.escapes.items()},
         "limits": asdict(limits),
         "is_workspace": backend.makes == "workspace",
     }
-    return _run_worker(request, limits)
+    request = json.dumps(content, default=_make_plain).encode()
+    key = make_answer_key(request, templates) if answer_store.folder is not None else ""
+    answer = load_answer(answer_store, key)
+    if answer is None:
+        answer = _run_worker(request, limits)
+        keep_answer(answer_store, key, answer)
+    return answer
+
+
+def _make_plain(value: object) -> object:
+    # Imported here: what generators read is plain already.
+    from archgen.views.shapes import shape_to_plain
+
+    return shape_to_plain(value)
 
 
 class _AssetError(Exception):
     """An asset cannot be copied."""
 
 
-def _run_worker(request: Mapping[str, Any], limits: TemplateLimits) -> Mapping[str, Any]:
+def _run_worker(request: bytes, limits: TemplateLimits) -> Mapping[str, Any]:
     """Run the worker process and return its answer, or an `error` where one of its limits ended it."""
     # -I: neither the current folder nor the environment decides what is imported. -B: a confined process writes no
     # files.
@@ -100,7 +121,7 @@ def _run_worker(request: Mapping[str, Any], limits: TemplateLimits) -> Mapping[s
     try:
         process = subprocess.run(  # noqa: S603 - our own interpreter and code; nothing of the project's is in the command
             command,
-            input=json.dumps(request).encode(),
+            input=request,
             # A template that finds a way to read its process's environment must not find secrets there.
             env=worker_environment(),
             capture_output=True,

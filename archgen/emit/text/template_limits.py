@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass
 
+MAX_TEMPLATE_BYTES = 1_000_000
+
 
 @dataclass(frozen=True, slots=True)
 class TemplateLimits:

@@ -21,9 +21,8 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from archgen.emit.safe_names import explain_long_path, is_safe_path, make_safe_path
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_filter
-from archgen.emit.text.template_limits import TemplateLimits, confine_process
+from archgen.emit.text.template_limits import MAX_TEMPLATE_BYTES, TemplateLimits, confine_process
 
-_MAX_TEMPLATE_BYTES = 1_000_000
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
 _MAX_OBJECT_NAME = 200
 _MEMORY_ADDRESS = re.compile(r" at (0x[0-9a-f]{6,16})(?:>|&gt;|, file )", re.IGNORECASE)
@@ -51,8 +50,8 @@ class TemplateLoader(BaseLoader):
         path = (self.folder / template).resolve() if is_safe_path(template) else self.folder
         if not path.is_relative_to(self.folder) or not path.is_file():
             raise TemplateNotFound(template)
-        if path.stat().st_size > _MAX_TEMPLATE_BYTES:
-            msg = f"the template has more than {_MAX_TEMPLATE_BYTES} bytes"
+        if path.stat().st_size > MAX_TEMPLATE_BYTES:
+            msg = f"the template has more than {MAX_TEMPLATE_BYTES} bytes"
             raise TemplateBoundError(msg)
         return path.read_text("utf-8"), template, None
 
@@ -89,6 +88,8 @@ def _refuse_printed_objects(value: object, project_values: object) -> object:
     such as a quoted message of Python, the place is one that the project names.
     """
     text = value if isinstance(value, str) else "" if isinstance(value, int) else str(value)
+    if "0x" not in text and "0X" not in text:
+        return value
     for address in _MEMORY_ADDRESS.finditer(text):
         printed_object = _OBJECT_START.search(text, max(0, address.start() - _MAX_OBJECT_NAME), address.start())
         if printed_object and not _holds_text(project_values, address[1].lower()):
@@ -184,6 +185,10 @@ def _render_files(
         file.item["anchor"]: file.path for file in planned if isinstance(file.item, dict) and "anchor" in file.item
     }
     remaining = limits.output
+    # Compiled once for each entry: compiling takes longer than most files.
+    expectations = [
+        sandbox.from_string(entry["expects"]) if entry.get("expects") else None for entry in request["files"]
+    ]
     for file in planned:
         current_template["template"] = file.entry["template"]
         values = {**_list_values(request, file.item, file.key), "path": file.path}
@@ -192,8 +197,9 @@ def _render_files(
         remaining -= len(text)
         text.encode()  # half a character is a mistake of this template
         current_template.clear()
-        expects = sandbox.from_string(file.entry.get("expects") or "").render(**values)
-        yield file.path, text, file.position, expects.split(), file.place
+        expectation = expectations[file.position]
+        expected_words = expectation.render(**values).split() if expectation else []
+        yield file.path, text, file.position, expected_words, file.place
 
 
 def _list_values(request: Mapping[str, Any], item: object, key: object) -> dict[str, Any]:

@@ -83,12 +83,14 @@ def write_run_record(record: RunRecord) -> bytes:
 
 def _read_file(path: str, entry: Mapping[str, Any]) -> RecordedFile:
     digests, runs = entry["sha256"], entry["runs"]
+    if isinstance(digests, str):
+        digests = [digests]
     # A record can be edited: a path such as `../x` would let the next run remove files outside of the workspace.
     if explain_bad_path(path) or not all(isinstance(each, str) for each in (*digests, *runs)):
         raise ValueError
     state = entry.get("state")
     return RecordedFile(
-        frozenset([digests] if isinstance(digests, str) else digests),
+        frozenset(digests),
         frozenset(runs),
         entry.get("executable") is True,
         state == "once",

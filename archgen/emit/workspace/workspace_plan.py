@@ -218,4 +218,10 @@ def _choose_mode(file: GeneratedFile, entry: RecordedFile | None, found: DiskFil
 def _find_missing_words(file: GeneratedFile, data: bytes) -> tuple[str, ...]:
     """Return the words that a file of the user's should hold, and does not."""
     text = data.decode("utf-8", "replace")
-    return tuple(word for word in file.expected_words if not re.search(rf"(?<!\w){re.escape(word)}(?!\w)", text))
+    found_words = set(re.findall(r"\w+", text))
+    return tuple(word for word in file.expected_words if word not in found_words and not _holds_phrase(text, word))
+
+
+def _holds_phrase(text: str, phrase: str) -> bool:
+    """Whether a text holds words with what stands between them: `arm.move`."""
+    return not phrase.isidentifier() and re.search(rf"(?<!\w){re.escape(phrase)}(?!\w)", text) is not None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import mapping_values, sanity_checks
+from archgen.link.inner_names import find_inner_component
 from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
@@ -75,6 +76,9 @@ def _resolve_target(
     reference: ScalarNode, resolver: ReferenceResolver, element_id: str, component_id: str | None = None
 ) -> StartTarget | None:
     """Return the component that a reference names; where no component is called so, the node."""
+    inner_id = find_inner_component(reference.text, resolver, component_id) if component_id else None
+    if inner_id is not None:
+        return StartTarget("component", inner_id, reference.span)
     # A node often has the name of the component that it implements: both would be meant by one word.
     has_component = resolver.names.resolve_path(reference.text, ("component",), component_id=component_id).count > 0
     kinds = ("component",) if has_component else ("component", "node")

@@ -64,6 +64,9 @@ def fill_key(pattern: Pattern, bindings: Bindings) -> str:
     if text is None:
         message = "a key is a text, and this variable stands for a list or a mapping"
         raise EditError(message)
+    if not text:
+        message = "a key is empty"
+        raise EditError(message, "leave out in `where` what gives no text")
     return str(text)
 
 

@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from archgen.compose.type_expressions import bind_type_name
+from archgen.model.message_types import PART_KEYS
 from archgen.passes.patterns.expressions import Call, Comparison, ListOperand, Operand, TextOperand
 from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
 from archgen.passes.patterns.text_matching import resolve_text
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
-_TYPE_KEYS = frozenset({"type", "is", "same_as"})
-"""Keys whose values name types."""
+_TYPE_KEYS = frozenset({"type", "is", "same_as", *PART_KEYS})
+"""Keys whose texts name types."""
 _DATA_KEYS = frozenset({"parameters", "node", "hints", "properties"})
 """Keys below which nothing names a type."""
 
@@ -169,6 +170,8 @@ def _bind_names(
                 inner: _bind_names(each, stands_for, is_component=True) if isinstance(each, dict) else each
                 for inner, each in value.items()
             }
+        elif isinstance(value, dict) and is_component and key == "operations":
+            bound[key] = {name: _bind_operation(each, stands_for) for name, each in value.items()}
         elif isinstance(value, dict):
             is_data = is_component and key in _DATA_KEYS
             bound[key] = dict(value) if is_data else _bind_names(value, stands_for)
@@ -177,4 +180,19 @@ def _bind_names(
             bound[key] = value if name == value else name
         else:
             bound[key] = value
+    return bound
+
+
+def _bind_operation(operation: ViewValue, stands_for: Mapping[str, str]) -> ViewValue:
+    """Return an operation with its types bound: one for all that goes over, or those of fields by name."""
+    if not isinstance(operation, dict):
+        return operation
+    bound = _bind_names(operation, stands_for)
+    for key in PART_KEYS:
+        fields = bound.get(key)
+        if isinstance(fields, dict):
+            bound[key] = {
+                name: bind_type_name(each, stands_for) if isinstance(each, str) else each
+                for name, each in fields.items()
+            }
     return bound

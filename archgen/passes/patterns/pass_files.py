@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from archgen import resources
@@ -18,8 +17,6 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, Yaml
 
 PASS_FOLDER = "passes"  # noqa: S105 - not a password
 """The folder of a project that holds its own passes."""
-ID_PATTERN = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
-"""What a pass may be called: its file, without `.yaml`."""
 FILE_KEYS = ("title", "description", "needs", "leaves", "ends", "rules")
 _MAX_TEXT = 200_000
 _MAX_VALUES = 20_000

@@ -7,10 +7,12 @@ from collections.abc import Iterator
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
+from archgen.model.element_ids import is_id
 from archgen.passes.pass_registry import PASSES
 from archgen.passes.pass_shape import STATES, Pass, PassWork
-from archgen.passes.patterns.pass_files import ID_PATTERN, ReadPass, list_project_passes, list_shipped_passes
+from archgen.passes.patterns.pass_files import ReadPass, list_project_passes, list_shipped_passes
 from archgen.passes.patterns.pass_shapes import WRONG_PASS
+from archgen.passes.patterns.result_checks import check_result
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.project import LoadedProject
 from archgen.syntax.project_files import ProjectFiles
@@ -58,7 +60,7 @@ def _judge_name(own: ReadPass) -> Iterator[Diagnostic]:
     if own.name in PASSES:
         message = f"there is a pass `{own.name}` already"
         yield Diagnostic(WRONG_PASS, message, Span.of_file(own.file), help="give its file another name")
-    elif not ID_PATTERN.fullmatch(own.name):
+    elif not is_id(own.name):
         message = f"`{own.name}` is no name for a pass"
         help_line = "small letters, digits and `_`, as in `tag_cameras.yaml`"
         yield Diagnostic(WRONG_PASS, message, Span.of_file(own.file), help=help_line)
@@ -74,6 +76,8 @@ def _make_pass(name: str, read: ReadPass, findings: tuple[Diagnostic, ...]) -> P
         # A pass that is stopped makes nothing: what it wrote so far is taken back.
         kept_root, kept_provenance = copy_node(work.tree.root, work.tree.root.span), dict(work.tree.provenance)
         problems = run_rules(pattern_pass, work.tree)
+        if not problems and isinstance(kept_root, MappingNode):
+            problems = tuple(check_result(pattern_pass, kept_root, work.tree.root))
         if problems and isinstance(kept_root, MappingNode):
             work.tree.root, work.tree.provenance = kept_root, kept_provenance
             work.tree.edit_count += 1

@@ -29,11 +29,13 @@ from archgen.passes.patterns.pattern_shapes import (
 )
 from archgen.passes.patterns.rule_checks import check_rule
 from archgen.passes.patterns.view_words import check_view_keys
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, list_spans
 
 RULE_KEYS = ("title", "find", "unless", "where", "let", "add", "set", "drop")
 VIEW_KEYS = ("components", "types")
 MAX_PATTERN_DEPTH = 30
+MAX_PATTERN_VALUES = 300
+"""So many keys and values a pattern of `find` or `unless` may have: each is looked for inside of the one before it."""
 
 
 class RuleReader:
@@ -84,6 +86,11 @@ class RuleReader:
     def _read_view(self, node: YamlNode, key: str) -> ViewPattern:
         if not isinstance(node, MappingNode) or not node.entries:
             self._report(f"`{key}` is a mapping with `components` or `types`", node.span)
+            return ViewPattern()
+        count = 0 if key in EDIT_KINDS else sum(1 for _ in list_spans(node))
+        if count > MAX_PATTERN_VALUES:
+            message = f"`{key}` has {count:,} keys and values; at most {MAX_PATTERN_VALUES} are looked for"
+            self._report(message, _first_place(node), "write several rules")
             return ViewPattern()
         self.refuse_unknown_keys(node, (*VIEW_KEYS, "where") if key == "unless" else VIEW_KEYS, f"`{key}`")
         self.diagnostics += check_view_keys(node, is_edit=key in EDIT_KINDS)

@@ -6,11 +6,11 @@ the library.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.diagnostics.element_origins import TreePath
+from archgen.model.element_ids import is_id
 from archgen.passes.patterns.architecture_view import ArchitectureView, find_instance
 from archgen.passes.patterns.data_edits import are_inside, drop_data, make_data_node, merge_data
 from archgen.passes.patterns.edit_values import EditError, expand_value, fill_key, fill_pattern
@@ -30,8 +30,6 @@ from archgen.passes.patterns.view_words import VIRTUAL_KEYS
 from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode, YamlNode
 
-_ID = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
-_MAX_ID_LENGTH = 64
 _TYPE_KEYS = frozenset({"is", "same_as"})
 _PORT_SECTIONS = frozenset({"inputs", "outputs"})
 _ID_SECTIONS = frozenset({"inputs", "outputs", "operations"})
@@ -114,7 +112,7 @@ class TreeEditor:
 
     def _add_component(self, key: str, value: Mapping[str, ViewValue], origin: TreePath) -> None:
         parent, dot, name = key.rpartition(".")
-        if not _ID.match(name) or len(name) > _MAX_ID_LENGTH:
+        if not is_id(name):
             message = f"`{name}` is no id, so nothing can be called so"
             raise EditError(message, "`snake(...)` in `let` makes one of any text")
         kind = str(value.get("kind", "component"))
@@ -186,7 +184,7 @@ class TreeEditor:
             for name, each in value.items():
                 self._write(kind, key, (*path, name), each)
             return
-        if path[0] in _ID_SECTIONS and len(path) > 1 and present is None and not _ID.match(path[1]):
+        if path[0] in _ID_SECTIONS and len(path) > 1 and present is None and not is_id(path[1]):
             message = f"`{path[1]}` is no id, so no port can be called so"
             raise EditError(message, "`snake(...)` in `let` makes one of any text")
         if present is not None and present == value:

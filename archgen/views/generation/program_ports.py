@@ -34,7 +34,7 @@ def record_ports(
     findings: list[Diagnostic] = []
     uses: dict[tuple[str, str], list[Endpoint]] = {}
     for node in nodes:
-        for endpoint, key in _name_endpoints(endpoints.get(node.id, ())):
+        for endpoint, key in name_endpoints(endpoints.get(node.id, ())):
             uses.setdefault((PORT_SECTIONS[endpoint.use, endpoint.flow], key), []).append(endpoint)
     for (section, key), port_endpoints in uses.items():
         first = port_endpoints[0]
@@ -46,7 +46,7 @@ def record_ports(
     return sections, findings
 
 
-def _name_endpoints(endpoints: Iterable[Endpoint]) -> Iterator[tuple[Endpoint, str]]:
+def name_endpoints(endpoints: Iterable[Endpoint]) -> Iterator[tuple[Endpoint, str]]:
     """Yield each endpoint with its name in the program: that of the port, with its component's where two have it."""
     own_names: dict[tuple[str, str], set[str]] = {}
     listed = list(endpoints)
@@ -111,12 +111,13 @@ def _record_port(
         "type": first.type or "",
         "description": (port.description if port else None) or (data_type.comment if data_type else None) or "",
         "sources": list(first.sources),
-        "qos": _record_qos(first.qos),
+        "qos": record_qos(first.qos),
         "place": write_place(port.at if port else first.at),
     }
 
 
-def _record_qos(qos: Qos) -> dict[str, object]:
+def record_qos(qos: Qos) -> dict[str, object]:
+    """Return the settings of a topic as plain data: durations in ns, None where the middleware chooses."""
     return {
         "reliability": qos.reliability,
         "durability": qos.durability,
