@@ -131,4 +131,6 @@ def _fits(value: object, ros_type: str | None) -> bool:
         return isinstance(value, bool)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    return ros_type == "double" or (float(value).is_integer() and -_MOST_WHOLE <= value < _MOST_WHOLE)
+    if isinstance(value, int):
+        return -_MOST_WHOLE <= value < _MOST_WHOLE
+    return ros_type == "double" or (value.is_integer() and -_MOST_WHOLE <= value < _MOST_WHOLE)
