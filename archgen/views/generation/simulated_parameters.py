@@ -125,12 +125,9 @@ def _fits(value: object, ros_type: str | None) -> bool:
         return False
     if ros_type.endswith("_array"):
         return isinstance(value, list | tuple) and all(_fits(each, ros_type.removesuffix("_array")) for each in value)
-    if ros_type == "string":
-        return isinstance(value, str)
-    if ros_type == "bool":
-        return isinstance(value, bool)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    if isinstance(value, int):
-        return -_MOST_WHOLE <= value < _MOST_WHOLE
-    return ros_type == "double" or (value.is_integer() and -_MOST_WHOLE <= value < _MOST_WHOLE)
+    if ros_type in {"string", "bool"} or isinstance(value, bool):
+        return isinstance(value, str if ros_type == "string" else bool) and ros_type in {"string", "bool"}
+    is_small = isinstance(value, int | float) and -_MOST_WHOLE <= value < _MOST_WHOLE
+    if isinstance(value, float):
+        return ros_type == "double" or (is_small and value.is_integer())
+    return is_small
