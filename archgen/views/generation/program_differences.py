@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from archgen.bringup.program_names import name_endpoints
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.node import Endpoint, Node
 from archgen.views.generation.generation_context import tell_left_out
-from archgen.views.generation.program_ports import PORT_SECTIONS, name_endpoints, record_qos
+from archgen.views.generation.program_ports import PORT_SECTIONS, record_qos
 from archgen.views.generation.program_timers import list_timers
 
 _NODE_FACTS: Mapping[str, Callable[[Node], object]] = {
