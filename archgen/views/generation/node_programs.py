@@ -19,6 +19,7 @@ from archgen.model.node import Endpoint, Node
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
+from archgen.views.generation.program_callbacks import add_callback_groups
 from archgen.views.generation.program_differences import find_program_differences
 from archgen.views.generation.program_parameters import list_node_values, record_parameters
 from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports
@@ -38,6 +39,7 @@ _IMPORTED_CLASSES = frozenset(
         "LifecycleNode",
         "LivelinessPolicy",
         "MultiThreadedExecutor",
+        "MutuallyExclusiveCallbackGroup",
         "Node",
         "Parameter",
         "ParameterDescriptor",
@@ -157,6 +159,7 @@ def _record_program(
     package_name, program_name = package_and_program
     components = [architecture.components[each] for each in first.implements]
     sections, findings = record_ports(architecture, nodes, endpoints)
+    timers = list(list_timers(first))
     parameters, parameter_findings = record_parameters(architecture, nodes)
     message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
     functionalities = [each.functionality for each in components if each.functionality]
@@ -174,7 +177,8 @@ def _record_program(
         "namespace": first.namespace if len(nodes) == 1 else "/",
         "threads": first.threads,
         "reentrant": first.reentrant,
-        "timers": list(list_timers(first)),
+        "timers": timers,
+        "callback_groups": add_callback_groups(first, sections, timers),
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),

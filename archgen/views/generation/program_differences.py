@@ -15,6 +15,9 @@ _NODE_FACTS: Mapping[str, Callable[[Node], object]] = {
     "kinds": lambda node: node.kinds,
     "threads": lambda node: node.threads,
     "reentrant callbacks": lambda node: node.reentrant,
+    "callback groups": lambda node: [
+        sorted(each.rpartition(".")[2] for each in members) for members in node.callback_groups.values()
+    ],
     "periods": lambda node: [timer["period_ns"] for timer in list_timers(node)],
 }
 """What a program has once, and how each of its nodes says it."""
