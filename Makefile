@@ -29,7 +29,7 @@ test: .make/test
 
 # The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
 # not tried here, such as a Python that is not installed.
-test-all: test
+test-all: test .make/ros
 	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n auto --dist worksteal $(TESTS)
 
 properties: .make/test
@@ -79,4 +79,9 @@ clean:
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group check
 	npm install --prefix tests/judges --no-package-lock --no-audit --no-fund --loglevel=error
+	touch $@
+
+# ROS 1, for the tests that run generated nodes on it.
+.make/ros: .make/run tools/system_packages.sh
+	sh tools/system_packages.sh ros
 	touch $@

@@ -19,6 +19,7 @@ def _code_blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
+@pytest.mark.slow
 def test_the_api_page_runs(tmp_path: Path) -> None:
     """On the case study: what it writes goes into a folder of its own; the agreement's revision is one that exists."""
     (code,) = _code_blocks("api.md", "python")

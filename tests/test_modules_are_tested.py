@@ -6,7 +6,6 @@ functions were executed. Before that, cheaply: the test exists, and imports lead
 
 from __future__ import annotations
 
-import ast
 import os
 import re
 import subprocess
@@ -20,14 +19,13 @@ import coverage
 import pytest
 import yaml
 
+from tests.enough_executed import LEAST_EXECUTED_SHARE, executed_share
 from tests.running import ROOT
 
 TABLE = ROOT / "tests" / "covered_by.yaml"
 COVERED_BY: dict[str, list[str]] = yaml.safe_load(TABLE.read_text(encoding="utf-8"))
 """Modules by the test that covers them."""
 COVERED_MODULES = [module for modules in COVERED_BY.values() for module in modules]
-LEAST_EXECUTED_SHARE = 0.4
-"""The share of the lines in a module's functions that its test must execute."""
 _FROM_IMPORT = re.compile(r"^ *from ((?:archgen|tests)[\w.]*) import (?:\(([^)]*)\)|(.*))", re.MULTILINE)
 _FUNCTION = re.compile(r"^ *def ", re.MULTILINE)
 _ATTRIBUTE = re.compile(r"\b(\w+)\.(\w+)")
@@ -152,32 +150,23 @@ def test_imports_lead_from_the_test_to_what_it_covers(test: str) -> None:
 
 
 def _executed_shares(test: str, modules: list[str], folder: Path) -> dict[str, float]:
-    """Run a test, and return which share of the lines in each module's functions it executed."""
+    """Run a test, and return which share of the lines in each module's functions it executed, until it was enough."""
     files = {module: str(_list_modules()[module]) for module in modules}
     settings = folder / "coveragerc"
     settings.write_text(
-        f"[run]\nparallel = true\ndata_file = {folder / 'data'}\ninclude =\n    " + "\n    ".join(files.values())
+        f"[run]\nparallel = true\ndata_file = {folder / 'data'}\ndisable_warnings = no-data-collected\ninclude =\n    "
+        + "\n    ".join(files.values())
     )
     # Coverage begins by this variable in every process: many tests run verbs as users do.
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "COVERAGE_PROCESS_START": str(settings)}
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", test]
+    plugins = ("-p", "no:cacheprovider", "-p", "tests.enough_executed")
+    command = [sys.executable, "-m", "pytest", "-q", "-x", *plugins, test]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=False, text=True)  # noqa: S603
-    assert done.returncode == 0, done.stdout[-3000:]
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     measured = coverage.Coverage(config_file=str(settings))
     measured.combine([str(folder)])
-    shares = {}
-    for module, file in files.items():
-        _, statements, _, missing, _ = measured.analysis2(file)
-        # What stands outside of functions is executed by the import alone.
-        inner = {line for start, end in _function_bodies(file) for line in range(start, end + 1)} & set(statements)
-        shares[module] = len(inner - set(missing)) / len(inner)
-    return shares
-
-
-def _function_bodies(file: str) -> Iterator[tuple[int, int]]:
-    for node in ast.walk(ast.parse(Path(file).read_text(encoding="utf-8"))):
-        if isinstance(node, ast.FunctionDef):
-            yield node.body[0].lineno, node.end_lineno or 0
+    data = measured.get_data()
+    return {module: executed_share(measured, file, data.lines(file) or ()) for module, file in files.items()}
 
 
 @pytest.mark.slow

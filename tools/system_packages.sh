@@ -1,6 +1,6 @@
 #!/bin/sh
-# Install what archgen (run) or its tests (test) need of the system. Does nothing where it is there already; where it
-# may not install, it says what to install and, for the tests, stops.
+# Install what archgen (run) or its tests (test) need of the system, or ROS 1 for the tests that run nodes on it (ros).
+# Does nothing where it is there already; where it may not install, it says what to install and, for the tests, stops.
 set -eu
 what=${1:-run}
 missing=""
@@ -30,6 +30,31 @@ if [ "$what" = test ]; then
     /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"
     /usr/bin/python3 -c "import genmsg" 2>/dev/null || missing="$missing python3-genmsg"
 fi
+if [ "$what" = ros ]; then
+    if ! command -v apt-cache >/dev/null 2>&1; then
+        echo "archgen: there is no ROS 1 for this system; its tests are skipped" >&2
+        exit 0
+    fi
+    need_command roslaunch python3-roslaunch
+    need_command rosmaster python3-rosmaster
+    need_command rostest python3-rostest
+    need_command catkin_make catkin
+    ls /usr/lib/*/cmake/rostest >/dev/null 2>&1 || missing="$missing librostest-dev"
+    [ -x /usr/lib/rosout/rosout ] || missing="$missing rosout"
+    [ -e /usr/share/message_generation ] || missing="$missing ros-message-generation"
+    [ -e /usr/share/message_runtime ] || missing="$missing ros-message-runtime"
+    /usr/bin/python3 -c "import rospy" 2>/dev/null || missing="$missing python3-rospy"
+    /usr/bin/python3 -c "import rosservice" 2>/dev/null || missing="$missing python3-rosservice"
+    /usr/bin/python3 -c "import actionlib" 2>/dev/null || missing="$missing python3-actionlib"
+    for package in std actionlib geometry sensor nav tf2; do
+        /usr/bin/python3 -c "import ${package}_msgs" 2>/dev/null || missing="$missing python3-$package-msgs"
+        [ -e "/usr/share/${package}_msgs/msg" ] || missing="$missing ros-$package-msgs"
+    done
+    /usr/bin/python3 -c "import std_srvs" 2>/dev/null || missing="$missing python3-std-srvs"
+    for package in std actionlib geometry; do
+        [ -e "/usr/share/${package}_msgs/cmake" ] || missing="$missing lib$package-msgs-dev"
+    done
+fi
 [ -n "$missing" ] || exit 0
 if command -v apt-get >/dev/null 2>&1 && [ "$(id -u)" = 0 ]; then
     sudo=""
@@ -37,11 +62,15 @@ elif command -v apt-get >/dev/null 2>&1 && command -v sudo >/dev/null 2>&1 && su
     sudo=sudo
 else
     echo "archgen: please install these packages (Debian's names):$missing" >&2
-    # Without the drawing libraries archgen still makes everything but the pictures; the tests need them all.
-    [ "$what" = run ] && exit 0
+    # Without the drawing libraries archgen still makes everything but the pictures, and without ROS 1 its tests are skipped.
+    [ "$what" = test ] || exit 0
     exit 1
 fi
 echo "installing$missing"
 $sudo apt-get update -qq
+if [ "$what" = ros ] && ! apt-cache show python3-roslaunch >/dev/null 2>&1; then
+    echo "archgen: this system's packages have no ROS 1; its tests are skipped" >&2
+    exit 0
+fi
 # shellcheck disable=SC2086 # a list of packages
 DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends $missing >/dev/null

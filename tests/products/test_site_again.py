@@ -72,6 +72,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.slow
 def test_after_each_change_a_site_is_as_if_written_for_the_first_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -50,8 +50,9 @@ def test_what_no_project_draws_is_not_there(level: DetailLevel) -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_each_page_is_the_one_of_the_whole_site(level: DetailLevel, monkeypatch: pytest.MonkeyPatch) -> None:
-    views = project_views.make_views(_check("example_ramcip"), OutputOptions(level=level, show_history=False))
+@pytest.mark.parametrize("name", ["examples/first_robot", pytest.param("example_ramcip", marks=pytest.mark.slow)])
+def test_each_page_is_the_one_of_the_whole_site(name: str, level: DetailLevel, monkeypatch: pytest.MonkeyPatch) -> None:
+    views = project_views.make_views(_check(name), OutputOptions(level=level, show_history=False))
     exchanges = gather_exchanges(views.lookup)
     # Else they would be gathered again for each of the hundred pages on partners.
     monkeypatch.setattr(partner_pages, "gather_exchanges", lambda _lookup: exchanges)

@@ -45,7 +45,13 @@ def _make_ros2_launch(context: GenerationContext) -> GeneratedView:
 def _make_programs(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import node_programs
 
-    return node_programs.make_view(context)
+    return node_programs.make_view(context, ros=2)
+
+
+def _make_ros1_programs(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import node_programs
+
+    return node_programs.make_view(context, ros=1)
 
 
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
@@ -53,6 +59,7 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "components": _make_components,
     "plan": _make_plan,
     "programs": _make_programs,
+    "ros1_programs": _make_ros1_programs,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
 }

@@ -1,4 +1,4 @@
-"""The view `programs`: the packages of ROS nodes to generate, and each program in them with all that it has."""
+"""The views `programs` and `ros1_programs`: the packages of ROS nodes to generate, and each program in them with all that it has."""
 
 from __future__ import annotations
 
@@ -12,57 +12,35 @@ from archgen.bringup.program_names import (
     name_package,
 )
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span, first_written_span
+from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
+from archgen.model.ros_distro import is_ros_1
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
 from archgen.views.generation.program_callbacks import add_callback_groups
 from archgen.views.generation.program_differences import find_program_differences
+from archgen.views.generation.program_imports import import_in_ros_1, import_in_ros_2
 from archgen.views.generation.program_parameters import list_node_values, record_parameters
-from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports
+from archgen.views.generation.program_ports import record_ports
 from archgen.views.generation.program_timers import list_timers
 from archgen.views.generation.usable_programs import drop_unusable
 
-_IMPORTED_CLASSES = frozenset(
-    [
-        "ActionClient",
-        "ActionServer",
-        "Duration",
-        "DurabilityPolicy",
-        "ExternalShutdownException",
-        "FloatingPointRange",
-        "HistoryPolicy",
-        "IntegerRange",
-        "LifecycleNode",
-        "LivelinessPolicy",
-        "MultiThreadedExecutor",
-        "MutuallyExclusiveCallbackGroup",
-        "Node",
-        "Parameter",
-        "ParameterDescriptor",
-        "QoSProfile",
-        "ReentrantCallbackGroup",
-        "ReliabilityPolicy",
-        "SetParametersResult",
-        "TransitionCallbackReturn",
-    ]
-)
-"""What the modules of nodes import of rclpy: a message of this name is imported under another one."""
 
-
-def make_view(context: GenerationContext) -> GeneratedView:
-    """Return the programs to generate: `packages`, and all their `programs`.
+def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
+    """Return the programs to generate for a generation of ROS: `packages`, and all their `programs`.
 
     Nodes that exist (`status: existing` or `adapted`) have a program already, and what is no node of ROS has none here. The option
     `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
     """
+    if is_ros_1(context.architecture.distro) != (ros == 1):
+        return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
     language = str(context.options.get("language") or "python")
     all_programs = _find_programs(context, language)
     endpoints = index_endpoints(context.architecture)
-    program_names = ProgramNames(context.architecture, context.ros_generation)
+    program_names = ProgramNames(context.architecture, ros)
     findings: list[Diagnostic] = list(_find_mixed_packages(context, all_programs, language))
     programs, unusable = drop_unusable(all_programs, language)
     findings += unusable
@@ -92,6 +70,10 @@ def make_view(context: GenerationContext) -> GeneratedView:
     for package in packages.values():
         used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
         package["dependencies"] = sorted(used)
+        package["has_actions"] = any(
+            each["action_servers"] or each["action_clients"]
+            for each in package["programs"]  # type: ignore[attr-defined]
+        )
     names = [
         (str(each["class_name"]), program_nodes[0].id, program_nodes[0].at)
         for each, (_, program_nodes) in zip(records, sorted(programs.items()), strict=True)
@@ -100,6 +82,14 @@ def make_view(context: GenerationContext) -> GeneratedView:
         in_package = [name for name, each in zip(names, records, strict=True) if each["package"] == package_name]
         findings += find_name_clashes(in_package, "class")
     return GeneratedView({"packages": list(packages.values()), "programs": records}, tuple(findings))
+
+
+def _tell_other_ros(ros: int) -> Diagnostic:
+    return tell_left_out(
+        f"the project is made for ROS {3 - ros}: it has no nodes for ROS {ros}",
+        NO_SPAN,
+        help_line="generate with another backend, or write another `distro` below `ros`",
+    )
 
 
 def _name_module(program_name: str) -> str:
@@ -163,11 +153,13 @@ def _record_program(
     parameters, parameter_findings = record_parameters(architecture, nodes)
     message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
     functionalities = [each.functionality for each in components if each.functionality]
+    class_name = make_camel_name(_name_module(program_name))
+    import_messages = import_in_ros_1 if is_ros_1(architecture.distro) else import_in_ros_2
     record: dict[str, object] = {
         "package": package_name,
         "executable": program_name,
         "module": _name_module(program_name),
-        "class_name": make_camel_name(_name_module(program_name)),
+        "class_name": class_name,
         "title": components[0].title if len(components) == 1 and components[0].component_type is None else first.title,
         "description": first.description or " ".join(functionalities),
         "is_lifecycle": "lifecycle" in first.kinds,
@@ -182,7 +174,7 @@ def _record_program(
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),
-        "python_imports": _import_in_python(sections, make_camel_name(_name_module(program_name))),
+        "python_imports": import_messages(sections, class_name),
         "place": write_place(_find_place(architecture, first)),
     }
     return record, [*findings, *parameter_findings]
@@ -205,21 +197,3 @@ def _find_place(architecture: Architecture, node: Node) -> Span:
     """Return where a node is written; of one that archgen adds, its component."""
     components = (architecture.components[each] for each in node.implements)
     return first_written_span(node.at, *(each.at for each in components))
-
-
-def _import_in_python(sections: Mapping[str, Sequence[dict[str, object]]], class_name: str) -> list[dict[str, object]]:
-    """Return what is imported of which module, and tell each port the class of its message (`python_class`).
-
-    Messages of one name in several packages are told apart by their packages.
-    """
-    ports = [port for section in PORT_SECTIONS.values() for port in sections[section]]
-    modules_by_name: dict[object, set[str]] = {}
-    for port in ports:
-        modules_by_name.setdefault(port["name"], set()).add(f"{port['package']}.{port['kind']}")
-    imports: dict[str, set[str]] = {}
-    for port in ports:
-        module, name = f"{port['package']}.{port['kind']}", str(port["name"])
-        is_taken = len(modules_by_name[name]) > 1 or name in {class_name, f"{class_name}Node", *_IMPORTED_CLASSES}
-        port["python_class"] = f"{make_camel_name(module)}{name}" if is_taken else name
-        imports.setdefault(module, set()).add(f"{name} as {port['python_class']}" if is_taken else name)
-    return [{"module": module, "names": sorted(each)} for module, each in sorted(imports.items())]

@@ -1,4 +1,4 @@
-"""The parameters of a program: their types in ROS 2, defaults, ranges and words."""
+"""The parameters of a program: their types in ROS, defaults, ranges and words."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.parameter import Parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters, is_ros_parameter
+from archgen.model.ros_distro import is_ros_1
 from archgen.views.generation.generation_context import tell_left_out, write_place
 
 _ROS_TYPES: Mapping[str, str] = {"boolean": "bool", "integer": "integer", "float": "double", "string": "string"}
@@ -22,15 +23,18 @@ def record_parameters(
 
     `default` is the value where all nodes have the same; None where each node is given its own, or nobody gives one.
     """
+    ros_1 = is_ros_1(architecture.distro)
     values: dict[str, list[EffectiveParameter]] = {}
     for node in nodes:
         for name, parameter in find_effective_parameters(architecture, node).items():
-            if not is_ros_parameter(name, ros_1=False):
+            if not is_ros_parameter(name, ros_1=ros_1):
                 values.setdefault(name, []).append(parameter)
     records: list[dict[str, object]] = []
     findings: list[Diagnostic] = []
     for name, parameters in values.items():
         ros_type = _find_ros_type(parameters)
+        if ros_1 and any(_is_too_big(each.value) for each in parameters):
+            ros_type = None
         first = parameters[0]
         if ros_type is None:
             findings.append(
@@ -49,11 +53,19 @@ def record_parameters(
 def list_node_values(architecture: Architecture, node: Node) -> list[dict[str, object]]:
     """Return the values of a node that are known, as a parameter file has them: `name` and `value`."""
     listed: list[dict[str, object]] = []
+    ros_1 = is_ros_1(architecture.distro)
     for name, parameter in find_effective_parameters(architecture, node).items():
         ros_type = _find_ros_type((parameter,))
-        if parameter.is_known and ros_type is not None:
+        if parameter.is_known and ros_type is not None and not (ros_1 and _is_too_big(parameter.value)):
             listed.append({"name": name, "value": _convert_value(parameter.value, ros_type)})
     return listed
+
+
+def _is_too_big(value: object) -> bool:
+    """Whether ROS 1 cannot hold a whole number: its master speaks XML-RPC, which knows 32 bits."""
+    if isinstance(value, list | tuple):
+        return any(_is_too_big(each) for each in value)
+    return isinstance(value, int) and not -(2**31) <= value < 2**31
 
 
 def _record_parameter(

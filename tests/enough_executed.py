@@ -1,0 +1,85 @@
+"""A pytest plugin: leaves out the tests that remain as soon as those before them executed enough of each measured file.
+
+tests/test_modules_are_tested.py asks whether a file's tests execute two fifths of a module. The first tests mostly do, and the
+others, which may open browsers or build sites, run in `make test` anyway.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+from coverage import Coverage, CoverageData
+from coverage.exceptions import DataError
+
+LEAST_EXECUTED_SHARE = 0.4
+"""The share of the lines in a module's functions that its test must execute."""
+
+
+def executed_share(measured: Coverage, file: str, executed: Iterable[int]) -> float:
+    """Return which share of the lines in a file's functions is among the executed lines."""
+    # What stands outside of functions is executed by the import alone.
+    inner = _function_lines(measured, file)
+    return len(inner & set(executed)) / len(inner)
+
+
+@cache
+def _function_lines(measured: Coverage, file: str) -> frozenset[int]:
+    tree = ast.parse(Path(file).read_text(encoding="utf-8"))
+    statements = measured.analysis2(file)[1]
+    return frozenset(
+        {line for start, end in _function_bodies(tree) for line in range(start, end + 1)}.intersection(statements)
+    )
+
+
+def _function_bodies(tree: ast.Module) -> Iterator[tuple[int, int]]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node.body[0].lineno, node.end_lineno or 0
+
+
+class LeaveTheRestOut:
+    """Watches which lines this process and those that it started have executed so far."""
+
+    def __init__(self, measured: Coverage) -> None:
+        self._measured = measured
+        files = measured.get_option("run:include")
+        assert isinstance(files, list)
+        self._lines_by_file: dict[str, set[int]] = {file: set() for file in files}
+        self._read_already: set[Path] = set()
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self) -> bool | None:
+        """Say that a test has been run, if enough was executed before it."""
+        return True if self._is_enough() else None
+
+    def _is_enough(self) -> bool:
+        data = self._measured.get_data()
+        self._take_lines(data)
+        own_file = Path(data.data_filename())
+        for file in set(own_file.parent.glob("data.*")) - self._read_already - {own_file}:
+            other = CoverageData(basename=str(file))
+            try:
+                other.read()
+            except DataError:  # its process is writing it just now
+                continue
+            self._take_lines(other)
+            self._read_already.add(file)
+        return all(
+            executed_share(self._measured, file, lines) >= LEAST_EXECUTED_SHARE
+            for file, lines in self._lines_by_file.items()
+        )
+
+    def _take_lines(self, data: CoverageData) -> None:
+        for file, lines in self._lines_by_file.items():
+            lines.update(data.lines(file) or ())
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Watch, where this process is measured."""
+    measured = Coverage.current()
+    assert measured is not None, "coverage begins by the variable COVERAGE_PROCESS_START"
+    config.pluginmanager.register(LeaveTheRestOut(measured))
