@@ -251,17 +251,22 @@ def list_expected(program: dict[str, Any], node_id: str) -> dict[str, set[tuple[
         for use, section in uses.items()
     }
     if not program["is_lifecycle"]:
-        for port in program["action_clients"]:
-            name, message = port["topics"][node_id], port["message"]
-            sections["subscribes"] |= {
-                (f"{name}/_action/feedback", f"{message}_FeedbackMessage"),
-                (f"{name}/_action/status", "action_msgs/msg/GoalStatusArray"),
-            }
-            sections["calls"] |= {
-                (f"{name}/_action/send_goal", f"{message}_SendGoal"),
-                (f"{name}/_action/get_result", f"{message}_GetResult"),
-                (f"{name}/_action/cancel_goal", "action_msgs/srv/CancelGoal"),
-            }
+        # What a client of an action subscribes to and calls, its server publishes and serves.
+        for section, listens, asks in (
+            ("action_clients", "subscribes", "calls"),
+            ("action_servers", "publishes", "serves"),
+        ):
+            for port in program[section]:
+                name, message = port["topics"][node_id], port["message"]
+                sections[listens] |= {
+                    (f"{name}/_action/feedback", f"{message}_FeedbackMessage"),
+                    (f"{name}/_action/status", "action_msgs/msg/GoalStatusArray"),
+                }
+                sections[asks] |= {
+                    (f"{name}/_action/send_goal", f"{message}_SendGoal"),
+                    (f"{name}/_action/get_result", f"{message}_GetResult"),
+                    (f"{name}/_action/cancel_goal", "action_msgs/srv/CancelGoal"),
+                }
     return sections
 
 
