@@ -23,11 +23,13 @@ def add_callback_groups(
     used_keys = set[str]()
     for section in CALLED_SECTIONS:
         for port in sections[section]:
-            port["callback_group"] = key_by_component.get(str(port["port"]).rpartition(".")[0], "")
-            used_keys.add(port["callback_group"])
+            key = key_by_component.get(str(port["port"]).rpartition(".")[0], "")
+            port["callback_group"] = key
+            used_keys.add(key)
     for timer in timers:
-        timer["callback_group"] = key_by_component.get(str(timer["component"]), "")
-        used_keys.add(timer["callback_group"])
+        key = key_by_component.get(str(timer["component"]), "")
+        timer["callback_group"] = key
+        used_keys.add(key)
     return [{"key": key, "components": list(members)} for key, members in groups.items() if key in used_keys]
 
 
