@@ -65,6 +65,11 @@ def site(built: Path) -> Files:
     return {name: text.encode() for name, text in {**pages, "files.txt": names}.items()}
 
 
+def neighbours(_: Path) -> Files:
+    names = ("d2", "graphml", "mermaid", "plantuml", "structurizr")
+    return {name: archgen("export", name, "-C", "example_ramcip", cwd=ROOT).stdout for name in names}
+
+
 OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "check.txt": said("check", "example_ramcip"),
     "check.json": said("check", "example_ramcip", "--format", "json"),
@@ -77,6 +82,7 @@ OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "diagrams.txt": diagrams,
     "site": site,
     "wiki": written("wiki"),
+    "neighbours": neighbours,
 }
 
 

@@ -25,6 +25,7 @@ if [ "$what" = test ]; then
     fc-list 2>/dev/null | grep -q Carlito || missing="$missing fontconfig fonts-crosextra-carlito"
     need_command java default-jre-headless
     need_command npm npm
+    need_command plantuml plantuml
     need_command shellcheck shellcheck
     need_command systemd-analyze systemd
     /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"

@@ -6,7 +6,15 @@ effects on connections (`connection_maps`). `edits` says which changes are one i
 """
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.compare_versions import compare_versions
+from archgen.compare.compare_versions import compare_versions, list_changes
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 
-__all__ = ["ArchitectureVersion", "ChainChange", "Change", "Comparison", "PartnerBreak", "compare_versions"]
+__all__ = [
+    "ArchitectureVersion",
+    "ChainChange",
+    "Change",
+    "Comparison",
+    "PartnerBreak",
+    "compare_versions",
+    "list_changes",
+]

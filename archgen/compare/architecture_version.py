@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.type_patterns import TypePatterns
 from archgen.timing.analysis import Analysis

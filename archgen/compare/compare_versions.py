@@ -12,7 +12,7 @@ from archgen.compare.breaking_changes import find_idle_acceptances, mark_breakin
 from archgen.compare.chain_causes import add_chain_causes
 from archgen.compare.chain_changes import compare_chains
 from archgen.compare.compared_elements import ComparedElement, ElementKey
-from archgen.compare.comparison import Comparison
+from archgen.compare.comparison import Change, Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.connection_maps import map_connections
 from archgen.compare.difference_finder import DifferenceFinder
@@ -35,26 +35,7 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     """Compare two versions of an architecture."""
     # Matching comes first: everything below lists the first version under the ids of the second.
     matched_ids = match_elements(before.architecture, after.architecture)
-    elements = list_elements(before, after, matched_ids)
-    old_connections, new_connections = (
-        map_connections(before.architecture, matched_ids),
-        map_connections(after.architecture, MatchedIds()),
-    )
-    lost_keys = before.architecture.unread_keys, after.architecture.unread_keys
-    version_pair = VersionPair(
-        old_connections,
-        new_connections,
-        *elements,
-        (_components_by_requirement(elements[0]), _components_by_requirement(elements[1])),
-        lost_keys,
-        _find_unnamed_outputs(after.architecture),
-        (before.sound_files, after.sound_files),
-        (before.broken_files, after.broken_files),
-        (before.library_files, after.library_files),
-        (before.architecture.untyped_components, after.architecture.untyped_components),
-        partner_names=title_partners(before.architecture, after.architecture),
-    )
-    changes = DifferenceFinder(*elements, matched_ids, version_pair).find_all_changes(old_connections, new_connections)
+    version_pair, changes = _find_changes(before, after, matched_ids)
     if any(change.element_kind == "link" for change in changes):
         version_pair = replace(version_pair, link_users=find_link_users(before, after, matched_ids))
     judged_findings = judge_findings(before, after, matched_ids)
@@ -94,6 +75,38 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         boundaries=boundaries,
         loads=loads,
     )
+
+
+def list_changes(before: ArchitectureVersion, after: ArchitectureVersion) -> tuple[Change, ...]:
+    """Return what is different in another version, element by element, without whom it breaks or what follows for timing."""
+    return _find_changes(before, after, match_elements(before.architecture, after.architecture))[1]
+
+
+def _find_changes(
+    before: ArchitectureVersion, after: ArchitectureVersion, matched_ids: MatchedIds
+) -> tuple[VersionPair, tuple[Change, ...]]:
+    """Return two versions in normal form, and every difference between them."""
+    elements = list_elements(before, after, matched_ids)
+    old_connections, new_connections = (
+        map_connections(before.architecture, matched_ids),
+        map_connections(after.architecture, MatchedIds()),
+    )
+    lost_keys = before.architecture.unread_keys, after.architecture.unread_keys
+    version_pair = VersionPair(
+        old_connections,
+        new_connections,
+        *elements,
+        (_components_by_requirement(elements[0]), _components_by_requirement(elements[1])),
+        lost_keys,
+        _find_unnamed_outputs(after.architecture),
+        (before.sound_files, after.sound_files),
+        (before.broken_files, after.broken_files),
+        (before.library_files, after.library_files),
+        (before.architecture.untyped_components, after.architecture.untyped_components),
+        partner_names=title_partners(before.architecture, after.architecture),
+    )
+    finder = DifferenceFinder(*elements, matched_ids, version_pair)
+    return version_pair, finder.find_all_changes(old_connections, new_connections)
 
 
 def _find_unnamed_outputs(architecture: Architecture) -> frozenset[str]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from archgen.frozen import dataclass
 
 SOME_PORTS = "some"
 """Value of the keys "inputs" and "outputs" of a component that has ports: these are elements of their own."""

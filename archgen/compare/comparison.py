@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
@@ -10,6 +10,7 @@ from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.timing_values import TimingValue

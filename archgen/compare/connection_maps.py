@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 
 OppositeEnds = Mapping[str, frozenset[str]]

@@ -6,7 +6,6 @@ The changes themselves stay as they are: programs read them, and what is accepte
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 from archgen.compare.change_sentences import SURE_CONFIDENCE, note_confidence
@@ -19,6 +18,7 @@ from archgen.compare.reshaping import Reshaping
 from archgen.compare.sentence_words import tick_names
 from archgen.compare.type_edits import find_type_edits
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import dataclass
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 
 EditKind = Literal[ChangeKind, "split", "merged", "copied"]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.model.path_resolver import title_from_id
 from archgen.model.quantity import Quantity
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.element_likeness import Feature, FeatureMap, find_likely_pairs
@@ -11,6 +10,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.functional_kinds import OUTPUT
 from archgen.compare.match_elements import describe_element
 from archgen.compare.version_pair import VersionPair
+from archgen.frozen import dataclass
 
 _MESSAGE_WEIGHT = 3
 """What is on the wire counts apart from the type, which may have got another name with the output."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
 from archgen.compare.output_heirs import OutputHeir, component_of
 from archgen.compare.version_pair import VersionPair
+from archgen.frozen import dataclass
 
 _FOLLOWING_KEYS = {
     "component": ("requirements", "functionality", "title", "description", "tags", "timing.wcet", "timing.bcet"),

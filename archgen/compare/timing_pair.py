@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
 from archgen.compare.kinds import Effect, find_effect
+from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
 from archgen.timing.run_analysis import analyse_architecture
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.connection_maps import ConnectionMap
+from archgen.frozen import dataclass
 
 _COMPONENT_KINDS = frozenset({"component", "composed", "input", "output"})
 

@@ -14,13 +14,13 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 
 from archgen.emit.safe_names import is_safe_path
 from archgen.emit.written_formats import explain_refusal
+from archgen.frozen import dataclass
 
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."

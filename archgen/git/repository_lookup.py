@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import dataclass
 from archgen.git.git_call import run_git
 from archgen.git.git_errors import NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.frozen import dataclass
 from archgen.git.git_call import run_git
 
 _FIELDS = ("refname:strip=2", "creatordate:short", "taggername", "contents:subject", "*objectname", "objectname")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from archgen import git
+from archgen.frozen import dataclass, replace
 from archgen.project import PROJECT_FILE, TrackedProject
 from archgen.project.library_reading import list_library_paths
 from archgen.project.slice_parsing import parse_slice

@@ -7,11 +7,11 @@ stranger's costs no more time than it is long.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.hint_schemas import HintFault, list_hint_faults
 from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements

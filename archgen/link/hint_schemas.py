@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from typing import NamedTuple
@@ -29,7 +28,6 @@ _IS_OF_TYPE: Mapping[str, Callable[[object], bool]] = {
     "integer": lambda value: isinstance(value, int) and not isinstance(value, bool),
     "boolean": lambda value: isinstance(value, bool),
 }
-_NUMBER = re.compile(r"[+-]?[0-9]{1,30}(?:\.[0-9]{1,30})?\Z")
 
 
 class HintFault(NamedTuple):
@@ -95,9 +93,11 @@ def _judge_keys(
 def _judge_size(schema: MappingNode, value: float, path: tuple[str | int, ...]) -> Iterator[HintFault]:
     for key, word in (("minimum", "least"), ("maximum", "most")):
         limit = mapping_values.get_scalar(schema, key)
-        if limit is None or not _NUMBER.match(limit.text):
+        if limit is None or not _IS_OF_TYPE["number"](limit.value):
             continue
-        number, end = Decimal(value), Decimal(limit.text)
+        number, end = Decimal(value), Decimal(limit.value)  # type: ignore[arg-type]
+        if end.is_nan():
+            continue
         # What is no number at all is neither below nor above.
         if number.is_nan() or not (number >= end if key == "minimum" else number <= end):
             yield HintFault(path, f"is {_name_value(value)}, but must be at {word} {limit.text}")

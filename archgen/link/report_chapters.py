@@ -6,13 +6,14 @@ import base64
 import binascii
 import posixpath
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 from urllib.parse import unquote
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import dataclass
 from archgen.link.report_front import read_report_settings
 from archgen.link.svg_cleaning import clean_project_svg, is_svg
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter

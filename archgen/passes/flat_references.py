@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from archgen.analyses import analyse_timing
 from archgen.link import mapping_values
 from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import ElementRef
+from archgen.passes.flat_frames import FlatFrames
+from archgen.passes.flat_steps import FlatSteps
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import AnalysisMemory
 
-_KINDS = ("node", "component", "output")
+_WAYPOINT_KINDS = ("node", "component", "output")
+_DEVICE_KINDS = ("component",)
+_SELECTED_KINDS = ("group", "component", "output")
 
 
 @dataclass
@@ -26,14 +32,24 @@ class FlatReferences:
     architecture: Architecture
     """With the low level derived: the worst way of a chain through a composed component is looked up in it."""
 
+    @cached_property
+    def frames(self) -> FlatFrames:
+        """What writes frames."""
+        return FlatFrames(self.architecture, self.linked.outline, self.flat_ids)
+
     def rewrite_sections(self, sections: Mapping[str, MappingEntry]) -> dict[str, MappingEntry]:
         """Return the sections in which something is called otherwise now."""
         rewritten: dict[str, MappingEntry] = {}
-        for name, key in (("chains", "through"), ("links", "connects"), ("frames", "by")):
+        for name, key in (("chains", "through"), ("links", "connects")):
             if name in sections:
                 rewritten[name] = self._rewrite_elements(sections[name], key)
+        frames = self.frames.write_section(sections.get("frames"))
+        if frames is not None:
+            rewritten["frames"] = frames
         if "use_cases" in sections:
-            rewritten["use_cases"] = self._rewrite_use_cases(sections["use_cases"])
+            rewritten["use_cases"] = FlatSteps(self.architecture, self.flat_ids).rewrite_use_cases(
+                sections["use_cases"]
+            )
         for name in ("views", "policies"):
             if name in sections:
                 rewritten[name] = rewrite_selectors(sections[name], self._rename_word)
@@ -102,50 +118,33 @@ class FlatReferences:
             body = mapping_values.get_body(element)
             inner = dict(body.entries)
             if key in inner:
-                worst_leaves = self._list_worst_leaves(element.key) if key == "through" else ()
-                value = self._rewrite_value(inner[key].value, worst_leaves, is_list=key != "by")
+                # In a chain a node of a name goes before a component, in a link a host.
+                is_chain = key == "through"
+                worst_leaves = self._list_worst_leaves(element.key) if is_chain else ()
+                kinds = _WAYPOINT_KINDS if is_chain else _DEVICE_KINDS
+                value = self._rewrite_value(inner[key].value, kinds, worst_leaves)
                 inner[key] = MappingEntry(key, inner[key].key_span, value)
             value_node = MappingNode(inner, body.span) if inner else element.value
             entries[element.key] = MappingEntry(element.key, element.key_span, value_node)
         return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
 
-    def _rewrite_use_cases(self, section: MappingEntry) -> MappingEntry:
-        entries: dict[str, MappingEntry] = {}
-        for case in mapping_values.get_body(section):
-            body = mapping_values.get_body(case)
-            inner, steps = dict(body.entries), body.get("steps")
-            if isinstance(steps, SequenceNode):
-                items = [self._rewrite_step(each) for each in steps.items]
-                inner["steps"] = MappingEntry("steps", inner["steps"].key_span, SequenceNode(items, steps.span))
-            value_node = MappingNode(inner, body.span) if inner else case.value
-            entries[case.key] = MappingEntry(case.key, case.key_span, value_node)
-        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+    def _rewrite_value(self, node: YamlNode, kinds: tuple[str, ...], worst_leaves: tuple[str, ...]) -> YamlNode:
+        items = node.items if isinstance(node, SequenceNode) else [node]
+        rewritten = [new for item in items for new in self._rewrite_item(item, kinds, worst_leaves)]
+        is_one = len(rewritten) == 1 and not isinstance(node, SequenceNode)
+        return rewritten[0] if is_one else SequenceNode(rewritten, node.span)
 
-    def _rewrite_step(self, step: YamlNode) -> YamlNode:
-        if not isinstance(step, MappingNode):
-            return step
-        inner = dict(step.entries)
-        for key in ("from", "to"):
-            if key in inner:
-                value = self._rewrite_value(inner[key].value, (), is_list=False)
-                inner[key] = MappingEntry(key, inner[key].key_span, value)
-        return MappingNode(inner, step.span)
-
-    def _rewrite_value(self, node: YamlNode, worst_leaves: tuple[str, ...], *, is_list: bool) -> YamlNode:
-        if isinstance(node, SequenceNode):
-            items = [new for item in node.items for new in self._rewrite_item(item, worst_leaves)]
-            return SequenceNode(items, node.span)
-        rewritten = list(self._rewrite_item(node, worst_leaves))
-        if len(rewritten) == 1 or not is_list:
-            return rewritten[0]
-        return SequenceNode(rewritten, node.span)
-
-    def _rewrite_item(self, item: YamlNode, worst_leaves: tuple[str, ...]) -> Iterator[YamlNode]:
+    def _rewrite_item(
+        self, item: YamlNode, kinds: tuple[str, ...], worst_leaves: tuple[str, ...]
+    ) -> Iterator[YamlNode]:
         """Yield what stands in the place of a reference: the leaves of a composed component that it is about."""
         if not isinstance(item, ScalarNode) or item.value is None:
             yield item
             return
-        target = self.linked.resolver.names.resolve_path(item.text, _KINDS).unique_element
+        if kinds == _DEVICE_KINDS and item.text in self.architecture.hosts:
+            yield item
+            return
+        target = self.linked.resolver.names.resolve_path(item.text, kinds).unique_element
         texts = list(self._name_target(target, worst_leaves)) if target else []
         if not texts or texts == [target.id if target else ""]:
             yield item
@@ -181,7 +180,7 @@ class FlatReferences:
         chain = self.architecture.chains.get(chain_id)
         if chain is None or not any(each.id in self.linked.outline.shells for each in chain.through):
             return ()
-        analysis = analyse_timing(self.architecture, AnalysisMemory())
+        analysis = self._analysis
         if analysis is None:
             return ()
         leaves: list[str] = []
@@ -194,12 +193,16 @@ class FlatReferences:
             )
         return tuple(dict.fromkeys(leaves))
 
+    @cached_property
+    def _analysis(self) -> Analysis | None:
+        return analyse_timing(self.architecture, AnalysisMemory())
+
     def _rename_word(self, word: str) -> list[str] | None:
         """Return the paths that stand in the place of one in a selector; None where it stays."""
         if "*" in word and ":" not in word:
             return [self.flat_ids[each] for each in list_selected(self.architecture, word) if each in self.flat_ids]
-        target = None if ":" in word else self.linked.resolver.names.resolve_path(word, _KINDS).unique_element
-        if target is None or target.kind == "node":
+        target = None if ":" in word else self.linked.resolver.names.resolve_path(word, _SELECTED_KINDS).unique_element
+        if target is None or target.kind == "group":
             return None
         texts = self._name_all(target)
         return None if texts == [target.id] else texts

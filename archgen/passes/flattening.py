@@ -121,6 +121,8 @@ class _Flattener:
         if "parameters" in entries and isinstance(entries["parameters"].value, MappingNode):
             filled = fill_in_parameters(entries["parameters"].value, self._parameters.find_parameters(component_id))
             entries["parameters"] = MappingEntry("parameters", entries["parameters"].key_span, filled)
+        if "frames" in entries:
+            entries["frames"] = self._references.frames.rewrite_own(entries["frames"], component_id)
         if is_deep:
             self._inherit(component_id, entries)
         is_renamed = self._flat_ids[component_id] != component_id

@@ -43,7 +43,15 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
     """Return the files of a text backend. Raise OutputError where its templates fail."""
     from archgen.emit import text
 
-    context = GenerationContext(inputs.checked_project.architecture, options=backend.options, backend=backend.id)
+    selection = inputs.options.selection
+    context = GenerationContext(
+        inputs.checked_project.architecture,
+        selection.components if selection else None,
+        selection.nodes if selection else None,
+        options=backend.options,
+        backend=backend.id,
+        level=inputs.options.level or "implementation",
+    )
     views, findings = make_backend_views(inputs, backend, context)
     for finding in findings:
         inputs.options.warn(f"{finding.span}: {finding.message}")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.compare import ArchitectureVersion, Comparison, compare_versions
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.rule_options import format_percentage
+from archgen.frozen import dataclass, replace
 from archgen.link.type_patterns import link_type_patterns
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from archgen.emit.picture import Picture
+from archgen.frozen import dataclass
 from archgen.products import report_cache
 from archgen.products.output_options import DrawingProgress, OutputOptions
 from archgen.views.chart_shapes import Drawing

@@ -5,10 +5,10 @@ from __future__ import annotations
 import fnmatch
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.emit import file_tree
+from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
 from archgen.products.leaving_links import refuse_leaving_links

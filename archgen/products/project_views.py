@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
 from itertools import combinations
 
 from archgen import git
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.findings import rule_pages
+from archgen.frozen import dataclass, replace
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.git.tag_list import list_tags_below
 from archgen.history import count_history

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Collection
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, list_files_below
+from archgen.frozen import dataclass
 from archgen.git.object_reader import LINK_MODE, GitObjects, TreeEntry
 from archgen.pipeline import check_at_revision
 from archgen.project import NotAtRevisionError

@@ -149,6 +149,7 @@ def _render_files(
         host,
         backend.options,
         backend.id,
+        options.level or "implementation",
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.shipped_library import SHIPPED_PATH, choose_distro, list_shipping_distros, read_shipped_document
 from archgen.project.source_reading import ReadingState, read_library_slices

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import posixpath
-from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.frozen import dataclass
 from archgen.git import (
     GitObjects,
     NoRepositoryError,

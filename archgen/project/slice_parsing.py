@@ -6,10 +6,10 @@ import re
 from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, replace
 from archgen.schema import normalise_document, suggest_ids, validate_document
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlDocument, YamlNode

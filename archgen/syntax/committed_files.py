@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.frozen import dataclass
 from archgen.git.object_reader import LINK_MODE, SUBMODULE_MODE, GitObjects, TreeEntry
 from archgen.syntax.project_files import (
     MAX_BYTES,

@@ -8,10 +8,10 @@ import posixpath
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from archgen.frozen import dataclass
 from archgen.syntax.project_files import (
     MAX_BYTES,
     NO_SUCH_FOLDER,

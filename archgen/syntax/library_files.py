@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.frozen import dataclass
 from archgen.syntax.project_files import FileRefusal, ProjectFiles
 
 

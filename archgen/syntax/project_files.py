@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
 
 MAX_BYTES = 16 * 1024 * 1024
 """The largest file that is read. A project of 10,000 components in one file has about 6 MB."""

@@ -110,3 +110,13 @@ def test_odd_numbers_are_judged(number: float, faults: int) -> None:
     document, _ = parse_yaml("schema", "{minimum: 0, maximum: 5, enum: [a]}")
     assert document is not None
     assert [fault.path for fault in list_hint_faults(document.root, number)] == [()] * faults
+
+
+@pytest.mark.parametrize(
+    ("limits", "faults"),
+    [("minimum: 1e3", 1), ("maximum: .5", 1), ("minimum: .nan", 0), ("minimum: -.inf", 0), ("minimum: true", 0)],
+)
+def test_limits_count_however_they_are_written(limits: str, faults: int) -> None:
+    document, _ = parse_yaml("schema", limits)
+    assert document is not None
+    assert len(list(list_hint_faults(document.root, 7))) == faults

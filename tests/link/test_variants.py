@@ -297,6 +297,27 @@ nodes:
     assert packed["nodes"]["last"].get("start") is None
 
 
+def test_what_waits_for_something_in_its_own_type_waits_for_no_other(tmp_path: Path) -> None:
+    robot = """\
+archgen: 1
+component_types:
+  arm:
+    components:
+      motor: {outputs: {angle: T}, node: {package: p, executable: m}}
+      watch: {inputs: {angle: motor.angle}, node: {package: p, executable: w, start: motor}}
+groups: {g: {components: {left: {is: arm}, right: {is: arm}, m: {title: M, tags: [gone]}, use: {title: U, node: {package: p, executable: u, start: manager}}}}}
+nodes: {manager: {implements: m, package: p, executable: m}}
+types: {T: std_msgs/msg/String}
+"""
+    checked = check(tmp_path, "  v: {without: 'g.left.motor tag:gone'}\n", robot)
+    assert [str(each) for each in checked.findings if each.severity == "error"] == []
+    starts = {
+        name: node.start and [each.id for each in node.start.after]
+        for name, node in checked.variants["v"].architecture.nodes.items()
+    }
+    assert starts == {"left_watch": None, "right_watch": ["g.right.motor"], "motor": None, "use": None}
+
+
 @pytest.mark.parametrize(
     ("variants", "words"),
     [

@@ -6,7 +6,11 @@ from pathlib import Path
 
 import yaml
 
+from archgen.passes.flat_frames import FlatFrames
+from archgen.passes.flat_steps import FlatSteps
+from archgen.passes.linked_tree import LinkedTree
 from archgen.pipeline import CheckedProject, transform_project
+from archgen.syntax.yaml_tree import node_to_data
 from tests.passes.same_meaning import check_packed, pack, write_project
 
 STARTED = """\
@@ -91,3 +95,102 @@ def test_what_is_selected_by_what_is_around_it_stays_selected(tmp_path: Path) ->
     assert data["views"]["x"] == {"show": "s..g.a -tag:moving"}
     assert data["views"]["y"] == {"show": "g.s g.a -g.a+1"}
     assert "wrong-selector" not in {each.rule for each in transformed.findings}
+
+
+BOX = """\
+groups:
+  g:
+    components:
+      s: {inputs: {r: {from: box.out}}, outputs: {p: Pose}}
+      box:
+        inputs: {q: {from: s.p}}
+        outputs: {out: {from: last.z}}
+        components:
+          first: {inputs: {q: self.q}, outputs: {z: Pose}}
+          last: {inputs: {q: first.z}, outputs: {z: Pose}}
+types: {Pose: geometry_msgs/msg/Pose}
+"""
+
+
+def test_steps_run_between_the_leaves_that_are_connected(tmp_path: Path) -> None:
+    checked = write_project(
+        tmp_path,
+        BOX + "nodes: {box: {implements: box}}\n"
+        "use_cases:\n  u:\n    actors: {s: Somebody}\n    steps:\n      - {from: g.s, to: box, say: a}\n"
+        "      - {from: box, to: g.s, say: b}\n      - {from: box.out, to: g.s, say: c}\n      - {from: s, to: box}\n",
+    )
+    transformed = transform_project(checked, ["flatten"])
+    assert yaml.safe_load(pack(transformed))["use_cases"]["u"]["steps"] == [
+        {"from": "g.s", "to": "g.first", "say": "a"},
+        {"from": "g.last", "to": "g.s", "say": "b"},
+        {"from": "g.last.z", "to": "g.s", "say": "c"},
+        {"from": "s", "to": "g.first"},
+    ]
+    found = [(each.rule, str(each.span)) for each in checked.findings if "step" in each.rule]
+    assert [(each.rule, str(each.span)) for each in transformed.findings if "step" in each.rule] == found
+
+
+def test_a_node_of_the_name_of_a_composed_component_hides_it_in_no_selector_and_no_link(tmp_path: Path) -> None:
+    checked = write_project(
+        tmp_path,
+        BOX.replace("last: {", "pc: {").replace("last.z", "pc.z")
+        + "nodes: {box: {implements: box, host: pc}}\nhosts: {pc: {}, other: {}}\nlinks: {l: {connects: [pc, other, box]}}\n"
+        "views: {v: {show: box+1 pc}}\npolicies: {p: {forbid: {from: s, to: box}}}\n",
+    )
+    transformed = transform_project(checked, ["flatten"])
+    data = yaml.safe_load(pack(transformed))
+    assert data["views"]["v"] == {"show": "g.first+1 g.pc+1 g.pc"}
+    assert data["policies"]["p"]["forbid"] == {"from": "s", "to": "g.first g.pc"}
+    assert data["links"]["l"]["connects"] == ["pc", "other", "g.first"]
+
+
+def test_frames_of_composed_components_become_the_projects(tmp_path: Path) -> None:
+    checked = write_project(
+        tmp_path,
+        """\
+component_types:
+  arm:
+    parameters: {prefix: l}
+    frames: {"$(self.prefix)_base": map, "$(self.prefix)_tool": {parent: "$(self.prefix)_base", by: motor, rate: 10 Hz}}
+    components:
+      motor: {outputs: {z: Pose}, frames: {"$(self.name)_axis": map}, parameters: {name: {from: self.prefix}}}
+      watch: {inputs: {z: motor.z}, frames: {"$(self.name)_seen": {parent: map, by: motor}}, parameters: {name: {from: self.prefix}}}
+groups: {g: {components: {left: {is: arm}, right: {is: arm, parameters: {prefix: r}}}}}
+types: {Pose: geometry_msgs/msg/Pose}
+frames: {map: {}}
+nodes: {n: {implements: left, package: p, executable: e}}
+""",
+    )
+    assert [each for each in checked.findings if str(each.severity) == "error"] == []
+    transformed = transform_project(checked, ["flatten"])
+    frames, flat_frames = checked.architecture.frames, transformed.architecture.frames
+    assert {name: each.parent for name, each in flat_frames.items()} == {
+        name: each.parent for name, each in frames.items()
+    }
+    assert {name: each.rate for name, each in flat_frames.items()} == {name: each.rate for name, each in frames.items()}
+    assert {name: each.by for name, each in flat_frames.items()} == {
+        "map": None,
+        "l_base": "n",  # the only process of the arm
+        "l_tool": "g.left_motor",
+        "r_base": "g.right_motor",
+        "r_tool": "g.right_motor",
+        "l_axis": "g.left_motor",
+        "l_seen": "g.left_motor",
+        "r_axis": "g.right_motor",
+        "r_seen": "g.right_motor",
+    }
+    check_packed(transformed, tmp_path / "packed")
+
+
+def test_what_no_component_wrote_stays_as_it_is(tmp_path: Path) -> None:
+    checked = write_project(tmp_path, BOX + "use_cases: {u: {title: U}, v: {steps: [{from: nobody, to: box}]}}\n")
+    architecture = checked.architecture
+    outline = LinkedTree(checked.loaded_project, checked.merged_table, architecture.interfaces).outline
+    flat_ids = {each: f"g.{each.rpartition('.')[2]}" for each in architecture.components}
+    assert FlatFrames(architecture, outline, flat_ids).write_section(None) is None
+    section = checked.merged_table.entries["use_cases"]
+    rewritten = FlatSteps(architecture, flat_ids).rewrite_use_cases(section)
+    assert node_to_data(rewritten.value) == {
+        "u": {"title": "U"},
+        "v": {"steps": [{"from": "nobody", "to": "g.first"}]},
+    }

@@ -92,7 +92,7 @@ def test_after_each_change_a_site_is_as_if_written_for_the_first_time(
         assert [name for name, data in again.items() if data != fresh[name]] == [], change
 
     (folder / "archgen.yaml").write_text(text)
-    before = write_site("site", "cache")
+    before = first = write_site("site", "cache")
     for number, (change, (old, new)) in enumerate(CHANGES.items()):
         assert text.count(old) == 1, change
         text = text.replace(old, new)
@@ -104,3 +104,6 @@ def test_after_each_change_a_site_is_as_if_written_for_the_first_time(
     (folder / "intro.md").write_text("# Before\n\nWhat it *was*.\n")
     compare_with_fresh("the text of a chapter", len(CHANGES))
     assert contents(tmp_path / "site") != before
+    (folder / "archgen.yaml").write_text(PROJECT)
+    (folder / "intro.md").write_text("# Before\n\nWhat it is.\n")
+    assert write_site("site", "cache") == first, "all changes undone"

@@ -8,7 +8,6 @@ from dataclasses import replace
 from archgen.emit.graphviz import box_styles, palette
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.views.graph_shapes import Box
-from archgen.views.inline_text import count_noun
 
 _BAR_WIDTH = 3.5
 _BADGE_DIAMETER = 10.0
@@ -55,7 +54,7 @@ def _bar_attributes(box: Box, height: float) -> dict[str, str]:
 def _badge_attributes(box: Box, width: float) -> dict[str, str]:
     letter, colour = _BADGE_LETTERS[box.badge or "note"]
     text = f"{letter} {box.badge_count}" if box.badge_count else letter
-    subject = f"{count_noun(box.badge_count, 'finding')} inside" if box.badge_count else "has findings"
+    subject = f"{box.badge_count} finding{'s' * (box.badge_count > 1)} inside" if box.badge_count else "has findings"
     return {
         **_fixed_shape(width, _BADGE_DIAMETER),
         **({"shape": '"box"', "style": '"filled,rounded"'} if box.badge_count else {"shape": '"circle"'}),

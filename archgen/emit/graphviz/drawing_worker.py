@@ -11,11 +11,11 @@ import os
 import pickle
 import struct
 import sys
-from dataclasses import dataclass
 from typing import IO, Any
 
 from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.picture import Picture
+from archgen.frozen import dataclass
 from archgen.views.chart_shapes import Drawing
 
 _LENGTH_PREFIX = struct.Struct("<Q")

@@ -5,7 +5,6 @@ elsewhere.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,6 +29,7 @@ from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
 from archgen.emit.site.page_policy import LIVE_PAGE_POLICY, PAGE_POLICY
 from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
+from archgen.frozen import dataclass, replace
 from archgen.views.explorer.map_shapes import ExplorerMap
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, Paragraph

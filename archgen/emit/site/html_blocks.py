@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures, status_marks, waterfall_html
@@ -21,6 +21,7 @@ from archgen.emit.site.html_text import (
     write_signs,
 )
 from archgen.emit.site.page_links import CurrentPage
+from archgen.frozen import dataclass
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,

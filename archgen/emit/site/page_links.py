@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
 from archgen.emit.term_mentions import TERM_ANCHOR
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Block, Figure, Page, Section, Table
 
 RESERVED_IDS = ("content", "navigation", "waterfall-hatch")

@@ -126,10 +126,15 @@ def write_shell_word(value: object) -> str:
     return "'" + text.replace("'", "'\"'\"'") + "'"
 
 
+def write_one_line(value: object) -> str:
+    """Return text on one line, without controls and marks of direction: what is left to escape depends on the language."""
+    return " ".join(_LINE_BREAKS.sub(" ", _print_text(value)).split())
+
+
 def write_line_comment(value: object) -> str:
     """Return text for a comment of one line in any language: it ends no comment, and continues on no next line."""
     # A backslash joins lines in C++ and starts the unicode escapes of Java, wherever they stand.
-    text = " ".join(_LINE_BREAKS.sub(" ", _print_text(value)).split()).replace("\\", "/")
+    text = write_one_line(value).replace("\\", "/")
     for _ in range(2):
         for mark, replacement in _COMMENT_ENDS:
             text = text.replace(mark, replacement)
@@ -143,6 +148,7 @@ CODE_FILTERS: Mapping[str, Callable[[object], str]] = {
     "java_name": lambda value: make_identifier_in("java", _print_text(value)),
     "java_string": write_java_string,
     "line_comment": write_line_comment,
+    "one_line": write_one_line,
     "python_name": lambda value: make_identifier_in("python", _print_text(value)),
     "python_string": write_python_string,
     "python_value": write_python_value,

@@ -6,7 +6,7 @@ The names in `TEMPLATE_FILTERS` are part of docs/backends.md.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -102,9 +102,17 @@ def make_escape_filter(table: Mapping[str, str]) -> Callable[[object], str]:
     return lambda text: str(text).translate(replacements)
 
 
+def _write_csv_row(cells: Iterable[object]) -> str:
+    """Return the cells of a row of CSV, without the end of its line."""
+    from archgen.emit.csv_rows import write_csv_rows
+
+    return write_csv_rows([["" if cell is None else str(cell) for cell in cells]]).rstrip("\r\n")
+
+
 TEMPLATE_FILTERS: dict[str, Any] = {
     **CODE_FILTERS,
     "code": make_code_span,
+    "csv_row": _write_csv_row,
     "commonmark": safe_commonmark,
     "identifier": make_identifier,
     "markdown": escape_markdown,

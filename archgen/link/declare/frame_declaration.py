@@ -8,6 +8,7 @@ from typing import NamedTuple
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.handed_parameters import HandedParameters
+from archgen.link.inner_names import find_inner_component
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.coordinate_frames import Frame
 from archgen.model.path_resolver import ElementRef
@@ -91,6 +92,9 @@ def _resolve_writer(
     # The own id is refused to other references, since it would be a loop there.
     if component_id and component_id.rpartition(".")[2] == reference.text:
         return ElementRef("component", component_id)
+    inner_id = find_inner_component(reference.text, resolver, component_id) if component_id else None
+    if inner_id is not None:
+        return ElementRef("component", inner_id)
     # A node often has the name of the component that it implements: both would be meant by one word.
     has_component = resolver.names.resolve_path(reference.text, ("component",), component_id=component_id).count > 0
     kinds = ("component",) if has_component else ("component", "node")

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field
 from typing import NamedTuple, TypeVar, get_args
 
 from archgen.compose.project_expansion import ComponentShell
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters

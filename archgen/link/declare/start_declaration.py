@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import mapping_values, sanity_checks
+from archgen.link.inner_names import find_inner_component
 from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
@@ -75,9 +76,9 @@ def _resolve_target(
     reference: ScalarNode, resolver: ReferenceResolver, element_id: str, component_id: str | None = None
 ) -> StartTarget | None:
     """Return the component that a reference names; where no component is called so, the node."""
-    beside_id = _find_beside(reference.text, resolver, component_id) if component_id else None
-    if beside_id is not None:
-        return StartTarget("component", beside_id, reference.span)
+    inner_id = find_inner_component(reference.text, resolver, component_id) if component_id else None
+    if inner_id is not None:
+        return StartTarget("component", inner_id, reference.span)
     # A node often has the name of the component that it implements: both would be meant by one word.
     has_component = resolver.names.resolve_path(reference.text, ("component",), component_id=component_id).count > 0
     kinds = ("component",) if has_component else ("component", "node")
@@ -85,17 +86,6 @@ def _resolve_target(
     if target is None:
         return None
     return StartTarget("node" if target.kind == "node" else "component", target.id, reference.span)
-
-
-def _find_beside(text: str, resolver: ReferenceResolver, component_id: str) -> str | None:
-    """Return the component that a text names in what is composed around its writer, from the inside to the outside."""
-    around = component_id.rpartition(".")[0]
-    # What has no dot is a group: in it names are looked up as everywhere.
-    while "." in around:
-        if f"{around}.{text}" != component_id and f"{around}.{text}" in resolver.spans["component"]:
-            return f"{around}.{text}"
-        around = around.rpartition(".")[0]
-    return None
 
 
 def resolve_start(body: MappingNode, resolver: ReferenceResolver, component_id: str) -> MappingNode:

@@ -5,11 +5,12 @@ What a component type brings along cannot be taken out of an instance by itself:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 
 from archgen.compose import ExpandedProject
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline, build_outline
+from archgen.link.inner_names import find_inner_component
 from archgen.link.project_linking import make_resolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SOURCE_KINDS, SourceReferences
@@ -35,6 +36,7 @@ class ElementRemover:
         self._resolver: ReferenceResolver = make_resolver(expansion.root, self._outline, [])
         self._sources = SourceReferences(self._outline, self._resolver) if self._outline.expansion else None
         self._changed_shells = self._list_changed_shells()
+        self._gone_nodes: frozenset[str] = frozenset()
 
     def _list_changed_shells(self) -> frozenset[str]:
         """Return the composed components that stay, and in which something goes."""
@@ -49,9 +51,10 @@ class ElementRemover:
     def remove_from(self, root: MappingNode) -> MappingNode:
         """Return the merged project, as it was before types were written out, without what goes."""
         entries = dict(root.entries)
+        # First: what components say of the start-up names nodes, too.
+        nodes = self._prune_nodes(mapping_values.get_mapping(root, "nodes"))
         if "groups" in entries:
             entries["groups"] = self._prune_groups(entries["groups"])
-        nodes = self._prune_nodes(mapping_values.get_mapping(root, "nodes"))
         containers, hosts = find_idle_places(root, nodes, self._outline, self.removed.components)
         if "nodes" in entries:
             entries["nodes"] = _with_value(entries["nodes"], nodes)
@@ -105,7 +108,7 @@ class ElementRemover:
             inner = self._prune_parts(mapping_values.get_mapping(body, "components"), component_id)
             entries["components"] = _with_value(entries["components"], inner)
         if "node" in entries:
-            entries["node"] = self._prune_start(entries["node"], ())
+            entries["node"] = self._prune_start(entries["node"], component_id)
         is_same = len(entries) == len(body.entries) and all(entries[key] is body.entries[key] for key in entries)
         if is_same and body is part.value:
             return part
@@ -188,10 +191,9 @@ class ElementRemover:
             if len(gone) < len(scalars) or (not scalars and node.key not in self.removed.nodes):
                 gone_ids = [target.id for scalar in gone if (target := targets[scalar.text])]
                 kept[node.key] = self._prune_node(node, body, gone, gone_ids) if gone else node
-        gone_nodes = nodes.entries.keys() - kept.keys()
-        return MappingNode(
-            {key: self._prune_start(entry, gone_nodes) for key, entry in kept.items()}, nodes.span, nodes.declares
-        )
+        self._gone_nodes = frozenset(nodes.entries.keys() - kept.keys())
+        pruned = {key: self._prune_start(entry, None) for key, entry in kept.items()}
+        return MappingNode(pruned, nodes.span, nodes.declares)
 
     def _prune_node(
         self, node: MappingEntry, body: MappingNode, gone: list[ScalarNode], gone_ids: list[str]
@@ -217,14 +219,14 @@ class ElementRemover:
         yield from self._outline.inputs.get(component_id, ())
         yield from self._outline.outputs.get(component_id, ())
 
-    def _prune_start(self, holder: MappingEntry, gone_nodes: Collection[str]) -> MappingEntry:
-        """Return what has a `start` so that it waits for nothing, and is activated by nothing, that is gone."""
+    def _prune_start(self, holder: MappingEntry, component_id: str | None) -> MappingEntry:
+        """Return a node, of a component or by itself, that waits for nothing, and is activated by nothing, that is gone."""
         body = mapping_values.get_body(holder)
         start = mapping_values.get_mapping(body, "start")
         pruned = {
             entry.key: kept
             for entry in start
-            if (kept := self._prune_targets(entry, gone_nodes) if entry.key in _START_REFERENCES else entry)
+            if (kept := self._prune_targets(entry, component_id) if entry.key in _START_REFERENCES else entry)
         }
         if len(pruned) == len(start.entries) and all(pruned[entry.key] is entry for entry in start):
             return holder
@@ -234,19 +236,22 @@ class ElementRemover:
             del entries["start"]
         return _with_value(holder, MappingNode(entries, body.span, body.declares))
 
-    def _prune_targets(self, entry: MappingEntry, gone_nodes: Collection[str]) -> MappingEntry | None:
+    def _prune_targets(self, entry: MappingEntry, component_id: str | None) -> MappingEntry | None:
         """Return a key that names nodes and components without what is gone; None where nothing else is named."""
         items = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
         kept = [
-            item for item in items if not (isinstance(item, ScalarNode) and self._is_gone_target(item.text, gone_nodes))
+            item
+            for item in items
+            if not (isinstance(item, ScalarNode) and self._is_gone_target(item.text, component_id))
         ]
         if len(kept) == len(items):
             return entry
         return _with_value(entry, SequenceNode(kept, entry.value.span)) if kept else None
 
-    def _is_gone_target(self, text: str, gone_nodes: Collection[str]) -> bool:
-        if text in gone_nodes:
-            return True
+    def _is_gone_target(self, text: str, component_id: str | None) -> bool:
+        inner_id = find_inner_component(text, self._resolver, component_id) if component_id else None
+        if inner_id is not None or text in self._gone_nodes:
+            return inner_id is None or inner_id in self.removed.components
         return self.removed.may_be_named(text) and self._is_removed(
             self._resolver.names.resolve_path(text, ("node", "component")).unique_element
         )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from archgen.compose import expand_project
 from archgen.compose.type_table import MissingTypeDescriber
 from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import dataclass
 from archgen.link import mapping_values
 from archgen.link.missing_keys import find_incomplete
 from archgen.link.variants.change_targets import ChangeTargets, list_declared_anew

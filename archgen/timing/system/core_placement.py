@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 
+from archgen.frozen import dataclass, replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.thread_pools import (
     ThreadPool,

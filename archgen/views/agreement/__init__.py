@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass, replace
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder

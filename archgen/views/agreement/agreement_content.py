@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from archgen.frozen import dataclass
 from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.signature_record import SignatureRecord

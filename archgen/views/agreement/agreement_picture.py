@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from typing import Literal
 
+from archgen.frozen import dataclass, replace
 from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
 from archgen.views.agreement.interface_terms import interface_title, partner_titles
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from archgen.frozen import dataclass
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from archgen.compare.interface_figures import find_pace
+from archgen.frozen import dataclass, replace
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers

@@ -5,8 +5,8 @@ definitions.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.model.known_interfaces import InterfaceConstant, InterfaceField, Interfaces
 from archgen.views import inline_text
 from archgen.views.shapes import Column, Inlines, Table, Text

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeVar
 
 from archgen.analyses.kept_promises import find_broken_promises
+from archgen.frozen import dataclass, replace
 from archgen.model.component import Output
 from archgen.model.counted_outputs import find_counted_output
 from archgen.model.partner_interfaces import PartnerInterface

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.model.partner_interfaces import PartnerInterface, PartnerPair, components_at_ends, find_all_interfaces
 from archgen.timing.system import activity_builder
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass
 from archgen.timing.analysis import ChainResult
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
 from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength

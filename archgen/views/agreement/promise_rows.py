@@ -6,9 +6,10 @@ Promised is what an owner wrote. Expected is what follows from other figures, an
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.model.node import Qos
 from archgen.model.quantity import Quantity
 from archgen.views import inline_text

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from archgen.frozen import dataclass
 from archgen.views import inline_text
 from archgen.views.agreement.term_changes import InterfaceKey, InterfaceRecord
 from archgen.views.shapes import Column, Inlines, Table, Text

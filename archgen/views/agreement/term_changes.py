@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.plain_terms import PlainTerm

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass, replace
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.owned_edits import name_owner

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from archgen.compare import ChainChange
 from archgen.compare.key_phrases import name_key
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import dataclass
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.figure_wording import format_duration, name_unknown_reason
 

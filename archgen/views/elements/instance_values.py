@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.parameter import format_parameter

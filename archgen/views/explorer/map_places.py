@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.model.flow_graph import FlowGraph, build_node_graph
 from archgen.views.explorer.column_layout import Place, place_in_columns
 from archgen.views.graphs.component_flows import list_flows

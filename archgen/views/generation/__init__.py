@@ -54,12 +54,19 @@ def _make_ros1_programs(context: GenerationContext) -> GeneratedView:
     return node_programs.make_view(context, ros=1)
 
 
+def _make_structure(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import structure_view
+
+    return structure_view.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "components": _make_components,
     "plan": _make_plan,
     "programs": _make_programs,
     "ros1_programs": _make_ros1_programs,
+    "structure": _make_structure,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
 }

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.ros_distro import is_ros_1
+
+if TYPE_CHECKING:
+    from archgen.views.pages.report_outline import DetailLevel
 
 NOT_GENERATED = Rule(
     "not-generated",
@@ -60,6 +64,8 @@ class GenerationContext:
     """What the manifest says under `options`, as texts, with what `--option` says instead."""
     backend: str = ""
     """The id of the backend: elements have hints for it below this name."""
+    level: DetailLevel = "implementation"
+    """Whether the view `structure` shows the ROS side."""
 
     @property
     def is_whole(self) -> bool:

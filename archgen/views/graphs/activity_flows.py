@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.timing.system.timing_system import Activity, Arc
 from archgen.views.graph_shapes import Box
 from archgen.views.graphs.ros_graph import find_home_frame

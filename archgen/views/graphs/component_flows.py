@@ -7,9 +7,9 @@ of its own. A connection to a whole group is one flow for each component of the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
 from archgen.model.port_media import is_physical, label_of_medium, nature_of

@@ -6,9 +6,9 @@ What is outside is said at the ports. Only who is joined past them has a box out
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from typing import Literal
 
+from archgen.frozen import dataclass, replace
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_passed_shell, list_surrounding
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph

@@ -6,8 +6,8 @@ A connection counts once, where it is written: at the port of a closed composed 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.model import component_nesting
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input

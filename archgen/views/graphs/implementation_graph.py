@@ -8,8 +8,8 @@ asterisk stands for them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
+from archgen.frozen import dataclass, replace
 from archgen.model.node import Endpoint, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
 from archgen.views.graph_shapes import Arrow, Box, Graph

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from typing import Literal
 
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.port_media import ROS, label_of_carrier, name_medium, name_on_medium

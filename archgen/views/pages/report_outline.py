@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field
 from typing import Literal
 
+from archgen.frozen import dataclass, replace
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History

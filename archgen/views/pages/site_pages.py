@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
 
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.views import inline_text

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
+from archgen.frozen import dataclass, replace
 from archgen.timing.analysis import ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.figures.timing_values import TimingValue, sum_fractions

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field
 from typing import TYPE_CHECKING
 
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.system.timing_system import Activity
