@@ -9,6 +9,7 @@ import pytest
 from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
 from archgen.views.generation.node_programs import make_view
+from archgen.views.generation.usable_programs import drop_unusable
 
 
 def make(folder: Path, node: str, language: str = "python") -> GeneratedView:
@@ -50,3 +51,12 @@ def test_words_of_the_language_are_what_counts(tmp_path: Path) -> None:
     assert make(tmp_path, "package: namespace").findings == ()
     (finding,) = make(tmp_path, "package: namespace", "cpp").findings
     assert finding.message == "the package `namespace` is left out: its name is a word of C++"
+
+
+def test_each_package_is_told_once(tmp_path: Path) -> None:
+    make(tmp_path, "package: 'no one'")
+    nodes = check_project(tmp_path).architecture.nodes
+    programs = {("no one", "x"): [nodes["a"]], ("no one", "y"): [nodes["b"]], ("fine", "z"): [nodes["b"]]}
+    usable, findings = drop_unusable(programs, "python")
+    assert list(usable) == [("fine", "z")]
+    assert [each.element for each in findings] == ["a"]
