@@ -129,6 +129,16 @@ def test_what_cannot_be_generated_is_told(tmp_path: Path) -> None:
     ]
 
 
+def test_a_message_that_no_class_can_be_is_told(tmp_path: Path) -> None:
+    text = (
+        "groups: {g: {components: {a: {outputs: {x: X, y: Y}}}}}\n"
+        "types: {X: {message: m_msgs/msg/None, status: planned}, Y: std_msgs/msg/String}\n"
+    )
+    programs, left_out = make_programs(tmp_path, text)
+    assert [each["key"] for each in programs["a"]["publishers"]] == ["y"]
+    assert left_out == ["`g.a.x` of the node `a` is left out: no class can be called as its message `m_msgs/msg/None`"]
+
+
 def test_messages_of_one_name_are_told_apart(tmp_path: Path) -> None:
     text = (
         "groups: {g: {components: {a: {outputs: {x: X, y: Y}}}}}\n"

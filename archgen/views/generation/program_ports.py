@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from archgen.bringup.program_names import choose_own_name, find_common_message, group_endpoints
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
+from archgen.model.language_keywords import PYTHON_KEYWORDS
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity
 from archgen.views.generation.generation_context import tell_left_out, write_place
@@ -36,6 +37,9 @@ def record_ports(
         if find_common_message(port_endpoints) is None:
             findings.append(_tell_unknown_message(port_endpoints[0], {each.message for each in port_endpoints}))
             continue
+        if str(port_endpoints[0].message).rpartition("/")[2] in PYTHON_KEYWORDS:
+            findings.append(_tell_bad_message(port_endpoints[0]))
+            continue
         sections[PORT_SECTIONS[use, flow]].append(
             _record_port(architecture, key, port_endpoints, is_shared=len(nodes) > 1)
         )
@@ -57,6 +61,16 @@ def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diag
         endpoint.at,
         element=endpoint.node,
         help_line="map its type to a message below `types`, or give the type `fields`",
+    )
+
+
+def _tell_bad_message(endpoint: Endpoint) -> Diagnostic:
+    return tell_left_out(
+        f"`{endpoint.port or endpoint.name}` of the node `{endpoint.node}` is left out: no class can be called as its "
+        f"message `{endpoint.message}`",
+        endpoint.at,
+        element=endpoint.node,
+        help_line="give its type another name, or another `message`",
     )
 
 
