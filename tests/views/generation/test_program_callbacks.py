@@ -30,6 +30,7 @@ def make_sections() -> dict[str, list[dict[str, object]]]:
     ids=["groups", "reentrant", "none"],
 )
 def test_each_callback_knows_its_group(node: Node, expected: list[dict[str, object]], given: list[str]) -> None:
-    sections, timers = make_sections(), [{"component": "g.map"}]
+    sections = make_sections()
+    timers: list[dict[str, object]] = [{"component": "g.map"}]
     assert add_callback_groups(node, sections, timers) == expected
     assert [each["callback_group"] for each in (*sections["subscriptions"], *timers)] == given
