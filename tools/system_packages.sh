@@ -28,6 +28,9 @@ if [ "$what" = test ]; then
     need_command plantuml plantuml
     need_command shellcheck shellcheck
     need_command systemd-analyze systemd
+    need_command g++ g++
+    need_command uncrustify uncrustify
+    need_command cpplint cpplint
     /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"
     /usr/bin/python3 -c "import genmsg" 2>/dev/null || missing="$missing python3-genmsg"
 fi

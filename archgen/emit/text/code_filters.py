@@ -72,6 +72,23 @@ def write_cpp_string(value: object) -> str:
     return '"' + "".join(_escape_cpp_byte(byte) for byte in _print_text(value).encode("utf-8", "replace")) + '"'
 
 
+def write_cpp_value(value: object) -> str:
+    """Return a value of a parameter as C++ has it: texts, numbers, true and false, and lists of them in braces."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        # There is no literal of the least number: it would be the one above the greatest, with a minus.
+        return str(value) if value > -(2**63) else "std::numeric_limits<std::int64_t>::min()"
+    if isinstance(value, float):
+        if math.isfinite(value):
+            return repr(value)
+        name = "quiet_NaN" if math.isnan(value) else "infinity"
+        return f"{'-' if value < 0 else ''}std::numeric_limits<double>::{name}()"
+    if isinstance(value, list | tuple):
+        return "{" + ", ".join(write_cpp_value(each) for each in value) + "}"
+    return write_cpp_string(value)
+
+
 def _escape_cpp_byte(byte: int) -> str:
     if byte in b'"\\?':
         return "\\" + chr(byte)
@@ -145,6 +162,7 @@ CODE_FILTERS: Mapping[str, Callable[[object], str]] = {
     "camel": lambda value: make_camel_name(_print_text(value)),
     "cpp_name": lambda value: make_identifier_in("cpp", _print_text(value)),
     "cpp_string": write_cpp_string,
+    "cpp_value": write_cpp_value,
     "java_name": lambda value: make_identifier_in("java", _print_text(value)),
     "java_string": write_java_string,
     "line_comment": write_line_comment,

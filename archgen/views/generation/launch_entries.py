@@ -14,6 +14,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name
 from archgen.model.node import Node
 from archgen.views import start_phrases
+from archgen.views.generation.cpp_programs import name_plugin
 from archgen.views.generation.generation_context import write_place
 from archgen.views.generation.launch_parameters import (
     read_simulated_time,
@@ -110,7 +111,8 @@ def _find_program(architecture: Architecture, node: Node, step: StartStep, ros: 
     package, executable, plugin = node.package, node.executable, node.plugin
     if is_generated(node):
         package, executable = name_package(architecture, node), name_program(architecture, node)
-        plugin = plugin or f"{package}{'/' if ros == 1 else '::'}{make_camel_name(executable)}"
+        named = f"{package}/{make_camel_name(executable)}" if ros == 1 else name_plugin(node, package, executable)
+        plugin = plugin or named
     found: dict[str, Any] = {"package": package, "executable": executable, "plugin": plugin, "arguments": []}
     if ros == 1:
         return _find_ros_1_program(node, step, found)

@@ -17,6 +17,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
 from archgen.model.ros_distro import is_ros_1
+from archgen.views.generation.cpp_programs import complete_cpp_program, find_bad_names, list_cpp_libraries
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
@@ -46,10 +47,21 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     findings += unusable
     packages: dict[str, dict[str, object]] = {}
     records: list[dict[str, object]] = []
+    made_nodes: list[Sequence[Node]] = []
     for (package_name, program_name), program_nodes in sorted(programs.items()):
+        if language == "cpp":
+            bad_names = find_bad_names(
+                package_name, program_name, program_nodes, _find_place(context.architecture, program_nodes[0])
+            )
+            findings += bad_names
+            if bad_names:
+                continue
         record, program_findings = _record_program(
             context, (package_name, program_name), program_nodes, endpoints, program_names
         )
+        if language == "cpp":
+            complete_cpp_program(context.architecture, record, program_nodes)
+        made_nodes.append(program_nodes)
         records.append(record)
         findings += program_findings
         findings += find_program_differences(program_name, program_nodes, endpoints)
@@ -70,13 +82,15 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     for package in packages.values():
         used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
         package["dependencies"] = sorted(used)
+        if language == "cpp":
+            package["libraries"] = list_cpp_libraries(package["programs"])  # type: ignore[arg-type]
         package["has_actions"] = any(
             each["action_servers"] or each["action_clients"]
             for each in package["programs"]  # type: ignore[attr-defined]
         )
     names = [
         (str(each["class_name"]), program_nodes[0].id, program_nodes[0].at)
-        for each, (_, program_nodes) in zip(records, sorted(programs.items()), strict=True)
+        for each, program_nodes in zip(records, made_nodes, strict=True)
     ]
     for package_name in packages:
         in_package = [name for name, each in zip(names, records, strict=True) if each["package"] == package_name]

@@ -14,6 +14,8 @@ from archgen.model.ros_distro import is_ros_1
 from archgen.views.generation.generation_context import tell_left_out, write_place
 
 _ROS_TYPES: Mapping[str, str] = {"boolean": "bool", "integer": "integer", "float": "double", "string": "string"}
+_INTEGERS = range(-(2**63), 2**63)
+"""What a whole number may be in ROS."""
 
 
 def record_parameters(
@@ -22,6 +24,7 @@ def record_parameters(
     """Return the parameters of the nodes of one program, and what is left out.
 
     `default` is the value where all nodes have the same; None where each node is given its own, or nobody gives one.
+    `is_given` says whether all nodes are given one, and `first_value` which the first is.
     """
     ros_1 = is_ros_1(architecture.distro)
     values: dict[str, list[EffectiveParameter]] = {}
@@ -36,7 +39,7 @@ def record_parameters(
         if ros_1 and any(_is_too_big(each.value) for each in parameters):
             ros_type = None
         first = parameters[0]
-        if ros_type is None:
+        if ros_type is None or not all(_fits_type(each.value, ros_type) for each in parameters if each.is_known):
             findings.append(
                 tell_left_out(
                     f"the parameter `{name}` of `{nodes[0].id}` is left out: no parameter of ROS can be what it is",
@@ -56,7 +59,9 @@ def list_node_values(architecture: Architecture, node: Node) -> list[dict[str, o
     ros_1 = is_ros_1(architecture.distro)
     for name, parameter in find_effective_parameters(architecture, node).items():
         ros_type = _find_ros_type((parameter,))
-        if parameter.is_known and ros_type is not None and not (ros_1 and _is_too_big(parameter.value)):
+        if ros_type is None or not parameter.is_known or (ros_1 and _is_too_big(parameter.value)):
+            continue
+        if _fits_type(parameter.value, ros_type):
             listed.append({"name": name, "value": _convert_value(parameter.value, ros_type)})
     return listed
 
@@ -76,10 +81,13 @@ def _record_parameter(
     is_same = is_common and all(each == defaults[0] for each in defaults)
     limits = [_convert_value(each, ros_type) for each in declaration.range or ()]
     has_limits = ros_type in {"integer", "double"} and len(limits) == 2  # noqa: PLR2004 - the lowest and the highest
+    has_limits = has_limits and all(_fits_type(each, ros_type) for each in limits)
     return {
         "name": name,
         "type": ros_type,
         "default": defaults[0] if is_same else None,
+        "first_value": defaults[0],
+        "is_given": is_common and None not in defaults,
         "unit": declaration.unit or "",
         "description": declaration.description or "",
         "lowest": limits[0] if has_limits else None,
@@ -124,7 +132,16 @@ def _infer_ros_type(value: object) -> str:
         return f"{item_type}_array" if len(item_types) == 1 and item_type in _ROS_TYPES.values() else ""
     # A boolean is an integer in Python, but not in ROS.
     python_types = {bool: "bool", int: "integer", float: "double", str: "string"}
+    if isinstance(value, int) and value not in _INTEGERS:
+        return ""
     return python_types.get(type(value), "")
+
+
+def _fits_type(value: object, ros_type: str) -> bool:
+    """Whether a value can be given to a parameter of a type; an empty list fits all lists."""
+    if isinstance(value, list | tuple) and not value:
+        return ros_type.endswith("_array")
+    return _infer_ros_type(_convert_value(value, ros_type)) == ros_type
 
 
 def _convert_value(value: object, ros_type: str) -> object:

@@ -1,0 +1,131 @@
+"""What a program in C++ has besides: its namespace and class, headers of messages, and callback groups."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.code_names import make_camel_name, make_identifier_in, make_snake_name
+from archgen.model.node import Node
+from archgen.views.generation.cpp_parameters import choose_library_parameters
+from archgen.views.generation.generation_context import tell_left_out
+from archgen.views.generation.program_ports import PORT_SECTIONS
+
+_PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_-]*\Z", re.ASCII)
+_PROGRAM_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*\Z", re.ASCII)
+_CLASS_NAME = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?:::([A-Za-z_][A-Za-z0-9_]*))+\Z", re.ASCII)
+_REENTRANT_GROUP = "reentrant"
+
+
+def name_plugin(node: Node, package_name: str, program_name: str) -> str:
+    """Return the class of a generated node, with its namespace: what `plugin` says, else one after package and program."""
+    return node.plugin or f"{make_identifier_in('cpp', package_name)}::{make_camel_name(program_name)}"
+
+
+def find_bad_names(package_name: str, program_name: str, nodes: Sequence[Node], place: Span) -> tuple[Diagnostic, ...]:
+    """Return what is wrong with the names of a program: with such names nothing can be built."""
+    shown = f"the program of `{nodes[0].id}` is left out:"
+    if not _PACKAGE_NAME.match(package_name):
+        message, help_line = (
+            f"{shown} no package of C++ can be called `{package_name}`",
+            "a package has small letters, digits, `_` and `-`, and begins with a letter",
+        )
+    elif not _PROGRAM_NAME.match(program_name):
+        message, help_line = (
+            f"{shown} no program can be called `{program_name}`",
+            "an `executable` has letters, digits, `_`, `-`, `.` and `+`",
+        )
+    else:
+        plugins = {name_plugin(each, package_name, program_name): each.id for each in nodes}
+        plugin = min(plugins)
+        if len(plugins) > 1:
+            shown_plugins = " and ".join(f"`{each}`" for each in sorted(plugins))
+            message, help_line = (
+                f"{shown} its nodes have different classes, {shown_plugins}",
+                "give the nodes of one class an `executable` of their own",
+            )
+        elif not _CLASS_NAME.match(plugin) or any(
+            make_identifier_in("cpp", part) != part for part in plugin.split("::")
+        ):
+            message, help_line = (
+                f"{shown} no class of C++ can be called `{plugin}`",
+                "a `plugin` is a namespace and a class: `robot_safety::ObstacleStop`",
+            )
+        else:
+            return ()
+    return (tell_left_out(message, place, element=nodes[0].id, help_line=help_line),)
+
+
+def complete_cpp_program(architecture: Architecture, record: dict[str, Any], nodes: Sequence[Node]) -> None:
+    """Write into the record of a program what only C++ asks for."""
+    node = nodes[0]
+    namespace, _, class_name = name_plugin(node, record["package"], record["executable"]).rpartition("::")
+    groups = [_REENTRANT_GROUP] if record["reentrant"] else list(node.callback_groups)
+    keys = {name: make_snake_name(name) for name in groups}
+    for timer in record["timers"]:
+        timer["callback_group"] = _find_group(node, timer["component"], keys)
+    headers = set[str]()
+    for section in PORT_SECTIONS.values():
+        for port in record[section]:
+            component = port["port"].rpartition(".")[0]
+            port |= {
+                # Two underscores in a row are the compiler's own.
+                "key": port["key"].rstrip("_"),
+                "cpp_class": port["message"].replace("/", "::"),
+                "cpp_header": name_message_header(port["message"]),
+                "callback_group": _find_group(node, component, keys),
+            }
+            headers.add(port["cpp_header"])
+    record |= {
+        "cpp_namespace": namespace,
+        "cpp_class": class_name,
+        "cpp_guard": _name_guard(record["package"], record["module"]),
+        "cpp_headers": sorted(headers),
+        "callback_groups": list(_list_groups(keys.values(), is_reentrant=bool(record["reentrant"]))),
+        "distro": architecture.distro or "",
+        **choose_library_parameters(record["parameters"]),
+    }
+
+
+def list_cpp_libraries(programs: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return the packages of ROS that the programs of a package need, beside those of their messages."""
+    found = {"rclcpp"}
+    for program in programs:
+        found |= {
+            name
+            for name, is_needed in (
+                ("generate_parameter_library", program["library_rows"]),
+                ("rclcpp_action", program["action_servers"] or program["action_clients"]),
+                ("rclcpp_components", program["is_composable"]),
+                ("rclcpp_lifecycle", program["is_lifecycle"]),
+            )
+            if is_needed
+        }
+    return sorted(found)
+
+
+def name_message_header(message: str) -> str:
+    """Return the header of a message, service or action, as rosidl names it: `sensor_msgs/msg/point_cloud2.hpp`."""
+    package, kind, name = message.split("/")
+    words = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name))
+    return f"{package}/{kind}/{words.lower()}.hpp"
+
+
+def _name_guard(package: str, module: str) -> str:
+    return f"{make_identifier_in('cpp', package)}__{module}".upper()
+
+
+def _find_group(node: Node, component: str, keys: Mapping[str, str]) -> str:
+    """Return the callback group of what a component has in a node; empty for the node's default group."""
+    if node.reentrant:
+        return keys[_REENTRANT_GROUP]
+    return next((keys[name] for name, members in node.callback_groups.items() if component in members), "")
+
+
+def _list_groups(keys: Iterable[str], *, is_reentrant: bool) -> Iterable[dict[str, str]]:
+    kind = "Reentrant" if is_reentrant else "MutuallyExclusive"
+    return ({"key": key, "kind": kind} for key in dict.fromkeys(keys))
