@@ -11,6 +11,7 @@ from archgen.model.language_keywords import PYTHON_KEYWORDS
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity
 from archgen.views.generation.generation_context import tell_left_out, write_place
+from archgen.views.generation.program_senders import record_envelope
 
 PORT_SECTIONS: Mapping[tuple[str, str], str] = {
     ("publishes", "topic"): "publishers",
@@ -96,6 +97,7 @@ def _record_port(
         "type": first.type or "",
         "description": (port.description if port else None) or (data_type.comment if data_type else None) or "",
         "sources": list(first.sources),
+        "envelope": record_envelope(architecture, endpoints),
         "qos": record_qos(first.qos),
         "place": write_place(port.at if port else first.at),
     }
