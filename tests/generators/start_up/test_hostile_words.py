@@ -54,7 +54,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 "command": ["camera", *WORDS],
                 "host": "box",
                 "start": {
-                    "environment": {"HOSTILE": " ".join(WORDS)},
+                    "environment": {"HOSTILE": "\0".join(" ".join(WORDS))},
                     "directory": "-a $(touch trace) %h",
                     "ready": {"log": "$(touch trace)\\ %n 'x' \"y\"", "within": "90 s"},
                 },
