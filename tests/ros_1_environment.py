@@ -93,6 +93,11 @@ def _end_process(process: subprocess.Popen[bytes]) -> None:
     try:
         process.wait(STOPPING_SECONDS)
     except subprocess.TimeoutExpired:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
+        process.kill()
         process.wait()
+    # Programs of ROS start others in groups of their own, which stay in the session.
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            session = int((folder / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[3])
+            if session == process.pid:
+                os.kill(int(folder.name), signal.SIGKILL)
