@@ -84,6 +84,7 @@ def run_programs(commands: Sequence[Sequence[str]], environment: dict[str, str],
     finally:
         for process in reversed(processes):
             _end_process(process)
+        _end_left_programs(environment)
         sys.stdout.write(log.read_text(encoding="utf-8", errors="replace"))
 
 
@@ -95,9 +96,12 @@ def _end_process(process: subprocess.Popen[bytes]) -> None:
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()
-    # Programs of ROS start others in groups of their own, which stay in the session.
+
+
+def _end_left_programs(environment: dict[str, str]) -> None:
+    """End what programs of ROS started in sessions of their own, and did not end: it has their environment."""
+    mark = f"ROS_HOME={environment['ROS_HOME']}".encode()
     for folder in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
-            session = int((folder / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[3])
-            if session == process.pid:
+            if mark in (folder / "environ").read_bytes().split(b"\0"):
                 os.kill(int(folder.name), signal.SIGKILL)
