@@ -26,10 +26,12 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
 
     Nodes that exist (`status: existing` or `adapted`) have a program already, and what is no node of ROS has none here. The option
     `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
+    With the option `with_cpp` there is also what code in C++ asks for.
     """
     if is_ros_1(context.architecture.distro) != (ros == 1):
         return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
     language = str(context.options.get("language") or "python")
+    is_cpp = bool(context.options.get("with_cpp"))
     nodes = [each for each in context.wanted_nodes.values() if is_generated(each) and _is_in_language(each, language)]
     endpoints = _index_endpoints(context.architecture)
     programs: dict[tuple[str, str], list[Node]] = {}
@@ -42,7 +44,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     records: list[dict[str, object]] = []
     made_nodes: list[Sequence[Node]] = []
     for (package_name, program_name), program_nodes in sorted(programs.items()):
-        if language == "cpp":
+        if is_cpp:
             bad_names = find_bad_names(
                 package_name, program_name, program_nodes, _find_place(context.architecture, program_nodes[0])
             )
@@ -52,7 +54,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
         record, program_findings = _record_program(
             context.architecture, package_name, program_name, program_nodes, endpoints
         )
-        if language == "cpp":
+        if is_cpp:
             complete_cpp_program(context.architecture, record, program_nodes)
         made_nodes.append(program_nodes)
         records.append(record)
@@ -75,7 +77,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     for package in packages.values():
         used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
         package["dependencies"] = sorted(used)
-        if language == "cpp":
+        if is_cpp:
             package["libraries"] = list_cpp_libraries(package["programs"])  # type: ignore[arg-type]
         package["has_actions"] = any(
             each["action_servers"] or each["action_clients"]
