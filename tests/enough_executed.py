@@ -67,6 +67,7 @@ class LeaveTheRestOut:
             except DataError:  # its process is writing it just now
                 continue
             self._take_lines(other)
+            other.close(force=True)
             self._read_already.add(file)
         return all(
             executed_share(self._measured, file, lines) >= LEAST_EXECUTED_SHARE

@@ -1,10 +1,12 @@
-"""Write docs/rules/NAME.md for every rule, and their index. The rules' docstrings are the source."""
+"""Write docs/rules/NAME.md for every rule, and their index, from the rules' docstrings; and what is counted of the generators."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+
+from generator_table import PAGE, renew_table
 
 from archgen.findings import rule_pages
 from archgen.findings.comparison_rules import COMPARISON_RULES
@@ -35,6 +37,7 @@ def main() -> int:
     for name, text in wanted.items():
         (FOLDER / name).write_text(text, encoding="utf-8", newline="\n")
     print(f"{len(wanted)} pages in {FOLDER}")
+    PAGE.write_text(renew_table(PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
     return 0
 
 

@@ -120,11 +120,7 @@ def missing_property(architecture: Architecture) -> Iterator[Diagnostic]:
     if not required_properties:
         return
     for each in list_annotated_elements(architecture):
-        missing = [
-            declared
-            for declared in required_properties
-            if each.is_expected and each.kind in declared.of and declared.id not in each.element.annotations.properties
-        ]
+        missing = [declared for declared in required_properties if each.lacks(declared)]
         if missing:
             names = join_words([f"`{declared.id}`" for declared in missing])
             yield Diagnostic(

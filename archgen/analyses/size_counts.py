@@ -160,10 +160,7 @@ def count_declared_properties(architecture: Architecture) -> tuple[tuple[Propert
         (
             declared,
             sum(declared.id in each.element.annotations.properties for each in elements),
-            sum(
-                each.is_expected and each.kind in declared.of and declared.id not in each.element.annotations.properties
-                for each in elements
-            ),
+            sum(each.lacks(declared) for each in elements),
         )
         for declared in architecture.properties.values()
     )

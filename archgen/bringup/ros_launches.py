@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.bringup.plan_shapes import RosLaunch
+from archgen.bringup.program_names import ProgramNames
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -12,14 +13,9 @@ from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.ros_distro import is_ros_1
 
 _FLOAT_TYPES = frozenset({"float", "float[]"})
-ACTION_PARTS = {
-    1: ("/goal", "/cancel", "/status", "/feedback", "/result"),
-    2: ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", "/_action/feedback", "/_action/status"),
-}
-"""What an action consists of, as ends of its name, by generation of ROS: a new name for the action alone reaches none."""
 
 
-def describe_node_launch(architecture: Architecture, node: Node) -> RosLaunch | None:
+def describe_node_launch(architecture: Architecture, node: Node, program_names: ProgramNames) -> RosLaunch | None:
     """Return what ROS is told of a node; None for a program that is none, and for a node with a command of its own."""
     if node.command or node.is_program:
         return None
@@ -48,19 +44,8 @@ def describe_node_launch(architecture: Architecture, node: Node) -> RosLaunch | 
         own_values=own_values,
         value_commands={name: words for name, words in commands.items() if name not in own_values},
         arguments=node.arguments,
-        remaps=_find_remaps(architecture, node),
+        remaps=program_names.find_remaps(node),
     )
-
-
-def _find_remaps(architecture: Architecture, node: Node) -> Mapping[str, str]:
-    """Return the new names of a node: of its ports, as far as they are called otherwise in the program, and further ones."""
-    remaps: dict[str, str] = {}
-    if any(use.own_name for use in node.uses):
-        for endpoint in architecture.endpoints:
-            if endpoint.node == node.id and endpoint.own_name and endpoint.medium == "ros":
-                parts = ACTION_PARTS[1 if is_ros_1(architecture.distro) else 2] if endpoint.flow == "action" else ("",)
-                remaps |= {f"{endpoint.own_name}{part}": f"{endpoint.name}{part}" for part in parts}
-    return {**node.remaps, **remaps}
 
 
 def describe_container_launch(architecture: Architecture, container: Container) -> RosLaunch:

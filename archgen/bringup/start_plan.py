@@ -8,6 +8,7 @@ from dataclasses import replace
 from heapq import heapify, heappop, heappush
 
 from archgen.bringup.plan_shapes import FIRM_NEED, AwaitedStep, DroppedWait, StartPlan, StartStep, StepKind, Wait
+from archgen.bringup.program_names import ProgramNames
 from archgen.bringup.ros_launches import describe_container_launch, describe_node_launch
 from archgen.bringup.start_commands import (
     build_command,
@@ -22,6 +23,7 @@ from archgen.derivation.ros_names import resolve_ros_name
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
+from archgen.model.ros_distro import is_ros_1
 from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
 
 _UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
@@ -138,12 +140,16 @@ def _order_steps(step_ids: Sequence[str], phases: Mapping[str, StartPhase], wait
 def _list_steps(
     architecture: Architecture, phases: Mapping[str, StartPhase], managers: Mapping[str, tuple[str, ...]]
 ) -> list[StartStep]:
+    program_names = ProgramNames(architecture, 1 if is_ros_1(architecture.distro) else 2)
     return [
         *(
             _make_container_step(architecture, each, phases[name_container(architecture, each.id)])
             for each in architecture.containers.values()
         ),
-        *(_make_node_step(architecture, each, managers[each.id]) for each in architecture.nodes.values()),
+        *(
+            _make_node_step(architecture, each, managers[each.id], program_names)
+            for each in architecture.nodes.values()
+        ),
     ]
 
 
@@ -162,10 +168,12 @@ def _make_container_step(architecture: Architecture, container: Container, phase
     )
 
 
-def _make_node_step(architecture: Architecture, node: Node, managers: tuple[str, ...]) -> StartStep:
+def _make_node_step(
+    architecture: Architecture, node: Node, managers: tuple[str, ...], program_names: ProgramNames
+) -> StartStep:
     start = node.start or NO_START
     kind: StepKind = "program" if "program" in node.kinds else "composable" if node.container is not None else "node"
-    launch = describe_node_launch(architecture, node)
+    launch = describe_node_launch(architecture, node, program_names)
     return StartStep(
         node.id,
         kind,

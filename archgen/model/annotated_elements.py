@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
-from archgen.model.element_annotations import ElementAnnotations
+from archgen.model.element_annotations import ElementAnnotations, PropertyDeclaration
 
 KINDS = (
     *("partner", "use_case", "requirement", "component_type", "group", "component", "output", "input", "type", "node"),
@@ -41,6 +41,10 @@ class AnnotatedElement(NamedTuple):
     def owner_id(self) -> str:
         """The component of a port; of anything else its own id."""
         return self.id.rpartition(".")[0] if self.kind in {"input", "output"} else self.id
+
+    def lacks(self, declared: PropertyDeclaration) -> bool:
+        """Whether it does not have a declared property, and is of a kind that this names."""
+        return self.is_expected and self.kind in declared.of and declared.id not in self.element.annotations.properties
 
 
 def list_annotated_elements(architecture: Architecture) -> Iterator[AnnotatedElement]:

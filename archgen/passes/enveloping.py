@@ -48,7 +48,7 @@ def _envelope(work: PassWork) -> None:
             "fields": {"sender": {"type": "string"}, "payload": {"type": "T"}},
         }
         work.tree.set(("types", wrapper), body, first_path)
-        comment = "A message with the name of the component that sent it."
+        comment = "A message with the name of who sent it."
         work.tree.set(("types", wrapper, "comment"), comment, first_path)
 
 

@@ -125,6 +125,8 @@ class FlatNodes:
             if key in entries and isinstance(entries[key].value, MappingNode):
                 entries[key] = self._rename_components(entries[key], leaves)
         entries = self._keep_names(entry.key, leaves, entries, entry.key_span)
+        if "internal" in entries:
+            entries["internal"] = self._keep_internal_names(entry.key, entries["internal"])
         return MappingEntry(entry.key, entry.key_span, MappingNode(entries, body.span))
 
     def _rename_components(self, entry: MappingEntry, leaves: tuple[str, ...]) -> MappingEntry:
@@ -144,6 +146,31 @@ class FlatNodes:
                 each.key: MappingEntry(each.key, each.key_span, _rename_items(each.value, new_names)) for each in inner
             }
         return MappingEntry(entry.key, entry.key_span, MappingNode(entries, inner.span))
+
+    def _keep_internal_names(self, node_id: str, section: MappingEntry) -> MappingEntry:
+        """Return the internal topics and services of a node, those named that were called after a component's path."""
+        endpoints = [each for each in self._endpoints.get(node_id, ()) if each.internal and each.component]
+        uses: dict[str, MappingEntry] = {}
+        for written in mapping_values.get_body(section):
+            entries = {
+                use.key: self._keep_internal_name(use, _USES.get(written.key, ""), endpoints)
+                for use in mapping_values.get_body(written)
+            }
+            uses[written.key] = MappingEntry(written.key, written.key_span, MappingNode(entries, written.value.span))
+        return MappingEntry(section.key, section.key_span, MappingNode(uses, section.value.span))
+
+    def _keep_internal_name(self, use: MappingEntry, key: str, endpoints: Sequence[Endpoint]) -> MappingEntry:
+        """Return an internal entry; `key` is what names its topic or service."""
+        body = mapping_values.get_body(use)
+        derived = (each for each in endpoints if each.name == default_port_name(f"{each.component}.{use.key}"))
+        endpoint = next(derived, None)
+        flat_id = self._flat_ids.get(endpoint.component or "") if endpoint else None
+        if endpoint is None or key in body.entries or endpoint.name == default_port_name(f"{flat_id}.{use.key}"):
+            return use
+        text = ScalarNode(endpoint.name, endpoint.name, use.key_span)
+        value = SequenceNode([text], use.key_span) if key == "topic" else text
+        named = {**body.entries, key: MappingEntry(key, use.key_span, value)}
+        return MappingEntry(use.key, use.key_span, MappingNode(named, use.key_span))
 
     def _keep_names(
         self, node_id: str, leaves: tuple[str, ...], entries: dict[str, MappingEntry], place: Span

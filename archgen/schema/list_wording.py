@@ -15,6 +15,7 @@ _SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 _RANGE = re.compile(r"(\d{1,4})\s*(?:-|\.\.\.?)\s*(\d{1,4})\Z", re.ASCII)
 _ENDS = re.compile(r"([+-]?\d+(?:\.\d+)?)\s*(?:-|\.\.\.?|,|;|to)\s*([+-]?\d+(?:\.\d+)?)\Z", re.ASCII)
+_NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?\Z", re.ASCII)
 _SHELL_SIGN = re.compile(r"[$&|;<>`*?~]")
 _MAX_RANGE = 16
 """A longer list of numbers is not written out."""
@@ -56,10 +57,15 @@ def describe_list(text: str, schema_part: dict[str, Any]) -> str:
 
 def _describe_range(text: str) -> str:
     """Return a line that says how a range is written; both ends, where the text names them (`1-9`, `0..30`)."""
+    start = "write its least and its greatest value:"
     if ends := _ENDS.match(text.strip()):
-        return f"write its least and its greatest value: `[{ends[1]}, {ends[2]}]`"
-    end = _quote_entry(text.strip())
-    return f"write its least and its greatest value: `[0, {end}]`, or `[{end}, .inf]` for no upper end"
+        least, greatest = sorted((ends[1], ends[2]), key=float)
+        return f"{start} `[{least}, {greatest}]`"
+    if not _NUMBER.match(text.strip()):
+        return f"{start} `[0, 10]`, or `[0, .inf]` for no upper end"
+    end = text.strip()
+    least, greatest = (end, "0") if end.startswith("-") else ("0", end)
+    return f"{start} `[{least}, {greatest}]`, or `[{end}, .inf]` for no upper end"
 
 
 def suggest_words(text: str) -> str:

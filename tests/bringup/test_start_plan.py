@@ -290,14 +290,14 @@ def test_of_many_components_with_loops_none_is_lost(derived: Derived) -> None:
         (
             "jazzy",
             {
-                "a": "ros2 run p a --fast a b --ros-args -r __node:=a -r /tf:=tf -r out:=/g/a/o",
+                "a": "ros2 run p a --fast a b --ros-args -r __node:=a -r out:=/g/a/o -r /tf:=tf",
                 "b": "ros2 component load /box p p::B --node-name b -r in:=/g/a/o",
             },
         ),
         (
             "noetic",
             {
-                "a": "rosrun p a --fast a b __name:=a /tf:=tf out:=/g/a/o",
+                "a": "rosrun p a --fast a b __name:=a out:=/g/a/o /tf:=tf",
                 "b": "rosrun nodelet nodelet load p::B /box __name:=b in:=/g/a/o",
             },
         ),

@@ -141,14 +141,12 @@ def test_a_second_run_touches_nothing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("node", "told"),
     [
-        ("package: My Package", "no package of C++ can be called `My Package`"),
-        ("executable: 'a b'", "no program can be called `a b`"),
         ("plugin: 'Lone'", "no class of C++ can be called `Lone`"),
         ("plugin: 'a::class'", "no class of C++ can be called `a::class`"),
         ("plugin: 'a::B(); //'", "no class of C++ can be called `a::B(); //`"),
     ],
 )
-def test_names_that_no_build_takes_are_told(node: str, told: str, tmp_path: Path) -> None:
+def test_classes_that_no_compiler_takes_are_told(node: str, told: str, tmp_path: Path) -> None:
     text = f"groups: {{g: {{components: {{a: {{}}}}}}}}\nnodes: {{a: {{implements: g.a, language: cpp, {node}}}}}\n"
     programs, left_out = make_programs(write_project(tmp_path, text))
     assert programs == {}

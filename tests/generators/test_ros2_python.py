@@ -129,6 +129,16 @@ def test_what_cannot_be_generated_is_told(tmp_path: Path) -> None:
     ]
 
 
+def test_a_message_that_no_class_can_be_is_told(tmp_path: Path) -> None:
+    text = (
+        "groups: {g: {components: {a: {outputs: {x: X, y: Y}}}}}\n"
+        "types: {X: {message: m_msgs/msg/None, status: planned}, Y: std_msgs/msg/String}\n"
+    )
+    programs, left_out = make_programs(tmp_path, text)
+    assert [each["key"] for each in programs["a"]["publishers"]] == ["y"]
+    assert left_out == ["`g.a.x` of the node `a` is left out: no class can be called as its message `m_msgs/msg/None`"]
+
+
 def test_messages_of_one_name_are_told_apart(tmp_path: Path) -> None:
     text = (
         "groups: {g: {components: {a: {outputs: {x: X, y: Y}}}}}\n"
@@ -251,17 +261,22 @@ def list_expected(program: dict[str, Any], node_id: str) -> dict[str, set[tuple[
         for use, section in uses.items()
     }
     if not program["is_lifecycle"]:
-        for port in program["action_clients"]:
-            name, message = port["topics"][node_id], port["message"]
-            sections["subscribes"] |= {
-                (f"{name}/_action/feedback", f"{message}_FeedbackMessage"),
-                (f"{name}/_action/status", "action_msgs/msg/GoalStatusArray"),
-            }
-            sections["calls"] |= {
-                (f"{name}/_action/send_goal", f"{message}_SendGoal"),
-                (f"{name}/_action/get_result", f"{message}_GetResult"),
-                (f"{name}/_action/cancel_goal", "action_msgs/srv/CancelGoal"),
-            }
+        # What a client of an action subscribes to and calls, its server publishes and serves.
+        for section, listens, asks in (
+            ("action_clients", "subscribes", "calls"),
+            ("action_servers", "publishes", "serves"),
+        ):
+            for port in program[section]:
+                name, message = port["topics"][node_id], port["message"]
+                sections[listens] |= {
+                    (f"{name}/_action/feedback", f"{message}_FeedbackMessage"),
+                    (f"{name}/_action/status", "action_msgs/msg/GoalStatusArray"),
+                }
+                sections[asks] |= {
+                    (f"{name}/_action/send_goal", f"{message}_SendGoal"),
+                    (f"{name}/_action/get_result", f"{message}_GetResult"),
+                    (f"{name}/_action/cancel_goal", "action_msgs/srv/CancelGoal"),
+                }
     return sections
 
 

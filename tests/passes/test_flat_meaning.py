@@ -194,3 +194,16 @@ def test_what_no_component_wrote_stays_as_it_is(tmp_path: Path) -> None:
         "u": {"title": "U"},
         "v": {"steps": [{"from": "nobody", "to": "g.first"}]},
     }
+
+
+def test_internal_topics_and_services_keep_their_names(tmp_path: Path) -> None:
+    checked = write_project(
+        tmp_path,
+        BOX + "nodes:\n  n:\n    implements: box\n    package: p\n    executable: e\n    internal:\n"
+        "      publishes: {debug: {message: std_msgs/msg/String}, named: {message: std_msgs/msg/String, topic: fine}}\n"
+        "      serves: {ask: {message: std_srvs/srv/Trigger}}\n",
+    )
+    transformed = transform_project(checked, ["flatten"])
+    assert {"/g/box/first/debug", "/g/box/first/ask", "/fine"} <= set(checked.architecture.topics)
+    assert transformed.architecture.topics.keys() == checked.architecture.topics.keys()
+    check_packed(transformed, tmp_path / "packed")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.schema.list_wording import split_ids, suggest_list
+from archgen.schema.list_wording import describe_list, split_ids, suggest_list
 from tests.schema.findings import find_mistakes
 
 
@@ -41,3 +41,19 @@ def test_a_sentence_is_one_entry_and_long_text_is_no_list() -> None:
     assert split_ids("quiet, fast", sentences) == ["quiet", "fast"]
     assert split_ids("R-1, " * 1000, sentences) == []
     assert suggest_list("Fast: very", sentences) == '["Fast: very"]'
+
+
+@pytest.mark.parametrize(
+    ("text", "form"),
+    [
+        ("1-9", "`[1, 9]`"),
+        ("0 .. 30.5", "`[0, 30.5]`"),
+        ("5 to -5", "`[-5, 5]`"),
+        ("-5-5", "`[-5, 5]`"),
+        ("5", "`[0, 5]`, or `[5, .inf]` for no upper end"),
+        ("-5", "`[-5, 0]`, or `[-5, .inf]` for no upper end"),
+        ("0 kg to 5 kg", "`[0, 10]`, or `[0, .inf]` for no upper end"),
+    ],
+)
+def test_a_range_has_its_least_value_first(text: str, form: str) -> None:
+    assert describe_list(text, {"title": "Range"}) == f"write its least and its greatest value: {form}"

@@ -11,6 +11,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface
+from archgen.model.language_keywords import CPP_KEYWORDS, PYTHON_KEYWORDS
 from archgen.model.message_types import ConceptualType
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out
 from archgen.views.generation.interface_files import list_missing_words, list_used_packages, record_interface
@@ -139,6 +140,7 @@ def _leave_out_unsound(
     while True:
         for name in sound_names:
             missing_words = [
+                *_list_keywords(name, definitions[name]),
                 *list_missing_words(definitions[name], ros),
                 *(
                     f"`{message}`, which it holds, is left out"
@@ -157,6 +159,19 @@ def _leave_out_unsound(
             element = definer.name if definer else None
             findings.append(tell_left_out(f"`{name}` is not generated: {reasons[name]}", span, element=element))
         sound_names = [name for name in sound_names if name not in reasons]
+
+
+def _list_keywords(name: str, definition: Interface) -> Iterator[str]:
+    """Yield what is called as no class or member can be in the code that ROS makes of a message."""
+    for language, keywords in (("Python", PYTHON_KEYWORDS), ("C++", CPP_KEYWORDS)):
+        if name.rpartition("/")[2] in keywords:
+            yield f"its name is a word of {language}"
+        yield from (
+            f"its field `{each.name}` is a word of {language}"
+            for part in definition.parts
+            for each in part
+            if each.name in keywords
+        )
 
 
 def _list_messages(definition: Interface) -> list[str]:

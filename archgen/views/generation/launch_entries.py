@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.bringup.plan_shapes import RosLaunch, StartStep, format_seconds
+from archgen.bringup.program_names import ProgramNames, is_generated, name_package, name_program
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
@@ -20,8 +21,6 @@ from archgen.views.generation.launch_parameters import (
     record_container_parameters,
     record_node_parameters,
 )
-from archgen.views.generation.launch_remaps import LaunchRemaps
-from archgen.views.generation.node_programs import is_generated, name_package, name_program
 
 _MANAGER_PACKAGE = "nav2_lifecycle_manager"
 _NO_PARAMETERS: Mapping[str, Any] = {"files": [], "written": [], "filled": []}
@@ -48,7 +47,7 @@ def record_container_entry(
 
 
 def record_node_entry(
-    architecture: Architecture, step: StartStep, remaps: LaunchRemaps, managed: Sequence[StartStep], ros: int
+    architecture: Architecture, step: StartStep, program_names: ProgramNames, managed: Sequence[StartStep], ros: int
 ) -> tuple[dict[str, Any], list[Diagnostic]]:
     """Return the entry of a node or of another program, and what is left out of it.
 
@@ -70,7 +69,7 @@ def record_node_entry(
         **parameters,
         **program,
         "arguments": [*program["arguments"], *node.arguments],
-        "remaps": remaps.list_remaps(node),
+        "remaps": [{"own_name": own_name, "name": name} for own_name, name in program_names.find_remaps(node).items()],
         "simulated_time": read_simulated_time(step.ros),
         "remarks": _list_remarks(step, str(program["form"])),
     }, findings

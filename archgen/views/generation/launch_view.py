@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.bringup.plan_shapes import StartStep
+from archgen.bringup.program_names import ProgramNames
 from archgen.bringup.start_plan import make_start_plan
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
@@ -17,7 +18,6 @@ from archgen.views.generation.generation_context import (
     write_place,
 )
 from archgen.views.generation.launch_entries import record_container_entry, record_node_entry
-from archgen.views.generation.launch_remaps import LaunchRemaps
 from archgen.views.generation.package_facts import record_package_facts
 from archgen.views.generation.wanted_steps import find_wanted_steps
 
@@ -43,7 +43,7 @@ def make_view(context: GenerationContext, ros: int) -> GeneratedView:
         )
         return GeneratedView({**data, "hosts": [], "packages": [], "parameter_files": []}, (finding,))
     plan = make_start_plan(architecture)
-    remaps = LaunchRemaps(architecture, ros)
+    program_names = ProgramNames(architecture, ros)
     wanted_ids = find_wanted_steps(plan, context)
     findings: list[Diagnostic] = []
     hosts: list[dict[str, Any]] = []
@@ -55,7 +55,7 @@ def make_view(context: GenerationContext, ros: int) -> GeneratedView:
                 entry, entry_findings = record_container_entry(architecture, step, ros)
             else:
                 managed = [each for each in plan.steps if step.id in each.manager]
-                entry, entry_findings = record_node_entry(architecture, step, remaps, managed, ros)
+                entry, entry_findings = record_node_entry(architecture, step, program_names, managed, ros)
             entries.append(entry)
             findings += entry_findings
         hosts.append(_record_host(context, host, steps, entries, ros))

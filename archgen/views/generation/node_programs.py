@@ -4,21 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from archgen.bringup.program_names import (
+    ProgramNames,
+    group_by_program,
+    index_endpoints,
+    is_generated,
+    name_package,
+)
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
 from archgen.model.ros_distro import is_ros_1
-from archgen.views.generation.cpp_programs import complete_cpp_program, find_bad_names, list_cpp_libraries
+from archgen.views.generation.cpp_programs import complete_cpp_program, find_bad_classes, list_cpp_libraries
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
+from archgen.views.generation.program_callbacks import add_callback_groups
 from archgen.views.generation.program_differences import find_program_differences
 from archgen.views.generation.program_imports import import_in_ros_1, import_in_ros_2
 from archgen.views.generation.program_parameters import list_node_values, record_parameters
 from archgen.views.generation.program_ports import record_ports
 from archgen.views.generation.program_timers import list_timers
+from archgen.views.generation.usable_programs import drop_unusable
 
 
 def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
@@ -32,27 +41,25 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
         return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
     language = str(context.options.get("language") or "python")
     is_cpp = bool(context.options.get("with_cpp"))
-    nodes = [each for each in context.wanted_nodes.values() if is_generated(each) and _is_in_language(each, language)]
-    endpoints = _index_endpoints(context.architecture)
-    programs: dict[tuple[str, str], list[Node]] = {}
-    for node in nodes:
-        programs.setdefault(
-            (name_package(context.architecture, node), name_program(context.architecture, node)), []
-        ).append(node)
-    findings: list[Diagnostic] = list(_find_mixed_packages(context, programs, language))
+    all_programs = _find_programs(context, language)
+    endpoints = index_endpoints(context.architecture)
+    program_names = ProgramNames(context.architecture, ros)
+    findings: list[Diagnostic] = list(_find_mixed_packages(context, all_programs, language))
+    programs, unusable = drop_unusable(all_programs, language)
+    findings += unusable
     packages: dict[str, dict[str, object]] = {}
     records: list[dict[str, object]] = []
     made_nodes: list[Sequence[Node]] = []
     for (package_name, program_name), program_nodes in sorted(programs.items()):
         if is_cpp:
-            bad_names = find_bad_names(
+            bad_classes = find_bad_classes(
                 package_name, program_name, program_nodes, _find_place(context.architecture, program_nodes[0])
             )
-            findings += bad_names
-            if bad_names:
+            findings += bad_classes
+            if bad_classes:
                 continue
         record, program_findings = _record_program(
-            context.architecture, package_name, program_name, program_nodes, endpoints
+            context, (package_name, program_name), program_nodes, endpoints, program_names
         )
         if is_cpp:
             complete_cpp_program(context.architecture, record, program_nodes)
@@ -101,44 +108,27 @@ def _tell_other_ros(ros: int) -> Diagnostic:
     )
 
 
-def name_package(architecture: Architecture, node: Node) -> str:
-    """Return the package of a node: what it says, else one for the nodes of its group."""
-    if node.package:
-        return node.package
-    group = next((architecture.components[each].group for each in node.implements), None)
-    return make_ros_name(f"{architecture.project.id}_{group or 'nodes'}")
-
-
-def name_program(architecture: Architecture, node: Node) -> str:
-    """Return the executable of a node: what it says, else that of its component's type, else its own id."""
-    if node.executable:
-        return node.executable
-    only_component = architecture.components[node.implements[0]] if len(node.implements) == 1 else None
-    return make_ros_name((only_component.component_type if only_component else None) or node.id)
-
-
 def _name_module(program_name: str) -> str:
     """Return the module of a program: `planner` of the program `planner_node`, since its node stands in `planner_node.py`."""
     return make_snake_name(make_snake_name(program_name).removesuffix("_node"))
 
 
-def is_generated(node: Node) -> bool:
-    """Whether generators make the program of a node: nobody says that it exists, and nothing else starts it."""
-    return node.status in {None, "planned"} and not (node.is_program or node.command)
+def _find_programs(context: GenerationContext, language: str) -> dict[tuple[str, str], list[Node]]:
+    """Return the nodes of each program that is asked for. One node is enough: what a program is depends on all of its nodes."""
+    nodes = [
+        each for each in context.architecture.nodes.values() if is_generated(each) and _is_in_language(each, language)
+    ]
+    return {
+        names: program_nodes
+        for names, program_nodes in group_by_program(context.architecture, nodes).items()
+        if any(each.id in context.wanted_nodes for each in program_nodes)
+    }
 
 
 def _is_in_language(node: Node, language: str) -> bool:
     # What a container loads is a library of C++.
     usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
     return (node.language or usual_language) == language
-
-
-def _index_endpoints(architecture: Architecture) -> Mapping[str, Sequence[Endpoint]]:
-    index: dict[str, list[Endpoint]] = {}
-    for endpoint in architecture.endpoints:
-        if endpoint.medium == "ros":
-            index.setdefault(endpoint.node, []).append(endpoint)
-    return index
 
 
 def _find_mixed_packages(
@@ -165,15 +155,17 @@ def _find_mixed_packages(
 
 
 def _record_program(
-    architecture: Architecture,
-    package_name: str,
-    program_name: str,
+    context: GenerationContext,
+    package_and_program: tuple[str, str],
     nodes: Sequence[Node],
     endpoints: Mapping[str, Sequence[Endpoint]],
+    program_names: ProgramNames,
 ) -> tuple[dict[str, object], list[Diagnostic]]:
-    first = nodes[0]
+    architecture, first = context.architecture, nodes[0]
+    package_name, program_name = package_and_program
     components = [architecture.components[each] for each in first.implements]
     sections, findings = record_ports(architecture, nodes, endpoints)
+    timers = list(list_timers(first))
     parameters, parameter_findings = record_parameters(architecture, nodes)
     message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
     functionalities = [each.functionality for each in components if each.functionality]
@@ -188,12 +180,13 @@ def _record_program(
         "description": first.description or " ".join(functionalities),
         "is_lifecycle": "lifecycle" in first.kinds,
         "is_composable": "composable" in first.kinds,
-        "nodes": [_record_node(architecture, each, sections) for each in nodes],
+        "nodes": [_record_node(architecture, each, program_names) for each in nodes if each.id in context.wanted_nodes],
         "node_name": first.name if len(nodes) == 1 else make_ros_name(program_name),
         "namespace": first.namespace if len(nodes) == 1 else "/",
         "threads": first.threads,
         "reentrant": first.reentrant,
-        "timers": list(list_timers(first)),
+        "timers": timers,
+        "callback_groups": add_callback_groups(first, sections, timers),
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),
@@ -203,9 +196,7 @@ def _record_program(
     return record, [*findings, *parameter_findings]
 
 
-def _record_node(
-    architecture: Architecture, node: Node, sections: Mapping[str, Sequence[Mapping[str, object]]]
-) -> dict[str, object]:
+def _record_node(architecture: Architecture, node: Node, program_names: ProgramNames) -> dict[str, object]:
     return {
         "id": node.id,
         "name": node.name,
@@ -213,19 +204,9 @@ def _record_node(
         "full_name": node.full_name,
         "implements": list(node.implements),
         "parameters": list_node_values(architecture, node),
-        "remaps": list(_list_remaps(node, sections)),
+        "remaps": [{"own_name": own_name, "name": name} for own_name, name in program_names.find_remaps(node).items()],
         "place": write_place(_find_place(architecture, node)),
     }
-
-
-def _list_remaps(node: Node, sections: Mapping[str, Sequence[Mapping[str, object]]]) -> Iterator[dict[str, str]]:
-    """Yield which names of the program become others at one of its nodes: `own_name`, and what it becomes, `name`."""
-    for ports in sections.values():
-        for port in ports:
-            name = port["topics"].get(node.id)  # type: ignore[attr-defined]
-            if name is not None and name != port["topic"]:
-                yield {"own_name": str(port["topic"]), "name": name}
-    yield from ({"own_name": own_name, "name": name} for own_name, name in node.remaps.items())
 
 
 def _find_place(architecture: Architecture, node: Node) -> Span:

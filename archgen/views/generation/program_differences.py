@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from archgen.bringup.program_names import name_endpoints
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.node import Endpoint, Node
 from archgen.views.generation.generation_context import tell_left_out
-from archgen.views.generation.program_ports import PORT_SECTIONS, name_endpoints, record_qos
+from archgen.views.generation.program_ports import PORT_SECTIONS, record_qos
 from archgen.views.generation.program_timers import list_timers
 
 _NODE_FACTS: Mapping[str, Callable[[Node], object]] = {
     "kinds": lambda node: node.kinds,
     "threads": lambda node: node.threads,
     "reentrant callbacks": lambda node: node.reentrant,
+    "callback groups": lambda node: [
+        sorted(each.rpartition(".")[2] for each in members) for members in node.callback_groups.values()
+    ],
     "periods": lambda node: [timer["period_ns"] for timer in list_timers(node)],
 }
 """What a program has once, and how each of its nodes says it."""

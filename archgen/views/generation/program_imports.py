@@ -20,6 +20,7 @@ _IMPORTED_OF_ROS_2 = frozenset(
         "LifecycleNode",
         "LivelinessPolicy",
         "MultiThreadedExecutor",
+        "MutuallyExclusiveCallbackGroup",
         "Node",
         "Parameter",
         "ParameterDescriptor",

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
+from archgen.bringup.program_names import choose_own_name, find_common_message, group_endpoints
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_identifier_in, make_snake_name
+from archgen.model.language_keywords import PYTHON_KEYWORDS
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity
 from archgen.views.generation.generation_context import tell_left_out, write_place
+from archgen.views.generation.program_senders import record_envelope
 
 PORT_SECTIONS: Mapping[tuple[str, str], str] = {
     ("publishes", "topic"): "publishers",
@@ -32,41 +34,17 @@ def record_ports(
     """
     sections: dict[str, list[dict[str, object]]] = {name: [] for name in PORT_SECTIONS.values()}
     findings: list[Diagnostic] = []
-    uses: dict[tuple[str, str], list[Endpoint]] = {}
-    for node in nodes:
-        for endpoint, key in name_endpoints(endpoints.get(node.id, ())):
-            uses.setdefault((PORT_SECTIONS[endpoint.use, endpoint.flow], key), []).append(endpoint)
-    for (section, key), port_endpoints in uses.items():
-        first = port_endpoints[0]
-        messages = {each.message for each in port_endpoints}
-        if first.message is None or len(messages) > 1:
-            findings.append(_tell_unknown_message(first, messages))
+    for (use, flow, key), port_endpoints in group_endpoints(nodes, endpoints).items():
+        if find_common_message(port_endpoints) is None:
+            findings.append(_tell_unknown_message(port_endpoints[0], {each.message for each in port_endpoints}))
             continue
-        sections[section].append(_record_port(architecture, key, port_endpoints, is_shared=len(nodes) > 1))
-    return sections, findings
-
-
-def name_endpoints(endpoints: Iterable[Endpoint]) -> Iterator[tuple[Endpoint, str]]:
-    """Yield each endpoint with its name in the program: that of the port, with its component's where two have it."""
-    own_names: dict[tuple[str, str], set[str]] = {}
-    listed = list(endpoints)
-    for endpoint in listed:
-        own_names.setdefault((PORT_SECTIONS[endpoint.use, endpoint.flow], _short_name(endpoint)), set()).add(
-            endpoint.port or endpoint.name
+        if str(port_endpoints[0].message).rpartition("/")[2] in PYTHON_KEYWORDS:
+            findings.append(_tell_bad_message(port_endpoints[0]))
+            continue
+        sections[PORT_SECTIONS[use, flow]].append(
+            _record_port(architecture, key, port_endpoints, is_shared=len(nodes) > 1)
         )
-    seen: dict[tuple[str, str], int] = {}
-    for endpoint in listed:
-        section, name = PORT_SECTIONS[endpoint.use, endpoint.flow], _short_name(endpoint)
-        if len(own_names[section, name]) > 1:
-            name = make_snake_name("_".join((endpoint.port or endpoint.name).replace("/", ".").split(".")[-2:]))
-        # One port may stand on several topics.
-        seen[section, name] = seen.get((section, name), 0) + 1
-        number = seen[section, name]
-        yield endpoint, make_identifier_in("python", name if number == 1 else f"{name}_{number}")
-
-
-def _short_name(endpoint: Endpoint) -> str:
-    return make_snake_name((endpoint.port or endpoint.name.replace("/", ".")).rpartition(".")[2])
+    return sections, findings
 
 
 def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diagnostic:
@@ -87,20 +65,28 @@ def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diag
     )
 
 
+def _tell_bad_message(endpoint: Endpoint) -> Diagnostic:
+    return tell_left_out(
+        f"`{endpoint.port or endpoint.name}` of the node `{endpoint.node}` is left out: no class can be called as its "
+        f"message `{endpoint.message}`",
+        endpoint.at,
+        element=endpoint.node,
+        help_line="give its type another name, or another `message`",
+    )
+
+
 def _record_port(
     architecture: Architecture, key: str, endpoints: Sequence[Endpoint], *, is_shared: bool
 ) -> dict[str, object]:
     first = endpoints[0]
     package, kind, name = (first.message or "//").split("/")
-    topics = {each.name for each in endpoints}
-    own_name = first.own_name or (first.name if len(topics) == 1 and not is_shared else key)
     port = architecture.outputs.get(first.port or "") or architecture.inputs.get(first.port or "")
     if first.use in {"subscribes", "calls"}:
         port = architecture.inputs.get(first.port or "") or port
     data_type = architecture.types.get(first.type or "")
     return {
         "key": key,
-        "topic": own_name,
+        "topic": choose_own_name(key, endpoints, is_shared=is_shared),
         "topics": {each.node: each.name for each in endpoints},
         "port": first.port or "",
         "internal": first.internal,
@@ -111,6 +97,7 @@ def _record_port(
         "type": first.type or "",
         "description": (port.description if port else None) or (data_type.comment if data_type else None) or "",
         "sources": list(first.sources),
+        "envelope": record_envelope(architecture, endpoints),
         "qos": record_qos(first.qos),
         "place": write_place(port.at if port else first.at),
     }

@@ -148,10 +148,18 @@ def template_named(name: str) -> bytes:
     return TEMPLATES[name]()
 
 
+_JUDGED_TOGETHER = {"a5", "own names", "dotx", "cover"}
+"""What "all at once" has in it: Microsoft's judge, which takes seconds, sees it there."""
+
+
 @pytest.mark.parametrize("name", TEMPLATES)
+def test_inspection_finds_no_fault(name: str) -> None:
+    assert inspection.faults(report(template_named(name))[0]) == []
+
+
+@pytest.mark.parametrize("name", [name for name in TEMPLATES if name not in _JUDGED_TOGETHER])
 def test_no_judge_finds_a_fault(name: str, tmp_path: Path) -> None:
     data, _ = report(template_named(name))
-    assert inspection.faults(data) == []
     path = tmp_path / "report.docx"
     path.write_bytes(data)
     assert judges.validated(path) == []

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.passes.patterns import pass_files
+from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import check_project
 from tests.passes.patterns.transforming import read
 
@@ -227,3 +228,20 @@ def test_a_pass_behind_a_link_is_refused(tmp_path: Path) -> None:
     assert all(
         each.read_pass is None for each in pass_files.list_project_passes(check_project(linked).loaded_project.files)
     )
+
+
+def test_a_pass_that_cannot_be_called_so_hides_none_that_ships(tmp_path: Path) -> None:
+    (tmp_path / "passes").mkdir()
+    (tmp_path / "archgen.yaml").write_text("archgen: 1\n")
+    text = "title: Mine\nrules: [{find: {components: {$c: {tags: [a]}}}, drop: {components: {$c: }}}]\n"
+    for name in ("rules.envelope", "envelope", "Mine"):
+        (tmp_path / "passes" / f"{name}.yaml").write_text(text)
+    checked = check_project(tmp_path)
+    assert [(each.span.file, each.message) for each in checked.findings] == [
+        ("passes/Mine.yaml", "`Mine` is no name for a pass"),
+        ("passes/envelope.yaml", "there is a pass `envelope` already"),
+        ("passes/rules.envelope.yaml", "`rules.envelope` is no name for a pass"),
+    ]
+    known = find_known_passes(checked.loaded_project)
+    assert known.passes["rules.envelope"].title.startswith("Wraps the type of each port")
+    assert list(known.own_files) == ["Mine"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable
 from fractions import Fraction
 
@@ -30,10 +31,20 @@ SHAPES: dict[str, Callable[[int], Fraction | None]] = {
 }
 
 
+def _find_last(slack_at: Callable[[int], Fraction | None]) -> int:
+    """Return the last step up to a million at which a shape holds: none of them begins to hold again."""
+
+    def is_over(step: int) -> bool:
+        slack = slack_at(step)
+        return slack is None or slack < 0
+
+    return bisect_left(range(1_000_001), x=True, key=is_over) - 1
+
+
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_last_step_that_holds_is_found(shape: str) -> None:
     slack_at = SHAPES[shape]
-    last = max(step for step in range(1_000_001) if (slack := slack_at(step)) is not None and slack >= 0)
+    last = _find_last(slack_at)
     look, looks = _count_looks(slack_at)
     assert find_largest_step(look, 0, 1_000_001, slack_at(0), slack_at(1_000_001)) == last
     assert len(looks) <= 40
@@ -42,7 +53,7 @@ def test_the_last_step_that_holds_is_found(shape: str) -> None:
 @pytest.mark.parametrize(("shape", "most"), [("a straight line", 2), ("a wall", 40), ("stairs", 45)])
 def test_a_climb_ends_at_the_last_step_that_holds(shape: str, most: int) -> None:
     slack_at = SHAPES[shape]
-    last = max(step for step in range(1_000_001) if (slack := slack_at(step)) is not None and slack >= 0)
+    last = _find_last(slack_at)
     look, looks = _count_looks(slack_at)
     start_slack = slack_at(1_000)
     assert start_slack is not None

@@ -128,6 +128,17 @@ def test_a_message_that_holds_what_cannot_be_written_goes_too(tmp_path: Path) ->
     assert list(spelled(view)) == ["bot_msgs/msg/C.msg"]
 
 
+def test_words_of_languages_are_no_names(tmp_path: Path) -> None:
+    types = "types: {None: {message: m/msg/None, fields: {x: int8}}, A: {fields: {namespace: int8}}, B: {fields: {lambda: int8}}, C: {fields: {x: int8}}}\n"
+    view = make_view(context(tmp_path, types + PORTS % "A"))
+    assert [found.message for found in view.findings] == [
+        "`bot_msgs/msg/A` is not generated: its field `namespace` is a word of C++",
+        "`bot_msgs/msg/B` is not generated: its field `lambda` is a word of Python",
+        "`m/msg/None` is not generated: its name is a word of Python",
+    ]
+    assert list(spelled(view)) == ["bot_msgs/msg/C.msg"]
+
+
 def test_a_package_that_exists_is_left_alone(tmp_path: Path) -> None:
     types = "types: {A: {message: x_msgs/msg/A, status: existing, fields: {x: int8}}, B: {message: x_msgs/msg/B, fields: {x: int8}}}\n"
     view = make_view(context(tmp_path, types + PORTS % "A"))

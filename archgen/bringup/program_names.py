@@ -1,0 +1,145 @@
+"""What nodes are called in programs that generators make: packages, programs, and the names that nodes of one program share.
+
+Scripts, launch files and generated code ask here, so that what one of them writes fits what the others do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from archgen.derivation.ros_names import resolve_ros_name
+from archgen.model.architecture import Architecture
+from archgen.model.code_names import make_identifier_in, make_ros_name, make_snake_name
+from archgen.model.node import Endpoint, Node
+
+ACTION_PARTS = {
+    1: ("/goal", "/cancel", "/status", "/feedback", "/result"),
+    2: ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", "/_action/feedback", "/_action/status"),
+}
+"""What an action consists of, as ends of its name, by generation of ROS: a new name for the action alone reaches none."""
+
+
+def is_generated(node: Node) -> bool:
+    """Whether generators make the program of a node: nobody says that it exists, and nothing else starts it."""
+    return node.status in {None, "planned"} and not (node.is_program or node.command)
+
+
+def name_package(architecture: Architecture, node: Node) -> str:
+    """Return the package of a node: what it says, else one for the nodes of its group."""
+    if node.package:
+        return node.package
+    group = next((architecture.components[each].group for each in node.implements), None)
+    return make_ros_name(f"{architecture.project.id}_{group or 'nodes'}")
+
+
+def name_program(architecture: Architecture, node: Node) -> str:
+    """Return the executable of a node: what it says, else that of its component's type, else its own id."""
+    if node.executable:
+        return node.executable
+    only_component = architecture.components[node.implements[0]] if len(node.implements) == 1 else None
+    return make_ros_name((only_component.component_type if only_component else None) or node.id)
+
+
+def group_by_program(architecture: Architecture, nodes: Iterable[Node]) -> dict[tuple[str, str], list[Node]]:
+    """Return nodes by the package and the program that is generated for them."""
+    groups: dict[tuple[str, str], list[Node]] = {}
+    for node in nodes:
+        groups.setdefault((name_package(architecture, node), name_program(architecture, node)), []).append(node)
+    return groups
+
+
+def index_endpoints(architecture: Architecture) -> dict[str, list[Endpoint]]:
+    """Return what each node does over ROS, by the node's id."""
+    index: dict[str, list[Endpoint]] = {}
+    for endpoint in architecture.endpoints:
+        if endpoint.medium == "ros":
+            index.setdefault(endpoint.node, []).append(endpoint)
+    return index
+
+
+def group_endpoints(
+    nodes: Iterable[Node], endpoints: Mapping[str, Sequence[Endpoint]]
+) -> dict[tuple[str, str, str], list[Endpoint]]:
+    """Return what nodes of one program do, by use, flow, and name of the port in the program."""
+    groups: dict[tuple[str, str, str], list[Endpoint]] = {}
+    for node in nodes:
+        for endpoint, key in name_endpoints(endpoints.get(node.id, ())):
+            groups.setdefault((endpoint.use, endpoint.flow, key), []).append(endpoint)
+    return groups
+
+
+def name_endpoints(endpoints: Iterable[Endpoint]) -> Iterator[tuple[Endpoint, str]]:
+    """Yield each endpoint with its name in the program: that of the port, with its component's where two have it."""
+    own_names: dict[tuple[str, str, str], set[str]] = {}
+    listed = list(endpoints)
+    for endpoint in listed:
+        own_names.setdefault(_place_name(endpoint), set()).add(endpoint.port or endpoint.name)
+    seen: dict[tuple[str, str, str], int] = {}
+    for endpoint in listed:
+        use, flow, name = _place_name(endpoint)
+        if len(own_names[use, flow, name]) > 1:
+            name = make_snake_name("_".join((endpoint.port or endpoint.name).replace("/", ".").split(".")[-2:]))
+        # One port may stand on several topics.
+        seen[use, flow, name] = seen.get((use, flow, name), 0) + 1
+        number = seen[use, flow, name]
+        yield endpoint, make_identifier_in("python", name if number == 1 else f"{name}_{number}")
+
+
+def _place_name(endpoint: Endpoint) -> tuple[str, str, str]:
+    short_name = make_snake_name((endpoint.port or endpoint.name.replace("/", ".")).rpartition(".")[2])
+    return endpoint.use, endpoint.flow, short_name
+
+
+def choose_own_name(key: str, endpoints: Sequence[Endpoint], *, is_shared: bool) -> str:
+    """Return what a program itself calls a port: one that several nodes share cannot say where each of them has it."""
+    first = endpoints[0]
+    names = {each.name for each in endpoints}
+    return first.own_name or (first.name if len(names) == 1 and not is_shared else key)
+
+
+def find_common_message(endpoints: Sequence[Endpoint]) -> str | None:
+    """Return the message that nodes of one program have at a port; None where they differ, or nobody says it."""
+    messages = {each.message for each in endpoints}
+    return endpoints[0].message if len(messages) == 1 else None
+
+
+class ProgramNames:
+    """Knows which names of a program become others at each of its nodes: of its ports, as generated or as it says, and others."""
+
+    def __init__(self, architecture: Architecture, ros: int) -> None:
+        self._ros = ros
+        self._endpoints = index_endpoints(architecture)
+        self._names: dict[str, list[tuple[str, str, str]]] = {}
+        generated_nodes = (each for each in architecture.nodes.values() if is_generated(each))
+        for nodes in group_by_program(architecture, generated_nodes).values():
+            if len(nodes) > 1:
+                self._name_shared_ports(nodes)
+
+    def _name_shared_ports(self, nodes: Sequence[Node]) -> None:
+        for node in nodes:
+            self._names[node.id] = []
+        for (_, flow, key), endpoints in group_endpoints(nodes, self._endpoints).items():
+            if find_common_message(endpoints) is None:
+                continue
+            own_name = choose_own_name(key, endpoints, is_shared=True)
+            for endpoint in endpoints:
+                self._names[endpoint.node].append((flow, own_name, endpoint.name))
+
+    def find_remaps(self, node: Node) -> dict[str, str]:
+        """Return what names of a node's program become, by what the program says. What resolves by itself is not there."""
+        remaps: dict[str, str] = {}
+        for flow, own_name, name in self._list_names(node):
+            if resolve_ros_name(own_name, node) == name:
+                continue
+            for part in ACTION_PARTS[self._ros] if flow == "action" else ("",):
+                remaps.setdefault(f"{own_name}{part}", f"{name}{part}")
+        return remaps | {own_name: name for own_name, name in node.remaps.items() if own_name not in remaps}
+
+    def _list_names(self, node: Node) -> Iterable[tuple[str, str, str]]:
+        if node.id in self._names:
+            return self._names[node.id]
+        return [
+            (each.flow, each.own_name, each.name)
+            for each in self._endpoints.get(node.id, ())
+            if each.own_name is not None
+        ]
