@@ -84,7 +84,7 @@ def _render_files(
 ) -> Mapping[str, Any]:
     """Render all files in a process of their own, and return its answer, or one to the same request that is kept."""
     templates = backend.folder / "templates"
-    content = {
+    content: dict[str, Any] = {
         "templates": str(templates),
         "files": [asdict(file) for file in backend.files],
         "data": {name: views[name] for name in backend.views},

@@ -30,7 +30,7 @@ def open_answer_store(folder: Path | None) -> FileStore:
     return FileStore(folder, ".rendered", _MOST_ANSWERS)
 
 
-def make_answer_key(request: Mapping[str, object], templates: Path) -> str:
+def make_answer_key(request: dict[str, Any], templates: Path) -> str:
     """Return the name of what is kept: a digest of the request, of all templates, and of the code that renders them.
 
     Return an empty text where the request holds what is no plain data: then nothing is kept.
