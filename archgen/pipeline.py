@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen import analyses, compose, derivation, findings, link, project, schema
+from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
@@ -46,12 +47,14 @@ from archgen.link import (
 )
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.interface_sources import TypeMessages
+from archgen.link.link_memory import LinkMemory
 from archgen.link.project_packing import PackedAttachments, PackedProject, has_packed_path, pack_project
 from archgen.link.project_types import declare_project_types
 from archgen.link.report_chapters import ReportChapters
 from archgen.link.variants import variant_order
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
+from archgen.model.known_parts import KnownParts
 from archgen.model.variant import BASE_NAME
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.project.commit_days import find_commit_day
@@ -312,14 +315,15 @@ def _read_origins(checked_project: CheckedProject) -> CheckedProject:
 def _judge_in_variants(
     merged_project: _MergedProject, analysis_memory: AnalysisMemory, variant_names: Sequence[str] | None
 ) -> CheckedProject:
-    checked_project = _judge_merged(merged_project, analysis_memory)
     if "variants" not in merged_project.table.entries:
-        return checked_project
+        return _judge_merged(merged_project, analysis_memory)
     from archgen.findings import variant_findings
 
-    judge = _VariantJudge(merged_project, checked_project, analysis_memory)
+    part_memory = PartMemory()
+    analysis_memory.make_room(len(mapping_values.get_mapping(merged_project.table, "variants").entries) + 1)
+    checked_project = _judge_merged(merged_project, analysis_memory, part_memory)
+    judge = _VariantJudge(merged_project, checked_project, analysis_memory, part_memory)
     judged_names = variant_order.list_judged(checked_project.architecture.variants)
-    analysis_memory.make_room(len(judged_names) + 1)
     variants = {
         name: judge.judge_steps(judge.list_steps([name]))
         for name in judged_names
@@ -451,22 +455,40 @@ class UnknownVariantError(Exception):
         super().__init__(f"no variant named `{name}`: {help_line}")
 
 
+class PartMemory:
+    """The parts of a project that its variants have in common."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self.linked = LinkMemory()
+        self.derived = DerivedParts()
+        self.named_files: named_files.FilesByGroup = KnownParts()
+
+
 class _VariantJudge:
     """Judges a project in its variants; steps that several have in common are laid over it once."""
 
     def __init__(
-        self, merged_project: _MergedProject, checked_project: CheckedProject, analysis_memory: AnalysisMemory
+        self,
+        merged_project: _MergedProject,
+        checked_project: CheckedProject,
+        analysis_memory: AnalysisMemory,
+        part_memory: PartMemory | None = None,
     ) -> None:
         from archgen.link.variants import variant_laying, variant_order
 
         loaded_project = merged_project.loaded_project
         self._merged_project = merged_project
         self._memory = analysis_memory
+        self._parts = part_memory or PartMemory()
         self._variants = checked_project.architecture.variants
         self._written = mapping_values.get_mapping(merged_project.table, "variants").entries
         self._order = variant_order
         self._layer = variant_laying.VariantLayer(
-            loaded_project.lost_keys, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
+            loaded_project.lost_keys,
+            loaded_project.incomplete_libraries,
+            loaded_project.describe_missing_type,
+            self._parts.linked,
         )
         base = replace(merged_project, table=variant_laying.remove_variants(merged_project.table))
         self._merged: dict[tuple[str, ...], _MergedProject] = {(): base}
@@ -478,7 +500,7 @@ class _VariantJudge:
     def judge_steps(self, steps: tuple[str, ...]) -> CheckedProject:
         if steps not in self._checked:
             merged_project = self._lay_steps(steps)
-            self._checked[steps] = replace(_judge_merged(merged_project, self._memory), steps=steps)
+            self._checked[steps] = replace(_judge_merged(merged_project, self._memory, self._parts), steps=steps)
         return self._checked[steps]
 
     def _lay_steps(self, steps: tuple[str, ...]) -> _MergedProject:
@@ -541,15 +563,18 @@ def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
     return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
 
 
-def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemory) -> CheckedProject:
-    """Run the stages behind merging."""
+def _judge_merged(
+    merged_project: _MergedProject, analysis_memory: AnalysisMemory, part_memory: PartMemory | None = None
+) -> CheckedProject:
+    """Run the stages behind merging; what `part_memory` knows from another variant is not made anew."""
+    linked_parts = part_memory.linked if part_memory else None
     loaded_project, merged_table = merged_project.loaded_project, merged_project.table
     merge_findings, reading_errors = merged_project.diagnostics, merged_project.reading_errors
     damaged_elements = merged_project.damaged_elements
     expansion = compose.expand_project(
         merged_table, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
     )
-    outline = element_outline.build_outline(expansion)
+    outline = element_outline.build_outline(expansion, linked_parts)
     declared_types = declare_project_types(loaded_project, merged_table, expansion, outline, damaged_elements)
     known_interfaces, interface_findings = _load_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
@@ -562,6 +587,7 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
         lost_keys=loaded_project.lost_keys,
         damaged_elements=damaged_elements,
         is_partial=loaded_project.partial,
+        memory=linked_parts,
     )
     # A project of one file is a whole: like its `sources`, what it names lies elsewhere.
     is_folder = loaded_project.first_file == project.PROJECT_FILE
@@ -570,7 +596,9 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     )
     for path, text in read_parameters.texts.items():
         loaded_project.sources.add_text(path, text)
-    architecture = derivation.derive_low_level(read_parameters.architecture)
+    architecture = derivation.derive_low_level(
+        read_parameters.architecture, part_memory.derived if part_memory else None
+    )
     commit_day = find_commit_day(loaded_project.files, architecture)
     if commit_day is not None:
         architecture = replace(architecture, commit_day=commit_day)
@@ -579,7 +607,9 @@ def _judge_merged(merged_project: _MergedProject, analysis_memory: AnalysisMemor
     missing_pictures = chapter_pictures.find_missing_pictures(
         project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
     )
-    files_by_element = tuple(named_files.list_named_files(merged_table))
+    files_by_element = tuple(
+        named_files.list_named_files(merged_table, part_memory.named_files if part_memory else None)
+    )
     project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
     named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
     missing_files = (

@@ -24,6 +24,7 @@ if [ "$what" = test ]; then
     need_command pdftoppm poppler-utils
     fc-list 2>/dev/null | grep -q Carlito || missing="$missing fontconfig fonts-crosextra-carlito"
     need_command java default-jre-headless
+    need_command javac default-jdk-headless
     need_command npm npm
     need_command plantuml plantuml
     need_command shellcheck shellcheck

@@ -80,6 +80,7 @@ class _SlowAnswer(NamedTuple):
 
 def _find_slow_answers(architecture: Architecture, analysis: Analysis, margin: Fraction) -> Iterator[_SlowAnswer]:
     """Yield the activities whose responses leave less of the required execution time than the margin."""
+    share = 1 - margin
     for activity in analysis.system.activities.values():
         component = architecture.components.get(activity.component or "")
         worst_response = analysis.responses[activity.id].worst.value
@@ -87,7 +88,9 @@ def _find_slow_answers(architecture: Architecture, analysis: Analysis, margin: F
             continue  # unknown, or unbounded by an overload, which `overloaded-host` reports
         for indicator in component.performance:
             required_time = indicator.execution_time
-            if required_time is not None and worst_response > (1 - margin) * required_time.value:
+            if required_time is not None and worst_response > (
+                required_time.value if share == 1 else share * required_time.value
+            ):
                 # Whether the activity alone is too slow, or what runs beside it makes it so: `wcet` is in ticks.
                 is_undisturbed = (
                     activity.response is not None or worst_response == (activity.wcet or 0) * analysis.system.tick

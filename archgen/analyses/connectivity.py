@@ -226,11 +226,12 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
     taken_outputs = read_outputs | shared_outputs | {each.id for each in architecture.outputs.values() if each.external}
     for output in architecture.outputs.values():
+        # That nobody reads what is going away is as it should be.
+        if output.id in taken_outputs or output.deprecated is not None:
+            continue
         component = architecture.components[output.component]
         group = component.group
-        is_suspected = not architecture.suspected_ids.isdisjoint((group, output.component, output.id))
-        # That nobody reads what is going away is as it should be.
-        if output.id in taken_outputs or is_suspected or output.deprecated is not None:
+        if not architecture.suspected_ids.isdisjoint((group, output.component, output.id)):
             continue
         # What a library offers for calls waits for whoever needs it; of what it sends, something should be read.
         is_spare = _kind_of_output(architecture, output) in _CALLED_KINDS or any(

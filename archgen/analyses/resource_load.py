@@ -62,14 +62,11 @@ def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fr
     overloaded_hosts = {host for host, load in analysis.hosts.items() if load.verdict == "overload"}
     for name, rate_and_gap in analysis.paces.items():
         activity = analysis.system.activities[name]
-        own_share = activity_share(analysis.system, name, rate_and_gap).value
         # A period that is written is compared with the execution time by `long-execution`: one slip, one finding.
-        if (
-            activity.period is None
-            and own_share is not None
-            and own_share >= 1
-            and activity.host not in overloaded_hosts
-        ):
+        if activity.period is not None or activity.host in overloaded_hosts:
+            continue
+        own_share = activity_share(analysis.system, name, rate_and_gap).value
+        if own_share is not None and own_share >= 1:
             yield Diagnostic(
                 "overloaded-host",
                 f"`{name}` takes {format_number(100 * own_share)} % of a core: it is fired again before it is done",

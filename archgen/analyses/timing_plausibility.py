@@ -95,8 +95,13 @@ def _find_above_period(
         for timing in node.timing.values():
             # `key` is an attribute of `Timing` and the key in the YAML (and in `places`) alike.
             quantity: Quantity | None = getattr(timing, key)
-            period = _period_of(timing)
-            if quantity and period and quantity.value > limit * period and timing.places[key] not in reported_spans:
+            period = _period_of(timing) if quantity else None
+            if (
+                quantity
+                and period
+                and quantity.value > (period if limit == 1 else limit * period)
+                and timing.places[key] not in reported_spans
+            ):
                 reported_spans.add(timing.places[key])
                 message = f"{description} of `{node.id}` (`{key}`, {quantity}) is above {limit_phrase}its period"
                 cure = "this is legal: correct it only where a figure or a unit is wrong"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from archgen.derivation import ros_names
+from archgen.derivation.derived_parts import DerivedParts
 from archgen.derivation.frame_endpoints import derive_frame_endpoints, index_written_frames
 from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
@@ -20,30 +21,41 @@ from archgen.model.node import Endpoint, FlowKind, Node, Topic
 from archgen.model.port_media import nature_of, uses_ros
 
 
-def derive_low_level(architecture: Architecture) -> Architecture:
-    """Add a planned node for each component without any, and the endpoints, topics and channels of all nodes."""
+def derive_low_level(architecture: Architecture, memory: DerivedParts | None = None) -> Architecture:
+    """Add a planned node for each component without any, and the endpoints, topics and channels of all nodes.
+
+    What `memory` knows from another version of the project is taken over where it is the same.
+    """
     architecture = mark_inner_memory(architecture)
-    nodes = dict(architecture.nodes) | {node.id: node for node in make_planned_nodes(architecture)}
+    nodes = dict(architecture.nodes) | {node.id: node for node in make_planned_nodes(architecture, memory)}
     with_planned = replace(architecture, nodes=nodes)
     shared_topics = ros_names.shared_topic_names(architecture.shared_topics)
     node_parts = find_node_parts(with_planned)
-    endpoints = _derive_endpoints(with_planned, node_parts, shared_topics)
+    if memory is not None:
+        memory.start_version(architecture, shared_topics)
+        node_parts = memory.recall_parts(node_parts)
+    endpoints = _derive_endpoints(with_planned, node_parts, shared_topics, memory)
     return replace(
         with_planned,
         endpoints=endpoints,
-        topics=_gather_topics(endpoints, shared_topics, architecture.types),
+        topics=_gather_topics(endpoints, shared_topics, architecture.types, memory),
         channels=derive_channels(with_planned, node_parts),
     )
 
 
 def _derive_endpoints(
-    architecture: Architecture, node_parts: Mapping[str, tuple[NodePart, ...]], shared_topics: frozenset[str]
+    architecture: Architecture,
+    node_parts: Mapping[str, tuple[NodePart, ...]],
+    shared_topics: frozenset[str],
+    memory: DerivedParts | None,
 ) -> tuple[Endpoint, ...]:
     """Derive the endpoints of all nodes, in the order of nodes."""
     # All writing endpoints come first: a reader takes its topic's name and message from those that write it.
     shared_keys = count_shared_keys(architecture)
     writing = {
-        node_id: [
+        node_id: memory.derive_writing(architecture, node_id, node_parts[node_id])
+        if memory
+        else [
             endpoint
             for node_part in node_parts[node_id]
             for endpoint in derive_writing_endpoints(architecture, node_part)
@@ -62,8 +74,11 @@ def _derive_endpoints(
     all_endpoints: list[Endpoint] = []
     for node_id in architecture.nodes:
         all_endpoints += writing[node_id]
-        for node_part in node_parts[node_id]:
-            all_endpoints += derive_reading_endpoints(writer_index, node_part)
+        if memory is not None:
+            all_endpoints += memory.derive_reading(writer_index, node_id, node_parts[node_id])
+        else:
+            for node_part in node_parts[node_id]:
+                all_endpoints += derive_reading_endpoints(writer_index, node_part)
         all_endpoints += (complete_message(endpoint, writer_index) for endpoint in portless[node_id])
         if node_id in frames_by_node:
             own_endpoints = (*writing[node_id], *portless[node_id])
@@ -80,7 +95,10 @@ class _EndpointUsers:
 
 
 def _gather_topics(
-    endpoints: Iterable[Endpoint], shared_topics: frozenset[str], types: Mapping[str, ConceptualType]
+    endpoints: Iterable[Endpoint],
+    shared_topics: frozenset[str],
+    types: Mapping[str, ConceptualType],
+    memory: DerivedParts | None,
 ) -> dict[str, Topic]:
     """Gather endpoints by name and flow. Further flows with the same name get a key of their own: `/name (service)`."""
     users: dict[tuple[str, FlowKind], _EndpointUsers] = {}
@@ -90,7 +108,13 @@ def _gather_topics(
     topics: dict[str, Topic] = {}
     for (name, flow), topic_users in users.items():
         key = name if name not in topics else f"{name} ({flow})"
-        topics[key] = _make_topic(name, flow, topic_users, types, is_shared=flow == "topic" and name in shared_topics)
+        known = memory.find_topic(name, flow, topic_users.writers, topic_users.readers) if memory else None
+        if known is None:
+            is_shared = flow == "topic" and name in shared_topics
+            known = _make_topic(name, flow, topic_users, types, is_shared=is_shared)
+            if memory is not None:
+                memory.keep_topic(known)
+        topics[key] = known
     return topics
 
 
@@ -112,7 +136,7 @@ def _make_topic(
     )
 
 
-def make_planned_nodes(architecture: Architecture) -> Iterator[Node]:
+def make_planned_nodes(architecture: Architecture, memory: DerivedParts | None = None) -> Iterator[Node]:
     """Yield the nodes to add, in the order of components."""
     implemented_ids = {component for node in architecture.nodes.values() for component in node.implements}
     components = [each for each in architecture.components.values() if each.id not in implemented_ids]
@@ -120,7 +144,12 @@ def make_planned_nodes(architecture: Architecture) -> Iterator[Node]:
         [each.id for each in components], {**architecture.components, **architecture.shells}, architecture.nodes
     )
     for component in components:
-        yield _make_planned_node(component, node_ids[component.id])
+        node = memory.find_planned(component, node_ids[component.id]) if memory else None
+        if node is None:
+            node = _make_planned_node(component, node_ids[component.id])
+            if memory is not None:
+                memory.keep_planned(component, node)
+        yield node
 
 
 def _make_planned_node(component: Component, name: str) -> Node:

@@ -63,25 +63,25 @@ def join_findings(
     """
     names = tuple(findings_by_variant)
     holding: dict[Diagnostic, list[str]] = {}
+    # The first of each: what others say of it besides is the same.
+    told: list[tuple[Diagnostic, list[str]]] = []
     for name, findings in findings_by_variant.items():
         for finding in findings:
             holders = holding.setdefault(replace(finding, labels=(), help=None), [])
+            if not holders:
+                told.append((finding, holders))
             if not holders or holders[-1] != name:
                 holders.append(name)
-    for finding, holders in holding.items():
+    for finding, holders in told:
         if holders[0] == BASE_NAME:
             holders += [name for name in names if finding.rule in waiting_rules[name] and name not in holders]
             holders.sort(key=names.index)
-    joined: dict[Diagnostic, Diagnostic] = {}
-    for findings in findings_by_variant.values():
-        for finding in findings:
-            identity = replace(finding, labels=(), help=None)
-            if identity not in joined and not _is_explained(finding, holding[identity], names):
-                holders = holding[identity]
-                joined[identity] = (
-                    finding if len(holders) == len(names) else _name_variants(finding, holders, names, variant_places)
-                )
-    return tuple(sorted(joined.values(), key=lambda each: each.sort_key))
+    joined = [
+        finding if len(holders) == len(names) else _name_variants(finding, holders, names, variant_places)
+        for finding, holders in told
+        if not _is_explained(finding, holders, names)
+    ]
+    return tuple(sorted(joined, key=lambda each: each.sort_key))
 
 
 def _is_explained(finding: Diagnostic, holders: Sequence[str], names: Sequence[str]) -> bool:

@@ -11,6 +11,7 @@ from archgen.compose.project_expansion import ComponentShell
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
+from archgen.link.link_memory import LinkMemory, OutlinedPorts
 from archgen.link.promise_reading import read_deprecation, read_promise
 from archgen.model.component import Output
 from archgen.model.port_media import ROS
@@ -78,8 +79,13 @@ class ElementOutline:
             yield from (output.type for output in outputs.values() if output.type)
 
 
-def build_outline(expansion: ExpandedProject) -> ElementOutline:
-    """Return the outline of a merged project in which all types are written out, by complete ids."""
+def build_outline(expansion: ExpandedProject, memory: LinkMemory | None = None) -> ElementOutline:
+    """Return the outline of a merged project in which all types are written out, by complete ids.
+
+    Ports of components that `memory` knows are taken over, where no component holds others.
+    """
+    if not expansion.is_plain:
+        memory = None
     project = mapping_values.get_mapping(expansion.root, "project")
     element_outline = ElementOutline(
         expansion=None if expansion.is_plain else expansion,
@@ -94,7 +100,10 @@ def build_outline(expansion: ExpandedProject) -> ElementOutline:
             element_outline.components[component_id] = component
             if component_id not in expansion.parents:
                 members[group_id].append(component_id)
-            _outline_ports(element_outline, component_id, component_body)
+            if memory is None:
+                _outline_ports(element_outline, component_id, component_body)
+            else:
+                _recall_ports(element_outline, component_id, component_body, memory)
     for shell in expansion.shells.values():
         body = mapping_values.get_body(shell.entry)
         if shell.parent is None:
@@ -116,6 +125,23 @@ def diagnose_undeclared_inputs(outline: ElementOutline) -> Iterator[Diagnostic]:
             help=did_you_mean(entry.key, outline.inputs[component_id]) or "`to` declares no input: write it there",
             element=component_id,
         )
+
+
+def _recall_ports(element_outline: ElementOutline, component_id: str, body: MappingNode, memory: LinkMemory) -> None:
+    """Outline the ports of a component, those that are known from another version without making them anew."""
+    middleware = element_outline.middleware
+    for known in memory.ports.list_known(component_id):
+        if known.body is body and known.middleware == middleware:
+            element_outline.inputs[component_id], element_outline.outputs[component_id] = known.inputs, known.outputs
+            return
+    _outline_ports(element_outline, component_id, body)
+    inputs, outputs = element_outline.inputs[component_id], element_outline.outputs[component_id]
+    is_plain = len(inputs) == len(mapping_values.get_mapping(body, "inputs").entries) and all(
+        _PROMISING_KEYS.isdisjoint(mapping_values.get_body(entry).entries)
+        for entry in mapping_values.get_mapping(body, "outputs")
+    )
+    if is_plain:  # nothing else is noted of it
+        memory.ports.keep_part(component_id, OutlinedPorts(body, middleware, inputs, outputs))
 
 
 def _outline_ports(element_outline: ElementOutline, component_id: str, body: MappingNode) -> None:

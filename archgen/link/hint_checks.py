@@ -7,6 +7,7 @@ stranger's costs no more time than it is long.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
@@ -14,8 +15,9 @@ from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.hint_schemas import HintFault, list_hint_faults
-from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements
+from archgen.model.annotated_elements import list_annotated_elements
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component, ComponentType
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode
@@ -69,6 +71,18 @@ _ANY_KIND = "any"
 """The key of the schema for kinds of elements that have none of their own."""
 
 
+class _HintedPart(NamedTuple):
+    """What may have hints: an element, or a parameter of one."""
+
+    kind: str
+    id: str
+    owner_id: str
+    """The element that findings about it name."""
+    hints: Mapping[str, object]
+    places: Mapping[tuple[str | int, ...], Span]
+    at: Span
+
+
 @dataclass(frozen=True, slots=True)
 class _BackendHints:
     """What a backend says of its hints: schemas by kind of element, and where."""
@@ -86,9 +100,8 @@ def find_wrong_hints(architecture: Architecture, files: ProjectFiles) -> Iterato
     backends = own_backends | _list_shipped_backends()
     read_backends: dict[str, _BackendHints | None] = {}
     judged_places: set[tuple[Span, str]] = set()
-    for each in list_annotated_elements(architecture):
-        annotations = each.element.annotations
-        for program, value in annotations.hints.items():
+    for each in _list_hinted(architecture):
+        for program, value in each.hints.items():
             if program not in backends:
                 continue
             if program not in read_backends:
@@ -97,11 +110,28 @@ def find_wrong_hints(architecture: Architecture, files: ProjectFiles) -> Iterato
             backend = read_backends[program]
             if backend is not None:
                 for fault in _judge_hints(backend, each.kind, value):
-                    place = _find_place(annotations.hint_places, (program, *fault.path), each.element.at)
+                    place = _find_place(each.places, (program, *fault.path), each.at)
                     # What instances have of their type is one slip.
                     if (place, fault.words) not in judged_places:
                         judged_places.add((place, fault.words))
                         yield _report_fault(backend, each, fault, place)
+
+
+def _list_hinted(architecture: Architecture) -> Iterator[_HintedPart]:
+    """Yield all elements with hints, and then all parameters."""
+    for each in list_annotated_elements(architecture):
+        annotations = each.element.annotations
+        if annotations.hints:
+            yield _HintedPart(
+                each.kind, each.id, each.owner_id, annotations.hints, annotations.hint_places, each.element.at
+            )
+    types = [each for each in architecture.component_types.values() if each.library is None]
+    holders: tuple[ComponentType | Component, ...] = (*types, *architecture.list_described_components())
+    for holder in holders:
+        for parameter in holder.parameters.values():
+            if parameter.hints:
+                id_ = f"{holder.id}.{parameter.name}"
+                yield _HintedPart("parameter", id_, holder.id, parameter.hints, parameter.hint_places, parameter.at)
 
 
 def _read_backend(files: ProjectFiles, program: str) -> _BackendHints | None:
@@ -146,7 +176,7 @@ def _find_place(places: Mapping[tuple[str | int, ...], Span], path: tuple[str | 
     return next((places[path[:end]] for end in range(len(path), 0, -1) if path[:end] in places), whole)
 
 
-def _report_fault(backend: _BackendHints, each: AnnotatedElement, fault: HintFault, place: Span) -> Diagnostic:
+def _report_fault(backend: _BackendHints, each: _HintedPart, fault: HintFault, place: Span) -> Diagnostic:
     path = ".".join(map(str, (backend.id, *fault.path)))
     return Diagnostic(
         WRONG_HINT.name,

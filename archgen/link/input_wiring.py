@@ -12,7 +12,7 @@ from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import PortEdge
-from archgen.model.component import Connection, Input, Output
+from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import PHYSICAL, flow_of_port, is_physical
@@ -56,16 +56,8 @@ class InputWiring:
                 if (connection := self._connect_source(component_id, input_id, reference))
             )
         )
-        if not is_leaf:
-            return self._make_input(component_id, entry, connections)
-        self.connections += connections
-        # Two references may bring the same output: one edge, in the order of first mention and with its position. The
-        # reversal makes the first mention win in the dict.
-        spans_by_output = {
-            output: connection.at for connection in reversed(connections) for output in connection.outputs
-        }
-        output_ids = dict.fromkeys(output for connection in connections for output in connection.outputs)
-        self.edges += [PortEdge(output, input_id, spans_by_output[output]) for output in output_ids]
+        if is_leaf:
+            self._add_connections(input_id, connections)
         return self._make_input(component_id, entry, connections)
 
     def _make_input(self, component_id: str, entry: MappingEntry, connections: tuple[Connection, ...]) -> Input:
@@ -98,6 +90,42 @@ class InputWiring:
             freshness_at=mapping_values.get_span(body, "freshness"),
             frame_at=mapping_values.get_span(body, "frame"),
         )
+
+    def brings_same(self, component: Component) -> bool:
+        """Whether the connections of another version's component, whose targets are the same, bring the same outputs."""
+        connections = [connection for port in component.inputs.values() for connection in port.connections]
+        if self._is_full or len(self.edges) + sum(len(each.outputs) for each in connections) > MAX_PAIRS:
+            return False
+        for each in connections:
+            if each.kind != "output" and each.outputs != tuple(
+                self._list_output_ids(ElementRef(each.kind, each.target), component.id)
+            ):
+                return False
+        return True
+
+    def take_over(self, component: Component) -> None:
+        """Take the connections of another version's component over."""
+        for port in component.inputs.values():
+            self._add_connections(port.id, port.connections)
+
+    def list_source_media(self, component: Component) -> tuple[str, ...]:
+        """Return what the outputs travel over that the inputs of a component read, in the order of connections."""
+        return tuple(
+            self._medium_of_output(output)
+            for port in component.inputs.values()
+            for connection in port.connections
+            for output in connection.outputs
+        )
+
+    def _add_connections(self, input_id: str, connections: tuple[Connection, ...]) -> None:
+        self.connections += connections
+        # Two references may bring the same output: one edge, in the order of first mention and with its position. The
+        # reversal makes the first mention win in the dict.
+        spans_by_output = {
+            output: connection.at for connection in reversed(connections) for output in connection.outputs
+        }
+        output_ids = dict.fromkeys(output for connection in connections for output in connection.outputs)
+        self.edges += [PortEdge(output, input_id, spans_by_output[output]) for output in output_ids]
 
     def _find_medium(self, body: MappingNode, outside: MappingNode, connections: Iterable[Connection]) -> str:
         """Return what an input travels over: as written, else the word of all of its sources, else the project's."""

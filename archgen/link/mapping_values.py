@@ -130,11 +130,11 @@ def get_annotations(mapping: MappingNode) -> ElementAnnotations:
         properties=get_text_mapping(mapping, "properties"),
         hints=get_data(mapping, "hints"),
         property_places={name: value.span for name, value in properties.items()},
-        hint_places=dict(_list_hint_places(get_mapping(mapping, "hints"))),
+        hint_places=dict(list_hint_places(get_mapping(mapping, "hints"))),
     )
 
 
-def _list_hint_places(hints: MappingNode) -> Iterator[tuple[tuple[str | int, ...], Span]]:
+def list_hint_places(hints: MappingNode) -> Iterator[tuple[tuple[str | int, ...], Span]]:
     """Yield where each part of an element's hints is written, by the keys and positions that lead there."""
     waiting: list[tuple[tuple[str | int, ...], object]] = [((), hints)]
     while waiting:

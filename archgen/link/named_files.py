@@ -10,6 +10,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
 from archgen.link.report_chapters import ReportChapters
+from archgen.model.known_parts import KnownParts
 from archgen.syntax.project_files import ProjectFiles
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
@@ -121,14 +122,29 @@ def list_image_paths(named_files: Iterable[NamedFile]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(paths))
 
 
-def list_named_files(root: MappingNode) -> Iterator[NamedFile]:
-    """Yield the documents and pictures that the elements of a project name, where they are written."""
+FilesByGroup = KnownParts[tuple[MappingNode, tuple[NamedFile, ...]]]
+"""What is named below groups and component types, by their ids."""
+
+
+def list_named_files(root: MappingNode, known_files: FilesByGroup | None = None) -> Iterator[NamedFile]:
+    """Yield the documents and pictures that the elements of a project name, where they are written.
+
+    `known_files` are those of other versions of the project: what is the same is not searched again.
+    """
     for section in ("groups", "component_types"):
         for name, _, body in mapping_values.iterate_elements(root, section):
-            yield from _list_below(name, body)
+            yield from _list_below(name, body) if known_files is None else _recall_files(name, body, known_files)
     for section in ("nodes", "requirements"):
         for name, _, body in mapping_values.iterate_elements(root, section):
             yield from _list_own(name, body)
+
+
+def _recall_files(name: str, body: MappingNode, known_files: FilesByGroup) -> tuple[NamedFile, ...]:
+    files = next((files for known_body, files in known_files.list_known(name) if known_body is body), None)
+    if files is None:
+        files = tuple(_list_below(name, body))
+        known_files.keep_part(name, (body, files))
+    return files
 
 
 def _list_below(element: str, body: MappingNode) -> Iterator[NamedFile]:
@@ -143,6 +159,8 @@ def _list_below(element: str, body: MappingNode) -> Iterator[NamedFile]:
 
 
 def _list_own(element: str, body: MappingNode) -> Iterator[NamedFile]:
+    if "urls" not in body.entries and "image" not in body.entries:  # nearly everything
+        return
     urls = mapping_values.get_mapping(body, "urls")
     for entry in urls:
         scalar = mapping_values.get_scalar(urls, entry.key)

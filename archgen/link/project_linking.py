@@ -18,6 +18,7 @@ from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
 from archgen.link.declare.variant_declaration import declare_variants
 from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
+from archgen.link.link_memory import LinkMemory
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
@@ -37,12 +38,14 @@ def link_project(  # noqa: PLR0913 - all by name
     lost_keys: frozenset[str] = frozenset(),
     damaged_elements: frozenset[str] = frozenset(),
     is_partial: bool = False,
+    memory: LinkMemory | None = None,
 ) -> tuple[Architecture, tuple[Diagnostic, ...]]:
     """Return the architecture of a project's merged slices. What cannot be resolved is left out and reported.
 
     `default_id` and `default_title` are used where the project states none. `lost_keys` are the keys of what could not
     be read: what they may declare is not reported as unknown, and neither is what may stand in `damaged_elements`, in
-    which something could not be read. `is_partial` is whether a whole file or section was lost.
+    which something could not be read. `is_partial` is whether a whole file or section was lost. What
+    `memory` knows from another version of the project is taken over where it is the same.
     """
     # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
     # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
@@ -52,9 +55,11 @@ def link_project(  # noqa: PLR0913 - all by name
     diagnostics += (*element_outline.diagnostics, *diagnose_undeclared_inputs(element_outline))
     damaged_elements = damaged_elements | expansion.damaged_elements
     types = declared_types.types
-    resolver = make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements)
+    if lost_keys or damaged_elements or not expansion.is_plain:
+        memory = None  # what could not be read, and what stands around a component, has a say in too many things
+    resolver = make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements, memory)
     parameters = HandedParameters(element_outline, diagnostics)
-    declared_groups = declare_groups(element_outline, resolver, types, parameters)
+    declared_groups = declare_groups(element_outline, resolver, types, parameters, memory)
     components, shells = declared_groups.components, declared_groups.shells
     written_targets = resolve_implements(root, resolver)
     implemented = declare_component_nodes(
@@ -64,7 +69,9 @@ def link_project(  # noqa: PLR0913 - all by name
     containers = deployment_declaration.declare_containers(implemented.root, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
-        implemented.root, NodeContext(element_outline, resolver, components, containers, timing_merger), implemented
+        implemented.root,
+        NodeContext(element_outline, resolver, components, containers, timing_merger, memory),
+        implemented,
     )
     requirements = declare_requirements(root, resolver)
     use_cases = declare_use_cases(root, resolver)
@@ -122,12 +129,13 @@ def link_project(  # noqa: PLR0913 - all by name
     return architecture, tuple(diagnostics)
 
 
-def make_resolver(
+def make_resolver(  # noqa: PLR0913, PLR0917 - what a resolver knows
     root: MappingNode,
     element_outline: ElementOutline,
     diagnostics: list[Diagnostic],
     lost_keys: frozenset[str] = frozenset(),
     damaged_elements: frozenset[str] = frozenset(),
+    memory: LinkMemory | None = None,
 ) -> ReferenceResolver:
     """Return what resolves the references of a merged project in which all types are written out."""
     spans: dict[str, dict[str, Span]] = {
@@ -146,4 +154,8 @@ def make_resolver(
         kind: {entry.key: entry.key_span for entry in mapping_values.get_mapping(root, section)}
         for kind, section in PLAIN_SECTIONS.items()
     }
-    return ReferenceResolver(spans, plain_spans, diagnostics, lost_keys, damaged_elements)
+    make_index = memory.index_paths if memory else None
+    all_names = memory.recall_names(spans, plain_spans) if memory else None
+    return ReferenceResolver(
+        spans, plain_spans, diagnostics, lost_keys, damaged_elements, make_index=make_index, all_names=all_names
+    )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
@@ -12,7 +14,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.link import mapping_values
 from archgen.link.unknown_references import diagnose_unknown_reference
-from archgen.model.path_resolver import NO_MATCH, ElementRef, PathMatch, PathResolver
+from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 # How many parts the complete path of each kind has where no component holds others: a reference with more parts cannot
@@ -36,6 +38,24 @@ the limit, thousands of unknown references would take time that grows with the s
 """
 
 
+class Answer(NamedTuple):
+    """A reference that was resolved, and what it means; None for what is named by its id alone."""
+
+    text: str
+    kinds: Sequence[str]
+    component_id: str | None = None
+    target: ElementRef | None = None
+
+
+@dataclass(slots=True)
+class HeardAnswers:
+    """What was resolved for one element."""
+
+    answers: list[Answer]
+    is_flawless: bool = False
+    """Whether nothing was found fault with."""
+
+
 @dataclass(slots=True)
 class ReferenceResolver:
     """Resolves references to everything that can be referred to, and collects what is wrong with them."""
@@ -51,6 +71,12 @@ class ReferenceResolver:
     """The ids of components in which something could not be read: what it may be is not reported as unknown."""
     suspect_ids: set[str] = field(default_factory=set)
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
+    make_index: Callable[[str, Iterable[str]], PathIndex] | None = None
+    """What indexes the ids of a kind, where somebody remembers these."""
+    all_names: object = None
+    """What stands for all names of this version: with the same object each reference means the same in another one."""
+    answers: list[Answer] | None = None
+    """What was resolved since somebody began to listen, None where nobody does."""
     names: PathResolver = field(init=False)
     _is_finished: bool = False
     _extra_depth: int = field(init=False, default=0)
@@ -58,7 +84,7 @@ class ReferenceResolver:
     _candidate_paths: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.names = PathResolver(self.spans)
+        self.names = PathResolver(self.spans, self.make_index) if self.make_index else PathResolver(self.spans)
         # Components inside of components have longer ids.
         self._extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
 
@@ -95,12 +121,36 @@ class ReferenceResolver:
             hidden_elements = [element for element in match.hidden_elements if element.id not in own_components]
             if hidden_elements:
                 self._warn_hidden(reference, target, hidden_elements, element_id)
+        if self.answers is not None:
+            self.answers.append(Answer(dotted_path, tuple(kinds), component_id, target))
         return target
 
     def report_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> None:
         """Report a reference that can mean several elements."""
         self.suspect_ids.update(name.id for name in match.elements)
         self.diagnostics.append(self._diagnose_ambiguous(reference, match, element_id))
+
+    @contextmanager
+    def listen(self) -> Iterator[HeardAnswers]:
+        """Note what is resolved, and whether anything is found fault with."""
+        heard = HeardAnswers([])
+        counts = len(self.diagnostics), len(self.suspect_ids)
+        self.answers = heard.answers
+        yield heard
+        self.answers = None
+        heard.is_flawless = counts == (len(self.diagnostics), len(self.suspect_ids))
+
+    def gives_answers(self, answers: Iterable[Answer]) -> bool:
+        """Whether references still mean, without any doubt, what they meant in another version of the project."""
+        for text, kinds, component_id, target in answers:
+            if target is None:
+                if text not in self.plain_spans.get(kinds[0], ()):
+                    return False
+            else:
+                match = self.names.resolve_path(text, kinds, component_id=component_id)
+                if match.hidden_elements or match.unique_element != target:
+                    return False
+        return True
 
     def finish_resolving(self) -> frozenset[str]:
         """Return the suspects of all references; from here on the resolver refuses to resolve any more."""
@@ -111,8 +161,12 @@ class ReferenceResolver:
         """Return the id of a partner, host, container or use case; None, and a diagnostic, if there is no such one."""
         self._refuse_if_finished()
         known_spans = self.plain_spans[kind]
-        if reference is None or reference.text in known_spans:
-            return reference.text if reference else None
+        if reference is None:
+            return None
+        if reference.text in known_spans:
+            if self.answers is not None:
+                self.answers.append(Answer(reference.text, (kind,)))
+            return reference.text
         if self.is_lost(reference.text) or PLAIN_SECTIONS[kind] in self.lost_keys:
             return None
         guess = self.guess_name(reference.text, known_spans)

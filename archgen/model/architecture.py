@@ -283,6 +283,9 @@ class Architecture:
     def list_described_components(self) -> Iterator[Component]:
         """Yield the composed components, then the leaves; what is not designed yet of a composed one is not told twice."""
         yield from self.shells.values()
+        if not self.shells:
+            yield from self.components.values()
+            return
         yield from (component for component in self.components.values() if component.id not in self.shells)
 
     def list_around(self, component: Component) -> Iterator[Component]:

@@ -37,6 +37,13 @@ def make_camel_name(name: str) -> str:
 
 
 @lru_cache(16_384)
+def make_lower_camel_name(name: str) -> str:
+    """Return a name in words of which all but the first begin with a capital: `leftArm`. It is as `make_camel_name` says."""
+    camel_name = make_camel_name(name)
+    return camel_name[0].lower() + camel_name[1:]
+
+
+@lru_cache(16_384)
 def make_identifier_in(language: str, name: str) -> str:
     """Return a name as an identifier of `python`, `cpp` or `java`, letters of either case; a keyword gets `_` behind it."""
     # Two underscores in a row, or one in front, are the compiler's and the library's own.

@@ -35,6 +35,8 @@ class Parameter:
     visibility: Visibility | None = None
     handed_from: str | None = None
     hints: Mapping[str, object] = field(default_factory=dict)
+    hint_places: Mapping[tuple[str | int, ...], Span] = field(default_factory=dict, compare=False, repr=False)
+    """Where each part of the hints is written, by the keys and positions that lead there, the program first."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     value_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 

@@ -6,7 +6,7 @@ search walks over the elements.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -48,20 +48,31 @@ class PathMatch:
 NO_MATCH = PathMatch((), 0)
 
 
+class PathIndex(NamedTuple):
+    """The ids of one kind, by what a path may be. Without those by group, candidates would be filtered out of all."""
+
+    complete: frozenset[str]
+    ends: Mapping[str, Sequence[str]]
+    """Complete ids by ending."""
+    ends_in_group: Mapping[tuple[str, str], Sequence[str]]
+    """The same by group and ending."""
+
+
 class PathResolver:
     """Finds elements by any ending of their complete ids."""
 
     __slots__ = ("_complete", "_ends", "_ends_in_group")
 
-    def __init__(self, ids: Mapping[str, Iterable[str]]) -> None:
-        """Index the complete ids of each kind."""
-        self._complete = {kind: frozenset(paths) for kind, paths in ids.items()}
-        # By kind: ids by ending, and ids by group and ending. Without the second, candidates in a group would have to
-        # be filtered out of all those in the project.
-        self._ends: dict[str, dict[str, list[str]]] = {}
-        self._ends_in_group: dict[str, dict[tuple[str, str], list[str]]] = {}
-        for kind, paths in ids.items():
-            self._ends[kind], self._ends_in_group[kind] = _index_endings(paths)
+    def __init__(
+        self,
+        ids: Mapping[str, Iterable[str]],
+        make_index: Callable[[str, Iterable[str]], PathIndex] = lambda _kind, paths: index_paths(paths),
+    ) -> None:
+        """Index the complete ids of each kind; `make_index` takes a kind and its ids."""
+        indexes = {kind: make_index(kind, paths) for kind, paths in ids.items()}
+        self._complete = {kind: index.complete for kind, index in indexes.items()}
+        self._ends = {kind: index.ends for kind, index in indexes.items()}
+        self._ends_in_group = {kind: index.ends_in_group for kind, index in indexes.items()}
 
     def resolve_path(self, path: str, kinds: Sequence[str], *, component_id: str | None = None) -> PathMatch:
         """Resolve a path among some kinds, as written in a component (by complete id) or outside all groups (None).
@@ -112,8 +123,9 @@ class PathResolver:
         return self._ends[kind].get(path, ())
 
 
-def _index_endings(element_ids: Iterable[str]) -> tuple[dict[str, list[str]], dict[tuple[str, str], list[str]]]:
+def index_paths(element_ids: Iterable[str]) -> PathIndex:
     """Index ids by their endings, and by group and ending; the complete id is an ending only in the first index."""
+    element_ids = tuple(element_ids)
     everywhere: dict[str, list[str]] = {}
     in_group: dict[tuple[str, str], list[str]] = {}
     for element_id in element_ids:
@@ -123,7 +135,7 @@ def _index_endings(element_ids: Iterable[str]) -> tuple[dict[str, list[str]], di
             everywhere.setdefault(ending, []).append(element_id)
             in_group.setdefault((group, ending), []).append(element_id)
             _, dot, ending = ending.partition(".")
-    return everywhere, in_group
+    return PathIndex(frozenset(element_ids), everywhere, in_group)
 
 
 def _match_endings(ids_by_kind: Mapping[str, Sequence[str]], excluded: tuple[ElementRef, ...]) -> PathMatch:

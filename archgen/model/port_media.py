@@ -127,6 +127,11 @@ def label_of_carrier(carrier: Topic | Endpoint) -> str:
     return carrier.name if carrier.medium == ROS else f"{name_on_medium(carrier)} ({name_medium(carrier.medium)})"
 
 
+def key_of_channel(carrier: Topic | Endpoint) -> str:
+    """Return the key of a channel, or of what an endpoint uses, among the architecture's channels."""
+    return make_channel_key(carrier.name, carrier.flow)
+
+
 def name_on_medium(carrier: Topic | Endpoint) -> str:
     """Return the name of a topic or channel without the word of its medium."""
     return carrier.name if carrier.medium == ROS else carrier.name.removeprefix(f"{carrier.medium} ")
@@ -138,7 +143,12 @@ def describe_carried(port: Input | Output) -> str:
         return "a message"
     if port.medium == PHYSICAL:
         return "a physical quantity"
-    return f"data {_STORES.get(port.medium) or f'over {name_medium(port.medium)}'}"
+    return f"data {describe_way(port.medium)}"
+
+
+def describe_way(medium: str) -> str:
+    """Return in words how data goes that is no ROS: over a medium, or by being put somewhere."""
+    return _STORES.get(medium) or f"over {name_medium(medium)}"
 
 
 def flow_of_port(port: Input | Output, carried_type: ConceptualType | None) -> PortFlow:

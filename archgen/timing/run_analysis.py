@@ -20,6 +20,7 @@ from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
+from archgen.timing.system.built_parts import BuiltParts
 from archgen.timing.system.core_placement import find_resources, split_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
@@ -45,14 +46,19 @@ class AnalysisMemory:
         self._analyses: list[Analysis] = []
         """The one that was asked for last comes first."""
         self._room = _MAX_ANALYSES
+        self._parts: BuiltParts | None = None
 
     def make_room(self, version_count: int) -> None:
-        """Remember at least so many analyses: whoever judges so many versions holds all of them anyway."""
+        """Remember at least so many analyses: whoever judges so many versions holds all of them anyway.
+
+        They are variants of one project: what they are built from is the same, as far as they share it.
+        """
         self._room = max(self._room, version_count)
+        self._parts = BuiltParts()
 
     def judge_architecture(self, architecture: Architecture) -> Analysis:
         """Analyse an architecture for judging; an earlier analysis, where every figure and every place is the same."""
-        system, notes = build(architecture)
+        system, notes = build(architecture, self._parts)
         known = next((each for each in self._analyses if _is_same_system(each, system, notes)), None)
         analysis = known or analyse_system(system, notes, judging=True)
         others = [each for each in self._analyses if each is not analysis]

@@ -30,6 +30,7 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         ("variant", architecture.variants),
         ("type", architecture.types),
         ("topic", architecture.topics),
+        ("channel", architecture.channels),
         ("partner", architecture.partners),
     ):
         if name in elements:

@@ -14,7 +14,7 @@ from archgen.model.component_nesting import find_component
 from archgen.model.declared_timing import InputTiming, Timing
 from archgen.model.deployment import Host
 from archgen.model.node import Endpoint, Node, Qos, Topic
-from archgen.model.port_media import ROS, name_medium, name_on_medium
+from archgen.model.port_media import ROS, key_of_channel, name_medium, name_on_medium
 from archgen.model.quantity import Quantity
 from archgen.model.source_repository import SourceRepository
 from archgen.views.shapes import Inlines, Text
@@ -128,10 +128,11 @@ def topic_link(topic_name: str) -> Text:
 
 
 def name_carrier(carrier: Topic | Endpoint) -> Inlines:
-    """Return the name of a topic, service or action as a link; of what is no ROS, which has no page, with its medium."""
+    """Return the name of a topic, service or action as a link; of what is no ROS with its medium."""
     if carrier.medium == ROS:
         return (topic_link(carrier.name),)
-    return (share_text(name_on_medium(carrier), code=True), Text(f" ({name_medium(carrier.medium)})"))
+    link = share_text(name_on_medium(carrier), f"channel:{key_of_channel(carrier)}", code=True)
+    return (link, Text(f" ({name_medium(carrier.medium)})"))
 
 
 def requirement_link(architecture: Architecture, requirement_id: str) -> Inlines:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from archgen.frozen import dataclass
 from archgen.model.requirement import Requirement
@@ -29,6 +29,10 @@ class ExchangedRequirement:
     verified_by: tuple[tuple[str, str], ...]
     served_by: str
     state: str
+    foreign_identifier: str = ""
+    """What the other tool calls its object, empty where it comes from none."""
+    foreign_id: str = ""
+    """The id that people read in the other tool, where it is another one than here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,4 +76,14 @@ def _exchange_requirement(lookup: Lookup, requirement: Requirement, shown_ids: C
         tuple((each.kind, each.text) for each in requirement.verified_by),
         "; ".join(list_server_words(lookup, requirement)),
         lookup.requirement_trace.judge(requirement.id),
+        _read_hint(requirement, "identifier"),
+        _read_hint(requirement, "id"),
     )
+
+
+def _read_hint(requirement: Requirement, key: str) -> str:
+    """Return what an import noted of the other tool: a word in the hints of the requirement."""
+    hints = requirement.annotations.hints.get("reqif")
+    name = hints.get(key) if isinstance(hints, Mapping) else None
+    # Whoever writes `id: 12` by hand means the text.
+    return "" if name is None or isinstance(name, (list, dict)) else str(name)

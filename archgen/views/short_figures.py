@@ -32,6 +32,16 @@ def round_number(value: Decimal, sign: str = "") -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def shorten_bounds(text: str) -> str:
+    """Return a text whose quantities are upper bounds with three significant digits each; what it says stays true."""
+
+    def shorten_bound(found: re.Match[str]) -> str:
+        number, unit = shorten_quantity(found[1] or "<", found[2], found[3])
+        return f"{found[1] or ''}{number} {unit}"
+
+    return QUANTITY.sub(shorten_bound, text)
+
+
 def split_figures(text: str) -> list[tuple[str, str]]:
     """Split a text into its parts, each with its shorter form: empty but for a quantity that has one.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
 import pytest
 
@@ -180,3 +181,22 @@ def test_a_relation_that_closes_a_circle_is_left_out_and_listed(run: Run, projec
     assert told in done.out.splitlines()
     requirements = check_project(project).architecture.requirements
     assert (requirements["R-2"].parents, requirements["Bremse-4"].parents) == (("Bremse-4",), ("Hoehe-3",))
+
+
+def test_what_came_from_another_tool_goes_back_as_it_is_called_there(run: Run, project: Path) -> None:
+    (project / "archgen.yaml").write_text("archgen: 1\nproject: {id: robot}\ngroups: {g: }\n", encoding="utf-8")
+    assert run("import", str(DOORS), "-C", str(project)).status == 0
+    sent = export(run, project)
+    root = ET.fromstring(sent)  # noqa: S314 - our own file
+    names = {
+        element.get("IDENTIFIER"): {value.get("THE-VALUE") for value in element.iter() if value.get("THE-VALUE")}
+        for element in root.iter()
+        if element.tag.endswith("}SPEC-OBJECT")
+    }
+    assert names.keys() == {"_2", "_3", "_4"}
+    assert ("Höhe 3" in names["_3"], "Bremse 4" in names["_4"], "2" in names["_2"]) == (True, True, True)
+    references = {element.text for element in root.iter() if element.tag.endswith("}SPEC-OBJECT-REF")}
+    assert references == {"_2", "_3", "_4"}
+    (project / "requirements.yaml").unlink()
+    assert run("import", str(project.parent / "out.reqif"), "-C", str(project)).status == 0
+    assert export(run, project) == sent

@@ -423,7 +423,7 @@ def test_what_cards_show_is_compared(lookup: Lookup) -> None:
         (kind.replace(" ", "_"), fact)
         for element_id, kinds in kinds_by_id(lookup).items()
         for kind in kinds
-        if kind != "topic"  # made of what nodes say of their ports
+        if kind not in {"topic", "channel"}  # made of what nodes say of their ports
         for fact, _ in make_card(lookup, kind, element_id).facts
     }
     assert [(k, fact) for k, fact in sorted(shown) if fact not in {*table_keys(k), *CARD_ONLY}] == []
@@ -434,7 +434,7 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
     assert set(MODEL_CLASSES) == kinds
     assert set(SECTIONS) == kinds - {"project"}
     carded = {kind.replace(" ", "_") for kinds in kinds_by_id(lookup).values() for kind in kinds}
-    assert carded - {"topic", "composed"} == set(SECTIONS)
+    assert carded - {"topic", "channel", "composed"} == set(SECTIONS)
     # What else an architecture maps from ids: topics follow from nodes.
     mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
     # Nor are composed components a kind of their own in files; properties and terms are the project's.

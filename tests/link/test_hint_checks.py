@@ -112,6 +112,53 @@ def test_odd_numbers_are_judged(number: float, faults: int) -> None:
     assert [fault.path for fault in list_hint_faults(document.root, number)] == [()] * faults
 
 
+PARAMETERS = """\
+archgen: 1
+component_types:
+  Motor: {parameters: {gain: {type: float, hints: {orca: {tag: Gain}}}, limit: {type: float, hints: {orca: {tags: L}}}}}
+groups:
+  g:
+    components:
+      left: {is: Motor, parameters: {gain: 1.5, limit: 2.5}}
+      right: {is: Motor, parameters: {gain: 1.5, limit: 2.5}}
+      a: {functionality: F, parameters: {speed: {value: 3, hints: {orca: [x]}}}}
+nodes: {a: {implements: a}, left: {implements: left}, right: {implements: right}}
+"""
+PARAMETER_MANIFEST = MANIFEST.replace(
+    "  output: {}\n", "  parameter: {type: object, additionalProperties: false, properties: {tag: {type: string}}}\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("manifest", "found"),
+    [
+        (
+            PARAMETER_MANIFEST,
+            [
+                "3:109: `hints.orca.tags` of the parameter `Motor.limit` is no key that the backend reads",
+                "9:68: `hints.orca` of the parameter `g.a.speed` is a list, but must be a mapping",
+            ],
+        ),
+        (
+            MANIFEST,
+            [
+                "3:52: `hints.orca` of the parameter `Motor.gain` is not read: the backend reads hints of `component`, `output`",
+                "3:102: `hints.orca` of the parameter `Motor.limit` is not read: the backend reads hints of `component`, `output`",
+                "9:68: `hints.orca` of the parameter `g.a.speed` is not read: the backend reads hints of `component`, `output`",
+            ],
+        ),
+    ],
+)
+def test_hints_at_parameters_are_judged_once_where_they_are_written(
+    tmp_path: Path, manifest: str, found: list[str]
+) -> None:
+    (tmp_path / "archgen.yaml").write_text(PARAMETERS, encoding="utf-8")
+    (tmp_path / "backends" / "orca").mkdir(parents=True)
+    (tmp_path / "backends" / "orca" / "backend.yaml").write_text(manifest, encoding="utf-8")
+    findings = [each for each in check_project(tmp_path).findings if each.rule == WRONG_HINT.name]
+    assert [f"{each.span.line}:{each.span.column}: {each.message}" for each in findings] == found
+
+
 @pytest.mark.parametrize(
     ("limits", "faults"),
     [("minimum: 1e3", 1), ("maximum: .5", 1), ("minimum: .nan", 0), ("minimum: -.inf", 0), ("minimum: true", 0)],

@@ -447,3 +447,19 @@ def test_what_fields_and_constants_mean_is_a_part_of_the_agreement() -> None:
         "answer | state.what | uint8 | ",
         "answer | state.LOST | uint8 = 0 | nothing was seen",
     ]
+
+
+def test_requirements_that_only_a_chain_serves_are_behind_its_interfaces(tmp_path: Path) -> None:
+    source = DUO.replace("requirements: [R-1]}}", "requirements: [R-1, R-7]}}")
+    source = source.replace("on the table}", "on the table, R-7: Quick}")
+    assert source.count("R-7") == 2
+    said = {
+        title: [line for line in lines(section(made(tmp_path, source=source).outline, title).blocks) if "R-7" in line]
+        for title in ("Finder · objects", "Planner · plan")
+    }
+    (line,) = said["Finder · objects"]
+    assert line.splitlines() == [
+        "Requirements: R-1 The arm grasps what lies on the table (Finder, Planner)",
+        "R-7 Quick (the chain See And Move)",
+    ]
+    assert said["Planner · plan"] == []

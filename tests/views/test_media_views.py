@@ -14,10 +14,10 @@ from archgen.views.explorer.map_flows import make_flow_tables
 from archgen.views.graphs.implementation_graph import draw_implementation
 from archgen.views.graphs.ros_graph import draw_ros_graph
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.pages.context_pages import make_topic_tables
+from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables
 from archgen.views.pages.host_pages import make_host_pages
 from archgen.views.search.implementation_entries import make_channel_entries
-from archgen.views.shapes import Facts, Inlines
+from archgen.views.shapes import Facts, Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows
 
 ROBOT = """
@@ -57,7 +57,7 @@ def test_the_picture_of_an_implementation_has_a_box_for_each_channel(lookup: Loo
     boxes = {box.title: (box.lines, box.ref) for box in graph.boxes if box.id.startswith("topic ")}
     assert boxes == {
         "/air/drone/image": (("sensor_msgs/msg/Image",), "topic:/air/drone/image"),
-        "fleet/pose": (("Pose", "(MQTT)"), None),
+        "fleet/pose": (("Pose", "(MQTT)"), "channel:mqtt fleet/pose"),
     }
     media = {(arrow.tail, arrow.head): arrow.medium for arrow in graph.arrows if arrow.medium}
     assert media == {("drone", "topic mqtt fleet/pose"): "MQTT", ("topic mqtt fleet/pose", ">screen"): "MQTT"}
@@ -142,3 +142,32 @@ def test_the_page_of_a_host_names_links_and_devices(lookup: Lookup) -> None:
         name: text(value) for block in page.section.blocks if isinstance(block, Facts) for name, value in block.rows
     }
     assert (facts["Links"], facts["Devices"]) == ("Bus (EtherCAT)", "Motors (on Bus)")
+
+
+def test_each_has_a_page_that_is_linked_and_a_card(lookup: Lookup) -> None:
+    pages = {page.anchor: page for page in make_topic_pages(lookup) if page.kind == "channels"}
+    assert list(pages) == ["channel:mqtt fleet/pose", "channel:rest ground.depot.orders (service)"]
+    page = pages["channel:mqtt fleet/pose"]
+    assert (page.title, page.lead, page.path) == ("fleet/pose", "Data over MQTT", "channels/mqtt-fleet-pose.html")
+    facts, senders, readers = page.section.blocks
+    assert isinstance(facts, Facts)
+    assert isinstance(senders, Table)
+    assert isinstance(readers, Table)
+    assert [(name, text(value)) for name, value in facts.rows] == [
+        ("Medium", "MQTT"),
+        ("Type", "Pose"),
+        ("Size", "100 B"),
+        ("Hosts", "Pc"),
+    ]
+    assert [[text(cell) for cell in row] for block in (senders, readers) for row in block.rows] == [
+        ["drone", "Drone", "pose"],
+        ["screen", "Screen", "pose"],
+    ]
+    (table,) = (each for each in make_topic_tables(lookup) if each.anchor == "table:channels")
+    assert {run.ref for row in table.rows for run in row[0] if run.ref} == set(pages)
+    assert {entry.refs[0] for entry in make_channel_entries(lookup)} == set(pages)
+    assert find_elements(lookup, "fleet/pose") == [("channel", "fleet/pose")]
+    card = make_card(lookup, "channel", "fleet/pose")
+    assert (dict(card.facts)["medium"], card.lists) == ("MQTT", (("from", ("drone",)), ("to", ("screen",))))
+    # What nobody named is called after its output, and shown as that.
+    assert [kind for kind, _ in find_elements(lookup, "ground.depot.orders")] == ["output"]

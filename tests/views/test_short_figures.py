@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.views.short_figures import split_figures
+from archgen.views.short_figures import shorten_bounds, split_figures
 
 
 @pytest.mark.parametrize(
@@ -21,3 +21,19 @@ from archgen.views.short_figures import split_figures
 )
 def test_bounds_stay_true_and_what_differs_stays_apart(text: str, shown: str) -> None:
     assert "".join(short or part for part, short in split_figures(text)) == shown
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("104.667 ms", "105 ms"),
+        ("104.2 ms", "105 ms"),
+        ("<= 1234.56 ms", "<= 1.24 s"),
+        (">= 1234.56 ms", ">= 1.23 s"),
+        ("at most 8.1 s", "at most 8.1 s"),
+        ("not proven (0.012345 s)", "not proven (0.0124 s)"),
+        ("not proven", "not proven"),
+    ],
+)
+def test_upper_bounds_are_rounded_up(text: str, shown: str) -> None:
+    assert shorten_bounds(text) == shown

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
+from archgen.emit.reqif.object_identities import assign_identifiers
 from archgen.emit.reqif.reqif_texts import make_attribute, make_xhtml
 from archgen.views.requirement_exchange import ExchangedRequirement, RequirementExchange
 
@@ -32,9 +33,10 @@ def _list_lines(exchange: RequirementExchange) -> Iterator[str]:
     yield "<CORE-CONTENT><REQ-IF-CONTENT>"
     yield from _list_datatypes(exchange)
     yield from _list_types()
-    yield from _list_objects(exchange)
-    yield from _list_relations(exchange)
-    yield from _list_specification(exchange)
+    identifiers = assign_identifiers(exchange.requirements)
+    yield from _list_objects(exchange, identifiers)
+    yield from _list_relations(exchange, identifiers)
+    yield from _list_specification(exchange, identifiers)
     yield "</REQ-IF-CONTENT></CORE-CONTENT>"
     yield "</REQ-IF>"
 
@@ -97,10 +99,10 @@ def _digest(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:16]
 
 
-def _list_objects(exchange: RequirementExchange) -> Iterator[str]:
+def _list_objects(exchange: RequirementExchange, identifiers: Mapping[str, str]) -> Iterator[str]:
     yield "<SPEC-OBJECTS>"
     for requirement in exchange.requirements:
-        yield from _list_requirement(requirement)
+        yield from _list_requirement(requirement, identifiers[requirement.id])
     for name, title in exchange.use_cases:
         yield from _list_object(f"usecase-{name}", "use-case", {"ReqIF.ForeignID": name, "ReqIF.Name": title})
     verifiers = (each for requirement in exchange.requirements for each in requirement.verified_by)
@@ -113,9 +115,9 @@ def _verifier_id(kind: str, text: str) -> str:
     return f"usecase-{text}" if kind == "use_case" else f"verification-{_digest(text)}"
 
 
-def _list_requirement(requirement: ExchangedRequirement) -> Iterator[str]:
+def _list_requirement(requirement: ExchangedRequirement, identifier: str) -> Iterator[str]:
     lines = {
-        "ReqIF.ForeignID": requirement.id,
+        "ReqIF.ForeignID": requirement.foreign_id or requirement.id,
         "ReqIF.Name": requirement.title,
         "Source": requirement.source,
         "Tags": ", ".join(requirement.tags),
@@ -124,7 +126,7 @@ def _list_requirement(requirement: ExchangedRequirement) -> Iterator[str]:
     }
     texts = {"ReqIF.Text": requirement.description, "Rationale": requirement.rationale}
     words = {"Kind": requirement.kind, "Priority": requirement.priority}
-    yield from _list_object(f"requirement-{requirement.id}", "requirement", lines, texts, words)
+    yield from _list_object(identifier, "requirement", lines, texts, words)
 
 
 def _list_object(
@@ -158,11 +160,11 @@ def _give_value(sort: str, type_id: str, name: str, value: str, inner: str) -> s
     return f"<ATTRIBUTE-VALUE-{sort}{value}>{parts}</ATTRIBUTE-VALUE-{sort}>"
 
 
-def _list_relations(exchange: RequirementExchange) -> Iterator[str]:
+def _list_relations(exchange: RequirementExchange, identifiers: Mapping[str, str]) -> Iterator[str]:
     yield "<SPEC-RELATIONS>"
     for requirement in exchange.requirements:
         targets: Iterable[tuple[str, str]] = (
-            *(("part-of", f"requirement-{parent}") for parent in requirement.parents),
+            *(("part-of", identifiers[parent]) for parent in requirement.parents),
             *(("verified-by", _verifier_id(kind, text)) for kind, text in requirement.verified_by),
             *(("use-case", f"usecase-{name}") for name in requirement.use_cases),
         )
@@ -170,12 +172,12 @@ def _list_relations(exchange: RequirementExchange) -> Iterator[str]:
             relation_id = f"relation-{_digest(f'{relation} {requirement.id} {target}')}"
             yield f'<SPEC-RELATION IDENTIFIER="{relation_id}" {_CHANGE}>'
             yield f"<TYPE><SPEC-RELATION-TYPE-REF>relation-{relation}</SPEC-RELATION-TYPE-REF></TYPE>"
-            yield f"<SOURCE><SPEC-OBJECT-REF>requirement-{requirement.id}</SPEC-OBJECT-REF></SOURCE>"
+            yield f"<SOURCE><SPEC-OBJECT-REF>{identifiers[requirement.id]}</SPEC-OBJECT-REF></SOURCE>"
             yield f"<TARGET><SPEC-OBJECT-REF>{target}</SPEC-OBJECT-REF></TARGET></SPEC-RELATION>"
     yield "</SPEC-RELATIONS>"
 
 
-def _list_specification(exchange: RequirementExchange) -> Iterator[str]:
+def _list_specification(exchange: RequirementExchange, identifiers: Mapping[str, str]) -> Iterator[str]:
     """Yield the tree; what is part of several stands below each of them."""
     title = make_attribute(f"Requirements of {exchange.title}")
     yield "<SPECIFICATIONS>"
@@ -189,7 +191,7 @@ def _list_specification(exchange: RequirementExchange) -> Iterator[str]:
             yield "</CHILDREN></SPEC-HIERARCHY>"
             open_count -= 1
         yield f'<SPEC-HIERARCHY IDENTIFIER="place-{number}-{name}" {_CHANGE}>'
-        yield f"<OBJECT><SPEC-OBJECT-REF>requirement-{name}</SPEC-OBJECT-REF></OBJECT><CHILDREN>"
+        yield f"<OBJECT><SPEC-OBJECT-REF>{identifiers[name]}</SPEC-OBJECT-REF></OBJECT><CHILDREN>"
         open_count += 1
     yield from ["</CHILDREN></SPEC-HIERARCHY>"] * open_count
     yield "</CHILDREN></SPECIFICATION></SPECIFICATIONS>"

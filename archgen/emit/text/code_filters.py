@@ -103,6 +103,20 @@ def write_java_string(value: object) -> str:
     return '"' + "".join(_escape_java_unit(code) for code in codes) + '"'
 
 
+def write_java_value(value: object) -> str:
+    """Return a value of a parameter as Java has it: texts, booleans, long and double, and lists of them."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return f"{value}L"
+    if isinstance(value, float):
+        special = {math.inf: "Double.POSITIVE_INFINITY", -math.inf: "Double.NEGATIVE_INFINITY"}
+        return repr(value) if math.isfinite(value) else special.get(value, "Double.NaN")
+    if isinstance(value, list | tuple):
+        return "List.of(" + ", ".join(write_java_value(each) for each in value) + ")"
+    return write_java_string(value)
+
+
 def _escape_java_unit(code: int) -> str:
     character = chr(code)
     short = {"\n": "\\n", "\r": "\\r", "\t": "\\t", '"': '\\"', "\\": "\\\\", "\f": "\\f", "\b": "\\b"}.get(character)
@@ -165,6 +179,7 @@ CODE_FILTERS: Mapping[str, Callable[[object], str]] = {
     "cpp_value": write_cpp_value,
     "java_name": lambda value: make_identifier_in("java", _print_text(value)),
     "java_string": write_java_string,
+    "java_value": write_java_value,
     "line_comment": write_line_comment,
     "one_line": write_one_line,
     "python_name": lambda value: make_identifier_in("python", _print_text(value)),

@@ -172,7 +172,8 @@ class _RequirementTaker:
         tags = meanings.chosen.get("tags") or values.get("tags", "").split(",")
         if words := list(dict.fromkeys(word for tag in tags if (word := _make_word(tag)))):
             body["tags"] = words
-        if self._document.source_tool != OWN_TOOL:
+        # An export of archgen's has archgen's identifiers, but for what came from another tool before.
+        if self._document.source_tool != OWN_TOOL or entry.id != f"requirement-{made_id}":
             body["hints"] = make_identity_hints(entry.id, shown_id, made_id)
         self._result.requirements[made_id] = {
             key: value for key, value in body.items() if not (key == "title" and value == made_id)

@@ -16,6 +16,7 @@ from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
+from archgen.link.link_memory import LinkedLeaf, LinkMemory
 from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
 from archgen.link.port_sources import PortSources
@@ -66,8 +67,12 @@ def declare_groups(
     resolver: ReferenceResolver,
     types: Mapping[str, ConceptualType],
     parameters: HandedParameters,
+    memory: LinkMemory | None = None,
 ) -> DeclaredGroups:
-    """Declare every group with its components, and wire their inputs."""
+    """Declare every group with its components, and wire their inputs.
+
+    Components that `memory` knows are taken over; it is for projects in which no component holds others.
+    """
     sources = None
     if outline.expansion:
         sources = PortSources(outline, resolver, types)
@@ -81,6 +86,7 @@ def declare_groups(
         parameters,
         promised_outputs=PromisedOutputs(outline, sources, parameters, resolver),
         outside_readers=sources.list_given_outside() if sources else {},
+        memory=None if sources else memory,
     )
     open_shells = OpenShells(outline, sources) if sources else None
     groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
@@ -109,6 +115,7 @@ class _GroupDeclarer:
     """The owners of groups and composed components, by complete id."""
     outside_readers: Mapping[str, MappingNode] = field(default_factory=dict)
     """The outputs of composed components that go outside of the system, by the leaf's output that they give on."""
+    memory: LinkMemory | None = None
 
     def declare_group(self, group_id: str, entry: MappingEntry, open_shells: OpenShells | None) -> Group:
         body = mapping_values.get_body(entry)
@@ -158,6 +165,32 @@ class _GroupDeclarer:
         return replace(output, type=sources.type_of_output(output.id), is_made=is_made)
 
     def _declare_leaf(self, group_id: str, entry: MappingEntry) -> Component:
+        if self.memory is None:
+            return self._declare_written(group_id, entry)
+        component_id, resolver, wiring = f"{group_id}.{entry.key}", self.resolver, self.wiring
+        outputs = self.outline.outputs[component_id]
+        for known in self.memory.leaves.list_known(component_id):
+            if (
+                known.entry is entry
+                and known.outputs is outputs
+                and known.group_owners == self.owners[group_id]
+                and (known.names is resolver.all_names or resolver.gives_answers(known.answers))
+                and wiring.brings_same(known.component)
+                and known.source_media == wiring.list_source_media(known.component)
+            ):
+                wiring.take_over(known.component)
+                self.owners[component_id] = known.component.owners
+                return known.component
+        with resolver.listen() as heard:
+            component = self._declare_written(group_id, entry)
+        # The outputs are those of another version only where nothing else is said of them: see `_recall_ports`.
+        if heard.is_flawless:
+            media, owners = wiring.list_source_media(component), self.owners[group_id]
+            linked = LinkedLeaf(entry, outputs, owners, media, resolver.all_names, tuple(heard.answers), component)
+            self.memory.leaves.keep_part(component_id, linked)
+        return component
+
+    def _declare_written(self, group_id: str, entry: MappingEntry) -> Component:
         component_id = f"{group_id}.{entry.key}"
         inputs = self.outline.inputs[component_id]
         return self._declare_component(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import get_args
@@ -14,6 +15,7 @@ from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
+from archgen.link.link_memory import LinkedNode, LinkMemory
 from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.port_resolution import PortResolver
@@ -48,6 +50,8 @@ class NodeContext:
     components: Mapping[str, Component]
     containers: Mapping[str, Container]
     timing_merger: TimingMerger
+    memory: LinkMemory | None = None
+    """Nodes that are known from another version of the project."""
 
 
 def resolve_implements(root: MappingNode, resolver: ReferenceResolver) -> dict[str, tuple[str, ...]]:
@@ -65,8 +69,37 @@ def declare_nodes(root: MappingNode, context: NodeContext, implemented: Implemen
     """Declare every node that is written, by id. Nodes that archgen derives are added later, by `derivation`."""
     return {
         name: _declare_node(name, entry, context, implemented)
+        if context.memory is None
+        else _recall_node(name, entry, context, implemented, context.memory)
         for name, entry, _ in mapping_values.iterate_elements(root, "nodes")
     }
+
+
+def _recall_node(
+    node_id: str, entry: MappingEntry, context: NodeContext, implemented: ImplementingNodes, memory: LinkMemory
+) -> Node:
+    """Return a node, one that is known from another version of the project without declaring it anew."""
+    components = tuple(context.components[each] for each in implemented.implements[node_id])
+    shared_flags = tuple(each.id in context.timing_merger.shared_components for each in components)
+    resolver, containers = context.resolver, context.containers
+    for known in memory.nodes.list_known(node_id):
+        if (
+            known.entry is entry
+            and len(known.components) == len(components)
+            and all(map(operator.is_, known.components, components))
+            and known.shared_flags == shared_flags
+            and (known.names is resolver.all_names or resolver.gives_answers(known.answers))
+            and (not known.node.container or containers[known.node.container].host == known.container_host)
+        ):
+            return known.node
+    with resolver.listen() as heard:
+        node = _declare_node(node_id, entry, context, implemented)
+    if heard.is_flawless:
+        host = containers[node.container].host if node.container else None
+        answers = tuple(heard.answers)
+        linked = LinkedNode(entry, components, shared_flags, host, resolver.all_names, answers, node)
+        memory.nodes.keep_part(node_id, linked)
+    return node
 
 
 def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, implemented: ImplementingNodes) -> Node:

@@ -48,6 +48,7 @@ def _declare_parameter(entry: MappingEntry, declaration: MappingNode) -> Paramet
         visibility=_read_visibility(declaration),
         handed_from=mapping_values.get_text(declaration, "from"),
         hints=cast("Mapping[str, object]", node_to_data(hints)) if isinstance(hints, MappingNode) else {},
+        hint_places=dict(mapping_values.list_hint_places(hints)) if isinstance(hints, MappingNode) else {},
         at=entry.key_span,
         value_at=value.span if value is not None else NO_SPAN,
     )

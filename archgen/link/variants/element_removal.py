@@ -11,13 +11,16 @@ from archgen.compose import ExpandedProject
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline, build_outline
 from archgen.link.inner_names import find_inner_component
+from archgen.link.link_memory import LinkMemory
 from archgen.link.project_linking import make_resolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SOURCE_KINDS, SourceReferences
 from archgen.link.variants.removed_elements import RemovedElements, find_idle_places, find_removed
+from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import ElementRef
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
+_HOLDING_KEYS = frozenset({"from", "node", "components"})
 _TYPE_KEYS = frozenset({"is", "same_as"})
 _USE_KEYS = ("publishes", "subscribes", "serves", "calls")
 _START_REFERENCES = frozenset({"after", "by"})
@@ -28,15 +31,37 @@ _LEAST_ENDS = 2
 class ElementRemover:
     """Takes elements out of one merged project; `removed` says afterwards which."""
 
-    def __init__(self, expansion: ExpandedProject, leaves: frozenset[str], nodes: frozenset[str]) -> None:
-        """Take the project with all types written out, and the leaves and nodes that go by complete ids."""
-        self._outline: ElementOutline = build_outline(expansion)
+    def __init__(
+        self,
+        expansion: ExpandedProject,
+        leaves: frozenset[str],
+        nodes: frozenset[str],
+        memory: LinkMemory | None = None,
+        architecture: Architecture | None = None,
+    ) -> None:
+        """Take the project with all types written out, and the leaves and nodes that go by complete ids.
+
+        `architecture` is its architecture, where that is known.
+        """
+        self._outline: ElementOutline = build_outline(expansion, memory)
         self._expansion = expansion
         self.removed: RemovedElements = find_removed(self._outline, leaves, nodes)
-        self._resolver: ReferenceResolver = make_resolver(expansion.root, self._outline, [])
+        self._resolver: ReferenceResolver = make_resolver(expansion.root, self._outline, [], memory=memory)
         self._sources = SourceReferences(self._outline, self._resolver) if self._outline.expansion else None
         self._changed_shells = self._list_changed_shells()
+        self._untouched = self._list_untouched(architecture) if architecture and expansion.is_plain else frozenset()
         self._gone_nodes: frozenset[str] = frozenset()
+
+    def _list_untouched(self, architecture: Architecture) -> frozenset[str]:
+        """Return the components that read nothing of what goes."""
+        if self._outline.undeclared_inputs:  # what they read is in no architecture
+            return frozenset()
+        touched = {
+            each.input.rpartition(".")[0]
+            for each in architecture.connections
+            if self._is_removed(ElementRef(each.kind, each.target))
+        }
+        return frozenset(self._outline.components.keys() - touched)
 
     def _list_changed_shells(self) -> frozenset[str]:
         """Return the composed components that stay, and in which something goes."""
@@ -95,6 +120,8 @@ class ElementRemover:
 
     def _prune_component(self, part: MappingEntry, component_id: str) -> MappingEntry:
         body = mapping_values.get_body(part)
+        if component_id in self._untouched and _HOLDING_KEYS.isdisjoint(body.entries):
+            return part
         if component_id in self._changed_shells and not _TYPE_KEYS.isdisjoint(body.entries):
             body = self._write_out(component_id, body)
         entries = dict(body.entries)
@@ -127,6 +154,9 @@ class ElementRemover:
     def _prune_ports(self, ports: MappingEntry, component_id: str, side: str) -> MappingEntry:
         kept: dict[str, MappingEntry] = {}
         for port in mapping_values.get_body(ports):
+            if "from" not in mapping_values.get_body(port).entries:
+                kept[port.key] = port
+                continue
             entries = dict(mapping_values.get_body(port).entries)
             find_target = self._find_source if side == "inputs" else self._find_given
             self._prune_sources(entries, lambda scalar, find=find_target: find(scalar, component_id))  # type: ignore[misc]

@@ -11,6 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.link import mapping_values
+from archgen.link.link_memory import LinkMemory
 from archgen.link.missing_keys import find_incomplete
 from archgen.link.variants.change_targets import ChangeTargets, list_declared_anew
 from archgen.link.variants.element_removal import ElementRemover
@@ -19,6 +20,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
+_NAMING_SECTIONS = ("groups", "nodes", "component_types", "libraries", "project")
+"""Sections that have a say in what the inputs of components read."""
 _KEPT_SECTIONS = frozenset({"archgen", "project", "sources", "libraries", "variants", "review"})
 """Sections that no variant changes: what the project is, its files, and who judges it."""
 
@@ -39,11 +42,13 @@ class VariantLayer:
         lost_keys: frozenset[str] = frozenset(),
         incomplete_libraries: frozenset[str] = frozenset(),
         describe_missing_type: MissingTypeDescriber | None = None,
+        memory: LinkMemory | None = None,
     ) -> None:
         """Take what is known of files and libraries that could not be read, as for writing types out."""
         self._lost_keys = lost_keys
         self._incomplete_libraries = incomplete_libraries
         self._describe_missing_type = describe_missing_type
+        self._memory = memory
 
     def lay_variant(
         self, root: MappingNode, variant: MappingEntry, find_architecture: Callable[[], Architecture]
@@ -66,7 +71,9 @@ class VariantLayer:
             diagnostics += [*findings, *find_incomplete(laid)]
         selector = mapping_values.get_scalar(body, "without")
         if selector is not None:
-            laid = self._take_out(laid, selector, variant.key, changes, find_architecture(), diagnostics)
+            architecture = find_architecture()
+            is_same = all(laid.entries.get(section) is root.entries.get(section) for section in _NAMING_SECTIONS)
+            laid = self._take_out(laid, selector, variant.key, changes, architecture, diagnostics, is_described=is_same)
         return LaidVariant(laid, tuple(diagnostics))
 
     def _drop_path(
@@ -103,7 +110,10 @@ class VariantLayer:
         changes: MappingNode,
         architecture: Architecture,
         diagnostics: list[Diagnostic],
+        *,
+        is_described: bool,
     ) -> MappingNode:
+        """Take out what a selector selects; `is_described` is whether the architecture is that of the root as it is."""
         evaluator = SelectorEvaluator(architecture)
         selected = select_elements(selector, evaluator, variant_id)
         if not architecture.partial:
@@ -113,7 +123,9 @@ class VariantLayer:
         if not leaves and not selected.nodes:
             return root
         expansion = expand_project(root, self._incomplete_libraries, self._describe_missing_type)
-        remover = ElementRemover(expansion, leaves, selected.nodes)
+        remover = ElementRemover(
+            expansion, leaves, selected.nodes, self._memory, architecture if is_described else None
+        )
         diagnostics += _find_lost_changes(changes, remover.removed.components)
         return prune_selectors(remover.remove_from(root), remover.removed, evaluator)
 

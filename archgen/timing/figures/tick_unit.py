@@ -6,7 +6,7 @@ instead of 8.9 s).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
 from math import gcd, lcm
 
@@ -41,7 +41,14 @@ class TickUnit:
 
 def choose_tick_unit(architecture: Architecture) -> TickUnit:
     """Return the unit: the greatest common divisor of all durations, divided by all numbers of cores and threads."""
-    durations = {duration for duration in _collect_durations(architecture) if duration}
+    # The same quantities come up again and again, as the same objects: those are told apart faster than fractions.
+    quantities = {id(quantity): quantity for quantity in _collect_quantities(architecture) if quantity is not None}
+    rates = {id(rate): rate for rate in _collect_rates(architecture)}
+    durations = {
+        *(quantity.value for quantity in quantities.values() if quantity.value),
+        *(NS_PER_SECOND / rate.value for rate in rates.values()),
+        *_collect_byte_times(architecture),
+    }
     denominator = lcm(*(duration.denominator for duration in durations))
     # Work is divided by the number of cores (path_work): with this divisor such quotients are whole ticks.
     cores = lcm(*(host.cores or 1 for host in architecture.hosts.values()))
@@ -66,32 +73,41 @@ def written_period(timing: Timing) -> Fraction | None:
     return None
 
 
-def _collect_durations(architecture: Architecture) -> Iterator[Fraction]:
-    """Yield all durations of an architecture, in ns."""
-    for node in architecture.nodes.values():
-        for timing in node.timing.values():
-            yield from _timing_durations(timing)
-    yield from _quantity_values(port.freshness for port in architecture.inputs.values())
+def _collect_quantities(architecture: Architecture) -> Iterator[Quantity | None]:
+    """Yield all durations that are written in an architecture, and None for those that might be."""
+    for timing in _list_timings(architecture):
+        yield from (timing.jitter, timing.wcet, timing.bcet, timing.throttle, timing.response, timing.deadline)
+        if timing.period is not None and timing.period.value > 0:
+            yield timing.period
+        if timing.trigger is not None:
+            yield timing.trigger.within
+        for output in timing.outputs.values():
+            yield output.max_gap
+        for read in timing.inputs.values():
+            yield from (read.wcet, read.bcet)
+        for use in timing.uses.values():
+            yield from (use.max, use.min)
+        if timing.measured_times is not None:
+            yield from timing.measured_times.percentiles.values()
+    for port in architecture.inputs.values():
+        yield port.freshness
     for link in architecture.links.values():
-        yield from _quantity_values((link.best, link.worst))
+        yield from (link.best, link.worst)
+
+
+def _collect_rates(architecture: Architecture) -> Iterator[Quantity]:
+    """Yield the rates that count: see `written_period`."""
+    for timing in _list_timings(architecture):
+        if timing.rate is not None and timing.rate.value > 0 and not (timing.period and timing.period.value > 0):
+            yield timing.rate
+
+
+def _collect_byte_times(architecture: Architecture) -> Iterator[Fraction]:
+    """Yield the time of one byte (ns) on each link: link_queueing counts in these."""
+    for link in architecture.links.values():
         if link.bandwidth is not None and link.bandwidth.value:
-            yield 8 * NS_PER_SECOND / link.bandwidth.value  # the time of one byte: link_queueing counts in these
+            yield 8 * NS_PER_SECOND / link.bandwidth.value
 
 
-def _timing_durations(timing: Timing) -> Iterator[Fraction]:
-    """Yield the durations of one `timing` mapping, in ns."""
-    yield from _quantity_values((timing.jitter, timing.wcet, timing.bcet, timing.throttle, timing.response))
-    yield from _quantity_values((timing.deadline, timing.trigger.within if timing.trigger else None))
-    yield from _quantity_values(output.max_gap for output in timing.outputs.values())
-    yield from _quantity_values(limit for each in timing.inputs.values() for limit in (each.wcet, each.bcet))
-    yield from _quantity_values(limit for each in timing.uses.values() for limit in (each.max, each.min))
-    if timing.measured_times is not None:
-        yield from _quantity_values(timing.measured_times.percentiles.values())
-    timing_period = written_period(timing)
-    if timing_period is not None:
-        yield timing_period
-
-
-def _quantity_values(quantities: Iterable[Quantity | None]) -> Iterator[Fraction]:
-    """Yield the values of those quantities that are written."""
-    return (quantity.value for quantity in quantities if quantity is not None)
+def _list_timings(architecture: Architecture) -> Iterator[Timing]:
+    return (timing for node in architecture.nodes.values() for timing in node.timing.values())

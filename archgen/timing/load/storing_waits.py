@@ -96,11 +96,9 @@ def find_core_waits(
     budget: SearchBudget,
 ) -> dict[str, WorstResponse]:
     """Return the waits on one core on which nothing fires anything else, or on cores that are joined."""
-    threads = lower_crowded_threads(
-        system,
-        [build_thread(system, unit, event_models) for unit in (*resource.units, *resource.foreign_units)],
-        event_models,
-    )
+    threads = [build_thread(system, unit, event_models) for unit in (*resource.units, *resource.foreign_units)]
+    if len(threads) > 1 or len(threads[0].unit) > 1:  # one activity alone waits for nobody's threads
+        threads = lower_crowded_threads(system, threads, event_models)
     thread_of = {name: thread for thread in threads for name in thread.unit}
     reader_list = list(reader_ids)
     if resource.missing:

@@ -13,6 +13,7 @@ from archgen.model.declared_timing import ActivityBehaviour, InputTiming, Measur
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import is_physical
 from archgen.timing.figures.tick_unit import TickUnit, written_period
+from archgen.timing.system.built_parts import ActivitySource, BuiltParts
 from archgen.timing.system.timing_system import Activity, ResourceUse, StoringCallback
 
 ActivityNames = Mapping[tuple[str, str | None], str]
@@ -61,17 +62,40 @@ def activity_of_endpoint(activity_names: ActivityNames, endpoint: Endpoint) -> s
 
 
 def build_activities(
-    architecture: Architecture, activity_names: ActivityNames, tick_unit: TickUnit
+    architecture: Architecture,
+    activity_names: ActivityNames,
+    tick_unit: TickUnit,
+    memory: BuiltParts | None = None,
 ) -> dict[str, Activity]:
-    """Return all activities by id, in the order of the nodes."""
+    """Return all activities by id, in the order of the nodes; those that `memory` knows are not built anew."""
     endpoints = endpoints_by_activity(architecture, activity_names)
     outside_inputs = _outside_inputs(architecture)
     activities_by_id: dict[str, Activity] = {}
+    if memory is not None:
+        memory.start_version(tick_unit)
     for (node_id, component), name in activity_names.items():
         node = architecture.nodes[node_id]
-        part = _NodePart(architecture, node, component, name, tuple(endpoints[name]), outside_inputs[component or ""])
-        activities_by_id[name] = _build_activity(part, tick_unit)
+        if memory is None:
+            activity = None
+        else:
+            source = _list_sources(architecture, node, component, endpoints[name])
+            activity = memory.find_activity(name, source)
+        if activity is None:
+            outside = outside_inputs[component or ""]
+            part = _NodePart(architecture, node, component, name, tuple(endpoints[name]), outside)
+            activity = _build_activity(part, tick_unit)
+            if memory is not None:
+                memory.keep_activity(name, source, activity)
+        activities_by_id[name] = activity
     return activities_by_id
+
+
+def _list_sources(
+    architecture: Architecture, node: Node, component_id: str | None, endpoints: Sequence[Endpoint]
+) -> ActivitySource:
+    topics = architecture.topics
+    shared_flags = tuple([topic.shared if (topic := topics.get(each.name)) else False for each in endpoints])
+    return ActivitySource(node, architecture.components.get(component_id or ""), endpoints, shared_flags)
 
 
 def _outside_inputs(architecture: Architecture) -> Mapping[str, list[str]]:

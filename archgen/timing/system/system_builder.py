@@ -18,16 +18,22 @@ from archgen.timing.system.activity_builder import (
     name_activities,
 )
 from archgen.timing.system.arc_builder import build_arcs
+from archgen.timing.system.built_parts import BuiltParts
 from archgen.timing.system.timing_system import Activity, Executor, SharedResource, TimingSystem, group_arcs
 
 _BITS_PER_BYTE = 8
 
 
-def build_system(architecture: Architecture) -> tuple[TimingSystem, tuple[Reason, ...]]:
-    """Build the system of a linked architecture, with notes on what had to be assumed."""
+def build_system(
+    architecture: Architecture, memory: BuiltParts | None = None
+) -> tuple[TimingSystem, tuple[Reason, ...]]:
+    """Build the system of a linked architecture, with notes on what had to be assumed.
+
+    What `memory` knows from another version of the project is taken over where it is the same.
+    """
     tick_unit = choose_tick_unit(architecture)
     activity_names = name_activities(architecture)
-    activities_by_id = build_activities(architecture, activity_names, tick_unit)
+    activities_by_id = build_activities(architecture, activity_names, tick_unit, memory)
     all_arcs = build_arcs(architecture, activity_names, activities_by_id, tick_unit)
     notes = (
         ()

@@ -120,7 +120,7 @@ def gather_terms(
         if interface.message
         else None,
         chains,
-        tuple(_requirement_runs(lookup, interface)),
+        tuple(_requirement_runs(lookup, interface, chains)),
         tuple(list_missing_data_duties(lookup, interface, giver, taker)),
         (
             *find_contradictions(lookup, activity_names, interface),
@@ -303,20 +303,31 @@ def _components_of(lookup: Lookup, interface: PartnerInterface) -> Iterable[Comp
     }.values()
 
 
-def _requirement_runs(lookup: Lookup, interface: PartnerInterface) -> Iterator[Inlines]:
-    """Yield the requirements that the components at the ends serve, each once, with the components."""
-    components_by_requirement: dict[str, dict[str, Component]] = {}
+def _requirement_runs(lookup: Lookup, interface: PartnerInterface, chains: Iterable[ChainResult]) -> Iterator[Inlines]:
+    """Yield the requirements that the components at the ends serve, each once, with the components.
+
+    Then those that only chains through the interface serve, with the chains.
+    """
+    links_by_requirement: dict[str, dict[str, Text]] = {}
     for component in _components_of(lookup, interface):
         for use in component.requirements:
-            components_by_requirement.setdefault(use.text, {})[component.title] = component
-    for text, components in components_by_requirement.items():
+            links_by_requirement.setdefault(use.text, {})[component.title] = inline_text.component_link(component)
+    served_by_components = frozenset(links_by_requirement)
+    for result in chains:
+        chain = lookup.architecture.chains[result.id]
+        for text in chain.requirements:
+            if text not in served_by_components:
+                links_by_requirement.setdefault(text, {})[chain.id] = Text(
+                    f"the chain {chain.title}", ref=f"chain:{chain.id}"
+                )
+    for text, named_links in links_by_requirement.items():
         declared = lookup.architecture.requirements.get(text)
         requirement_runs = (
             [Text(text, ref=f"requirement:{text}", strong=True), Text(f" {declared.title}")]
             if declared
             else [Text(text)]
         )
-        links = (replace(inline_text.component_link(component), muted=True) for component in components.values())
+        links = (replace(link, muted=True) for link in named_links.values())
         names = inline_text.join_inlines(((link,) for link in links), ", ")
         # All of it is muted: that tells the titles, which may change, from the requirement.
         yield (

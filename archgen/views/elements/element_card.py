@@ -61,6 +61,7 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "input": {**{port.id: port for each in a.shells.values() for port in each.inputs.values()}, **a.inputs},
         "node": a.nodes,
         "topic": a.topics,
+        "channel": _name_channels(a),
         "type": a.types,
         "requirement": a.requirements,
         "use case": a.use_cases,
@@ -75,6 +76,16 @@ def _elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]
         "policy": a.policies,
         "variant": a.variants,
     }
+
+
+def _name_channels(architecture: Architecture) -> Mapping[str, Topic]:
+    """Return what runs over other media by the names that are written; what has none is called after its output."""
+    channels: dict[str, Topic] = {}
+    for key, channel in architecture.channels.items():
+        name = name_on_medium(channel)
+        if name not in architecture.outputs:
+            channels[key if name in channels or name in architecture.topics else name] = channel
+    return channels
 
 
 def kinds_by_id(lookup: Lookup) -> dict[str, list[str]]:
@@ -135,7 +146,9 @@ def make_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
         card = _generic_card(lookup, kind, element_id)
     else:
         card = make_kind_card(lookup, _elements_by_kind(lookup.architecture)[kind][element_id])
-    further_facts = tuple(_list_further_facts(lookup, kind, element_id)) if kind not in {"topic", "variant"} else ()
+    further_facts = (
+        tuple(_list_further_facts(lookup, kind, element_id)) if kind not in {"topic", "channel", "variant"} else ()
+    )
     if (made := find_made_element(lookup.architecture.made_elements, card.span)) is not None:
         further_facts = (*further_facts, ("origin", str(made)))
     return replace(card, facts=(*card.facts, *further_facts)) if further_facts else card
@@ -391,6 +404,23 @@ def _topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
     return ElementCard(topic.flow, topic.name, topic.name, span, _known_facts(facts), lists)
 
 
+def _channel_card(lookup: Lookup, channel: Topic) -> ElementCard:
+    """Make the card of what nodes exchange over another medium."""
+    facts = [
+        ("medium", name_medium(channel.medium)),
+        ("types", ", ".join(channel.types)),
+        ("size", lookup.format_size(channel)),
+    ]
+    users = (*channel.writers, *channel.readers)
+    lists = tuple(
+        (role, tuple(dict.fromkeys(endpoint.node for endpoint in endpoints)))
+        for role, endpoints in (("from", channel.writers), ("to", channel.readers))
+    )
+    span = next((each.at for each in users if each.at.file), Span("", 0, 0, 0, 0))
+    name = name_on_medium(channel)
+    return ElementCard(channel.flow, name, name, span, _known_facts(facts), lists)
+
+
 def _use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
     facts = [
         ("description", " ".join((use_case.description or "").split())),
@@ -528,6 +558,7 @@ _CARD_MAKERS: Mapping[str, Callable[[Lookup, Any], ElementCard]] = {
     "output": _port_card,
     "node": _node_card,
     "topic": _topic_card,
+    "channel": _channel_card,
     "use case": _use_case_card,
 }
 """What makes the card of an element; other kinds have a list of fields."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
-from archgen.model.port_media import label_of_medium, name_on_medium
+from archgen.model.port_media import ROS, label_of_medium, name_on_medium
 from archgen.views.explorer.map_shapes import Row
 from archgen.views.graphs.component_flows import flow_style, list_flows
 from archgen.views.lookup import Lookup
@@ -130,9 +130,9 @@ def _list_link_rows(architecture: Architecture, nodes: Numbers, topics: dict[str
 
 
 def _make_carrier_rows(architecture: Architecture, keys: Iterable[str]) -> Iterator[Row]:
-    """Yield the rows of topics, and of what runs over other media: these have no page."""
+    """Yield the rows of topics, and of what runs over other media."""
     carriers = dict(architecture.list_carriers())
     for key in keys:
         carrier = carriers[key]
-        row = (f"topic:{key}", name_on_medium(carrier), carrier.flow)
+        row = (f"topic:{key}" if carrier.medium == ROS else f"channel:{key}", name_on_medium(carrier), carrier.flow)
         yield (*row, label) if (label := label_of_medium(carrier)) else row

@@ -42,6 +42,12 @@ def _make_ros2_launch(context: GenerationContext) -> GeneratedView:
     return launch_view.make_view(context, ros=2)
 
 
+def _make_simulation(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import simulation_view
+
+    return simulation_view.make_view(context)
+
+
 def _make_programs(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import node_programs
 
@@ -69,6 +75,7 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "structure": _make_structure,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
+    "simulation": _make_simulation,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
 

@@ -8,7 +8,7 @@ from typing import Literal
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node, Qos, Topic
-from archgen.model.port_media import ROS, label_of_carrier, name_medium, name_on_medium
+from archgen.model.port_media import ROS, key_of_channel, label_of_carrier, name_medium, name_on_medium
 from archgen.views.graph_shapes import Box
 from archgen.views.graphs import element_boxes
 from archgen.views.inline_text import format_short_timing
@@ -75,11 +75,16 @@ def topic_box(topic: Topic, endpoints: Iterable[Endpoint] = ()) -> Box:
 
 
 def _draw_channel(channel: Topic) -> Box:
-    """Return the box of what is no ROS: name, type, and the medium in brackets. It has no page."""
+    """Return the box of what is no ROS: name, type, and the medium in brackets."""
     name, medium = name_on_medium(channel), f"({name_medium(channel.medium)})"
     lines = (*channel.types[:3], medium)
     return Box(
-        f"topic {channel.name}", name, lines, style=channel.flow, tooltip="\n".join((name, *channel.types, medium))
+        f"topic {channel.name}",
+        name,
+        lines,
+        style=channel.flow,
+        ref=f"channel:{key_of_channel(channel)}",
+        tooltip="\n".join((name, *channel.types, medium)),
     )
 
 

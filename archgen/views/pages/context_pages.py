@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from archgen.model.component import Component
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
+from archgen.model.port_media import ROS, describe_way, key_of_channel, name_medium, name_on_medium
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
 from archgen.views.elements.annotation_facts import list_annotation_facts
@@ -35,6 +36,7 @@ FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
 """Drops the figures that were not drawn."""
 HOME_CRUMB = ("Overview", "page:index")
 _FLOW_ORDER = {"topic": 0, "service": 1, "action": 2}
+_CHANNEL_TITLES = {"topic": "Data", "service": "Calls", "action": "Actions"}
 _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 
@@ -60,9 +62,11 @@ def make_page_slug(name: str) -> str:
 
 
 def make_topic_pages(lookup: Lookup) -> Iterator[Page]:
-    """Make a page for each topic, service and action that a shown node uses."""
+    """Make a page for each topic, service and action that a shown node uses, then for what runs over other media."""
     for topic in shown_topics(lookup):
         yield _topic_page(lookup, topic)
+    for channel in _list_shown_channels(lookup):
+        yield _channel_page(lookup, channel)
 
 
 def shown_topics(lookup: Lookup) -> list[Topic]:
@@ -86,9 +90,34 @@ def make_topic_tables(lookup: Lookup) -> Iterator[Table]:
         table = architecture_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
         if table:
             yield table
-    channels = _sort_shown(lookup, lookup.architecture.channels.values())
+    channels = _list_shown_channels(lookup)
     if table := architecture_tables.make_topic_table(lookup, channels, "table:channels", "Over other media than ROS"):
         yield table
+
+
+def _list_shown_channels(lookup: Lookup) -> list[Topic]:
+    return _sort_shown(lookup, lookup.architecture.channels.values())
+
+
+def _channel_page(lookup: Lookup, channel: Topic) -> Page:
+    """Make the page of what nodes exchange over another medium: what it is, who uses it, and over which links it may go."""
+    architecture, medium = lookup.architecture, name_medium(channel.medium)
+    hosts = dict.fromkeys(architecture.nodes[each.node].host for each in (*channel.writers, *channel.readers))
+    links = [each for each in architecture.links.values() if each.protocol == channel.medium]
+    facts: list[tuple[str, Inlines]] = [
+        ("Medium", inline_text.to_inlines(medium)),
+        ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in channel.types)),
+        ("Size", inline_text.to_inlines(size) if (size := lookup.format_size(channel)) else ()),
+        ("Hosts", inline_text.join_inlines(inline_text.host_link(architecture, each) for each in hosts if each)),
+        ("Links", inline_text.join_inlines((Text(each.title, ref=f"link:{each.id}"),) for each in links)),
+    ]
+    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    writer, reader = ("Server", "Client") if channel.flow != "topic" else ("Sender", "Reader")
+    blocks += _endpoint_blocks(lookup, channel, channel.writers, writer)
+    blocks += _endpoint_blocks(lookup, channel, channel.readers, reader)
+    crumb = ("Topics, services and actions", "page:topics")
+    section = Section(f"channel:{key_of_channel(channel)}", name_on_medium(channel), tuple(blocks))
+    return make_page(section, "channels", crumb, f"{_CHANNEL_TITLES[channel.flow]} {describe_way(channel.medium)}")
 
 
 def _topic_page(lookup: Lookup, topic: Topic) -> Page:
@@ -117,17 +146,19 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
 def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ...], role: str) -> list[Block]:
     if not endpoints:
         return [Paragraph(inline_text.to_inlines(Text(f"{role}s. ", strong=True), Text("None.", muted=True)))]
-    rows = tuple(
+    rows: tuple[tuple[Inlines, ...], ...] = tuple(
         (
             inline_text.to_inlines(inline_text.node_link(lookup.architecture.nodes[endpoint.node])),
             _component_cell(lookup, endpoint.component),
             # Ports by their own names: the component is in the column before.
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            inline_text.format_qos_cell(endpoint.qos) if topic.flow == "topic" else (),
+            inline_text.format_qos_cell(endpoint.qos) if topic.flow == "topic" and topic.medium == ROS else (),
         )
         for endpoint in endpoints
     )
-    columns = (Column(role), Column("Component", 1.3), Column("Port"), Column("QoS", 1.5))
+    columns: tuple[Column, ...] = (Column(role), Column("Component", 1.3), Column("Port"), Column("QoS", 1.5))
+    if topic.medium != ROS:
+        columns, rows = columns[:-1], tuple(row[:-1] for row in rows)
     return [Table(f"table:{role.lower()}s/{topic.name}", f"{role}s", columns, rows)]
 
 

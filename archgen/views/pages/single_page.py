@@ -45,7 +45,7 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
             return (page_maker.component_pages().make_group_page(architecture.groups[name]),)
         case "node" if name in architecture.nodes and page_maker.edition.level == "implementation":
             return (page_maker.make_node_page(architecture.nodes[name]),)
-        case "topic" if page_maker.edition.level == "implementation":
+        case "topic" | "channel" if page_maker.edition.level == "implementation":
             return context_pages.make_topic_pages(lookup)
         case "chapter":
             return page_maker.chapter_pages()
@@ -55,7 +55,7 @@ def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # n
             return page_maker.chain_pages()
         case "timing" | "page" if kind == "timing" or name in {"timing", "chains"}:
             return page_maker.timing_pages()
-        case "component" | "group" | "node" | "topic":
+        case "component" | "group" | "node" | "topic" | "channel":
             return ()
         case _:
             start_page = (page_maker.start_page(),) if anchor == "page:index" else ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import Interface
-from archgen.model.port_media import name_medium, name_on_medium
+from archgen.model.port_media import key_of_channel, name_medium, name_on_medium
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.elements.promise_words import list_text_remarks
@@ -54,11 +54,13 @@ def make_topic_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 
 
 def make_channel_entries(lookup: Lookup) -> Iterator[SearchEntry]:
-    """Yield what nodes exchange over other media than ROS. It stands in a table and has no page of its own."""
+    """Yield what nodes exchange over other media than ROS."""
     for channel in lookup.architecture.channels.values():
         writers = ", ".join(dict.fromkeys(writer.node for writer in channel.writers))
         line = join_words(name_medium(channel.medium), ", ".join(channel.types), f"from {writers}")
-        yield SearchEntry(channel.flow, name_on_medium(channel), line, ("page:topics",), (channel.medium,))
+        yield SearchEntry(
+            channel.flow, name_on_medium(channel), line, (f"channel:{key_of_channel(channel)}",), (channel.medium,)
+        )
 
 
 def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:

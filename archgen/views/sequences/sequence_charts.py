@@ -9,6 +9,7 @@ from archgen.model.architecture import UseCase
 from archgen.model.port_media import is_physical
 from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
+from archgen.views import short_figures
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.sequence_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
@@ -89,7 +90,7 @@ def _draw_steps(lookup: Lookup, use_case: UseCase, chart_id: str, steps: Sequenc
     title = use_case.title if is_whole else f"{use_case.title}: {numbers}"
     legend = tuple(_LEGEND_KEYS[style] for style in _LEGEND_ORDER if style in styles)
     has_outside = any(lifeline.kind == "actor" for lifeline in lifelines)
-    total = step_words.describe_total(lookup, use_case.id) if is_whole else ""
+    total = short_figures.shorten_bounds(step_words.describe_total(lookup, use_case.id)) if is_whole else ""
     return SequenceChart(
         chart_id,
         title,
@@ -131,7 +132,8 @@ def _make_message(
     carriers = list(step_words.list_carriers(lookup, connected))
     shown = ", ".join(carriers[:2]) + (f" and {len(carriers) - 2} more" if len(carriers) > 2 else "")  # noqa: PLR2004
     time = step_words.describe_step_time(lookup, use_case.id, connected.number)
-    detail = "no connection" if connected.is_broken else "\n".join(filter(None, (shown, time)))
+    lines = (shown, short_figures.shorten_bounds(time))
+    detail = "no connection" if connected.is_broken else "\n".join(filter(None, lines))
     tooltip = "\n".join(filter(None, (text, ", ".join(carriers), time)))
     return SequenceMessage(
         connected.number,
