@@ -205,6 +205,8 @@ groups:
 types: {Words: std_msgs/msg/String, Plan: std_srvs/srv/Trigger, Go: actionlib/action/Test}
 nodes:
   det: {implements: det, namespace: /perception, publishes: {found: {topic: found, own_name: detections, qos: {durability: transient_local}}}}
+  # A program that other programs of the package must not take for the module of this name.
+  idle: {implements: idle, executable: rospy.py}
 """
 DET = """
 from actionlib.msg import TestResult
@@ -335,15 +337,17 @@ def test_generated_tests_pass_and_fail(folder: Path, robot_workspace: Path) -> N
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
         return done.returncode == 0, done.stdout + done.stderr
 
-    for name in ("det", "idle"):
+    for name in ("det", "rospy_py"):
         is_good, said = run_test(name)
         assert is_good, said
         assert "FAILED" not in said
     # A node that does not start is noticed.
-    (robot_workspace / "src" / "rt_g" / "src" / "rt_g" / "idle.py").write_text("raise ValueError\n", encoding="utf-8")
-    test = robot_workspace / "src" / "rt_g" / "test" / "test_idle_node.py"
+    (robot_workspace / "src" / "rt_g" / "src" / "rt_g" / "rospy_py.py").write_text(
+        "raise ValueError\n", encoding="utf-8"
+    )
+    test = robot_workspace / "src" / "rt_g" / "test" / "test_rospy_py_node.py"
     test.write_text(test.read_text(encoding="utf-8").replace("+ 60", "+ 5"), encoding="utf-8")
-    is_good, said = run_test("idle")
+    is_good, said = run_test("rospy_py")
     assert not is_good, said
 
 
