@@ -174,3 +174,10 @@ def _executed_shares(test: str, modules: list[str], folder: Path) -> dict[str, f
 def test_the_test_executes_what_it_covers(test: str, tmp_path: Path) -> None:
     shares = _executed_shares(test, COVERED_BY[test], tmp_path)
     assert {module: round(share, 2) for module, share in shares.items() if share < LEAST_EXECUTED_SHARE} == {}
+
+
+@pytest.mark.slow
+def test_what_a_test_does_not_execute_is_noticed(tmp_path: Path) -> None:
+    shares = _executed_shares("tests/test_frozen.py", ["archgen.frozen", "archgen.forge.comment_post"], tmp_path)
+    assert shares["archgen.frozen"] > LEAST_EXECUTED_SHARE
+    assert shares["archgen.forge.comment_post"] == 0

@@ -152,6 +152,8 @@ def copy_repository(target: Path) -> None:
         if name and source.is_file():
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(source, target / name)
+    # A library beside a project is read only inside of a repository: without one, the tests of such examples could not judge.
+    subprocess.run(["git", "init", "--quiet"], cwd=target, check=True)
     subprocess.run([sys.executable, "-m", "compileall", "-q", "archgen", "tests"], cwd=target, check=True)
 
 

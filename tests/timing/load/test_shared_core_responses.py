@@ -88,6 +88,17 @@ def test_a_thread_works_in_order_of_arrival() -> None:
     assert show_responses(analysis) == {"a": "14"}
 
 
+def test_what_computes_nothing_beside_one_that_has_a_core_of_its_own_takes_no_time() -> None:
+    """Windows are 1 ns long at least: that is not told as a response."""
+    nodes = {
+        "a @pc": f"period: 10 ms, {equal('0')}",
+        "b @pc": f"{EVENT}, {equal('0')}",
+        "c @pc": f"period: 10 ms, {equal('1')}",
+    }
+    analysis = analyse_sketch(nodes, "a>b", "hosts: {pc: {cores: 2}}")
+    assert [analysis.responses[name].worst.value for name in "ab"] == [0, 0]
+
+
 def test_callbacks_of_one_thread_wait_for_each_other() -> None:
     """Fast 2 and slow 60 in one executor, both fired by s 1, on 4 cores: 1 + 60 + 2."""
     nodes = {
