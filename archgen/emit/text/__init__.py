@@ -84,7 +84,7 @@ def _render_files(
 ) -> Mapping[str, Any]:
     """Render all files in a process of their own, and return its answer, or one to the same request that is kept."""
     templates = backend.folder / "templates"
-    content = {
+    content: dict[str, Any] = {
         "templates": str(templates),
         "files": [asdict(file) for file in backend.files],
         "data": {name: views[name] for name in backend.views},
@@ -93,11 +93,10 @@ def _render_files(
         "limits": asdict(limits),
         "is_workspace": backend.makes == "workspace",
     }
-    request = json.dumps(content, default=_make_plain).encode()
-    key = make_answer_key(request, templates) if answer_store.folder is not None else ""
+    key = make_answer_key(content, templates) if answer_store.folder is not None else ""
     answer = load_answer(answer_store, key)
     if answer is None:
-        answer = _run_worker(request, limits)
+        answer = _run_worker(json.dumps(content, default=_make_plain).encode(), limits)
         keep_answer(answer_store, key, answer)
     return answer
 

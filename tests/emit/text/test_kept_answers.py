@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ from archgen.cache.file_store import FileStore
 from archgen.emit import text
 from archgen.emit.backend_manifests import Backend, BackendFile
 from archgen.emit.text import kept_answers
-from archgen.emit.text.kept_answers import open_answer_store
+from archgen.emit.text.kept_answers import make_answer_key, open_answer_store
 from archgen.emit.text.template_limits import TemplateLimits
 
 DATA = {"name": "robot"}
@@ -123,3 +124,16 @@ def test_nothing_outside_of_the_templates_is_opened(backend: Backend, store: Fil
     (templates / "link").symlink_to(tmp_path / "other")
     (templates / "folder").symlink_to(tmp_path)
     assert render(backend, store) == "robot 1"
+
+
+def test_what_is_no_plain_data_is_not_kept(backend: Backend, store: FileStore, runs: list[bytes]) -> None:
+    shape = MappingProxyType(DATA)
+    assert [render(backend, store, shape) for _ in range(2)] == ["robot 1", "robot 1"]
+    assert len(runs) == 2
+
+
+def test_equal_data_has_one_key_whatever_shares_what(tmp_path: Path) -> None:
+    shared: list[object] = ["robot_"[:-1], 1.5, None]
+    first = make_answer_key({"a": shared, "b": shared}, tmp_path)
+    second = make_answer_key({"a": ["robot", 1.5, None], "b": ["robot", 1.5, None]}, tmp_path)
+    assert first == second != make_answer_key({"a": shared, "b": ["robot", 1.25, None]}, tmp_path)
