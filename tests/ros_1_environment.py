@@ -84,6 +84,7 @@ def run_programs(commands: Sequence[Sequence[str]], environment: dict[str, str],
     finally:
         for process in reversed(processes):
             _end_process(process)
+        _end_left_programs(environment)
         sys.stdout.write(log.read_text(encoding="utf-8", errors="replace"))
 
 
@@ -93,6 +94,14 @@ def _end_process(process: subprocess.Popen[bytes]) -> None:
     try:
         process.wait(STOPPING_SECONDS)
     except subprocess.TimeoutExpired:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
+        process.kill()
         process.wait()
+
+
+def _end_left_programs(environment: dict[str, str]) -> None:
+    """End what programs of ROS started in sessions of their own, and did not end: it has their environment."""
+    mark = f"ROS_HOME={environment['ROS_HOME']}".encode()
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if mark in (folder / "environ").read_bytes().split(b"\0"):
+                os.kill(int(folder.name), signal.SIGKILL)

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests import readable
+from tests.generators.test_ros2_cpp import ROBOT
 from tests.running import RAMCIP, REVISION, ROOT, archgen, contents
 
 GOLDEN = ROOT / "tests" / "golden"
@@ -70,6 +71,15 @@ def neighbours(_: Path) -> Files:
     return {name: archgen("export", name, "-C", "example_ramcip", cwd=ROOT).stdout for name in names}
 
 
+def cpp_packages(built: Path) -> Files:
+    """Generate what the case study has none of: nodes in C++, of each kind."""
+    folder = built.parent / "cpp"
+    folder.mkdir(exist_ok=True)
+    (folder / "archgen.yaml").write_text(ROBOT, encoding="utf-8")
+    archgen("generate", "ros2_cpp", "-o", folder / "ws", cwd=folder)
+    return {name: data for name, data in contents(folder / "ws").items() if not name.startswith(".")}
+
+
 OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "check.txt": said("check", "example_ramcip"),
     "check.json": said("check", "example_ramcip", "--format", "json"),
@@ -83,6 +93,7 @@ OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "site": site,
     "wiki": written("wiki"),
     "neighbours": neighbours,
+    "ros2_cpp": cpp_packages,
 }
 
 

@@ -11,7 +11,7 @@ import yaml
 
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
-from archgen.products.workspace_product import write_workspace
+from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.node_programs import make_view
 from tests.generators.cpp_compiler import name_header
@@ -82,7 +82,7 @@ def generate(project: CheckedProject, workspace: Path, backend: str = "ros2_cpp"
 
 def make_programs(project: CheckedProject) -> tuple[dict[str, dict[str, Any]], list[str]]:
     """Return the view by executable, and what was left out."""
-    view = make_view(GenerationContext(project.architecture, options={"language": "cpp"}))
+    view = make_view(GenerationContext(project.architecture, options={"language": "cpp", "with_cpp": True}))
     return {each["executable"]: each for each in view.data["programs"]}, [each.message for each in view.findings]
 
 
@@ -121,17 +121,32 @@ def test_with_both_backends_nothing_is_made_twice(tmp_path: Path) -> None:
     assert {path for path in (tmp_path / "w" / "src").rglob("*") if path.is_file()} == before
 
 
+def test_nodes_of_another_language_are_made_where_that_is_asked_for(tmp_path: Path) -> None:
+    text = "groups: {g: {components: {a: {}, b: {}}}}\nnodes: {a: {implements: g.a, language: cpp}, b: {implements: g.b}}\n"
+    project = write_project(tmp_path / "p", text)
+    write_workspace(
+        project, OutputOptions(), "ros2_cpp", tmp_path / "w", WorkspaceRequest(options={"language": "python"})
+    )
+    assert [path.name for path in tmp_path.rglob("*_node.cpp") if path.parent.name == "src"] == ["b_node.cpp"]
+
+
+def test_a_second_run_touches_nothing(tmp_path: Path) -> None:
+    project = write_project(tmp_path / "p", ROBOT)
+    generate(project, tmp_path / "w")
+    result = write_workspace(project, OutputOptions(), "ros2_cpp", tmp_path / "w")
+    assert result.plan is not None
+    assert {step.verb for step in result.plan.steps} == {"same", "yours"}
+
+
 @pytest.mark.parametrize(
     ("node", "told"),
     [
-        ("package: My Package", "no package of C++ can be called `My Package`"),
-        ("executable: 'a b'", "no program can be called `a b`"),
         ("plugin: 'Lone'", "no class of C++ can be called `Lone`"),
         ("plugin: 'a::class'", "no class of C++ can be called `a::class`"),
         ("plugin: 'a::B(); //'", "no class of C++ can be called `a::B(); //`"),
     ],
 )
-def test_names_that_no_build_takes_are_told(node: str, told: str, tmp_path: Path) -> None:
+def test_classes_that_no_compiler_takes_are_told(node: str, told: str, tmp_path: Path) -> None:
     text = f"groups: {{g: {{components: {{a: {{}}}}}}}}\nnodes: {{a: {{implements: g.a, language: cpp, {node}}}}}\n"
     programs, left_out = make_programs(write_project(tmp_path, text))
     assert programs == {}

@@ -52,7 +52,7 @@ types: {T: std_msgs/msg/String}
 nodes:
   auto: {implements: class.auto, language: cpp}
   double: {implements: class.double, language: cpp, kind: [lifecycle, composable]}
-  void: {implements: class.void, language: cpp, package: namespace, executable: test}
+  void: {implements: class.void, language: cpp, package: own, executable: test}
   nameless: {implements: class.nameless, language: cpp}
 """
 needs_compiler = pytest.mark.skipif(not HAS_COMPILER, reason="needs a C++ compiler")

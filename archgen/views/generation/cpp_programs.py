@@ -15,8 +15,6 @@ from archgen.views.generation.cpp_parameters import choose_library_parameters
 from archgen.views.generation.generation_context import tell_left_out
 from archgen.views.generation.program_ports import PORT_SECTIONS
 
-_PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_-]*\Z", re.ASCII)
-_PROGRAM_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+-]*\Z", re.ASCII)
 _CLASS_NAME = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?:::([A-Za-z_][A-Za-z0-9_]*))+\Z", re.ASCII)
 _REENTRANT_GROUP = "reentrant"
 
@@ -26,38 +24,23 @@ def name_plugin(node: Node, package_name: str, program_name: str) -> str:
     return node.plugin or f"{make_identifier_in('cpp', package_name)}::{make_camel_name(program_name)}"
 
 
-def find_bad_names(package_name: str, program_name: str, nodes: Sequence[Node], place: Span) -> tuple[Diagnostic, ...]:
-    """Return what is wrong with the names of a program: with such names nothing can be built."""
-    shown = f"the program of `{nodes[0].id}` is left out:"
-    if not _PACKAGE_NAME.match(package_name):
-        message, help_line = (
-            f"{shown} no package of C++ can be called `{package_name}`",
-            "a package has small letters, digits, `_` and `-`, and begins with a letter",
-        )
-    elif not _PROGRAM_NAME.match(program_name):
-        message, help_line = (
-            f"{shown} no program can be called `{program_name}`",
-            "an `executable` has letters, digits, `_`, `-`, `.` and `+`",
-        )
+def find_bad_classes(
+    package_name: str, program_name: str, nodes: Sequence[Node], place: Span
+) -> tuple[Diagnostic, ...]:
+    """Return what is wrong with the class of a program: with it nothing can be built."""
+    plugins = sorted({name_plugin(each, package_name, program_name) for each in nodes})
+    if len(plugins) > 1:
+        message = f"its nodes have different classes, {' and '.join(f'`{each}`' for each in plugins)}"
+        help_line = "give the nodes of one class an `executable` of their own"
+    elif not _CLASS_NAME.match(plugins[0]) or any(
+        make_identifier_in("cpp", part) != part for part in plugins[0].split("::")
+    ):
+        message = f"no class of C++ can be called `{plugins[0]}`"
+        help_line = "a `plugin` is a namespace and a class: `robot_safety::ObstacleStop`"
     else:
-        plugins = {name_plugin(each, package_name, program_name): each.id for each in nodes}
-        plugin = min(plugins)
-        if len(plugins) > 1:
-            shown_plugins = " and ".join(f"`{each}`" for each in sorted(plugins))
-            message, help_line = (
-                f"{shown} its nodes have different classes, {shown_plugins}",
-                "give the nodes of one class an `executable` of their own",
-            )
-        elif not _CLASS_NAME.match(plugin) or any(
-            make_identifier_in("cpp", part) != part for part in plugin.split("::")
-        ):
-            message, help_line = (
-                f"{shown} no class of C++ can be called `{plugin}`",
-                "a `plugin` is a namespace and a class: `robot_safety::ObstacleStop`",
-            )
-        else:
-            return ()
-    return (tell_left_out(message, place, element=nodes[0].id, help_line=help_line),)
+        return ()
+    shown = f"the program of `{nodes[0].id}` is left out: {message}"
+    return (tell_left_out(shown, place, element=nodes[0].id, help_line=help_line),)
 
 
 def complete_cpp_program(architecture: Architecture, record: dict[str, Any], nodes: Sequence[Node]) -> None:

@@ -17,7 +17,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
 from archgen.model.ros_distro import is_ros_1
-from archgen.views.generation.cpp_programs import complete_cpp_program, find_bad_names, list_cpp_libraries
+from archgen.views.generation.cpp_programs import complete_cpp_program, find_bad_classes, list_cpp_libraries
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
@@ -35,10 +35,12 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
 
     Nodes that exist (`status: existing` or `adapted`) have a program already, and what is no node of ROS has none here. The option
     `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
+    With the option `with_cpp` there is also what code in C++ asks for.
     """
     if is_ros_1(context.architecture.distro) != (ros == 1):
         return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
     language = str(context.options.get("language") or "python")
+    is_cpp = bool(context.options.get("with_cpp"))
     all_programs = _find_programs(context, language)
     endpoints = index_endpoints(context.architecture)
     program_names = ProgramNames(context.architecture, ros)
@@ -49,17 +51,17 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     records: list[dict[str, object]] = []
     made_nodes: list[Sequence[Node]] = []
     for (package_name, program_name), program_nodes in sorted(programs.items()):
-        if language == "cpp":
-            bad_names = find_bad_names(
+        if is_cpp:
+            bad_classes = find_bad_classes(
                 package_name, program_name, program_nodes, _find_place(context.architecture, program_nodes[0])
             )
-            findings += bad_names
-            if bad_names:
+            findings += bad_classes
+            if bad_classes:
                 continue
         record, program_findings = _record_program(
             context, (package_name, program_name), program_nodes, endpoints, program_names
         )
-        if language == "cpp":
+        if is_cpp:
             complete_cpp_program(context.architecture, record, program_nodes)
         made_nodes.append(program_nodes)
         records.append(record)
@@ -82,7 +84,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     for package in packages.values():
         used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
         package["dependencies"] = sorted(used)
-        if language == "cpp":
+        if is_cpp:
             package["libraries"] = list_cpp_libraries(package["programs"])  # type: ignore[arg-type]
         package["has_actions"] = any(
             each["action_servers"] or each["action_clients"]

@@ -1,0 +1,58 @@
+// Made by archgen from archgen.yaml:24:7.
+
+#include "rt_g/motor_node.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "rt_g/motor_behaviour.hpp"
+
+namespace rt_g
+{
+
+Motor::Motor(const rclcpp::NodeOptions & options)
+: rclcpp::Node("motor", options)
+{
+  parameter_listener_ = std::make_unique<motor_parameters::ParamListener>(
+    get_node_parameters_interface(), get_logger());
+  create_interfaces();
+  behaviour_ = std::make_unique<MotorBehaviour>(*this);
+}
+
+Motor::~Motor() = default;
+
+motor_parameters::Params Motor::read_parameters() const
+{
+  return parameter_listener_->get_params();
+}
+
+void Motor::create_interfaces()
+{
+  // g.m1.state
+  state_publisher_ = create_publisher<std_msgs::msg::String>(
+    "state",
+    rclcpp::QoS(rclcpp::KeepLast(10))
+    .reliable()
+    .durability_volatile());
+  // g.m1.target
+  target_subscription_ = create_subscription<std_msgs::msg::String>(
+    "target",
+    rclcpp::QoS(rclcpp::KeepLast(10))
+    .reliable()
+    .durability_volatile(),
+    [this](std_msgs::msg::String::ConstSharedPtr message) {
+      behaviour_->receive_target(std::move(message));
+    });
+}
+
+void Motor::publish_state(const std_msgs::msg::String & message)
+{
+  state_publisher_->publish(message);
+}
+
+void Motor::publish_state(std_msgs::msg::String::UniquePtr message)
+{
+  state_publisher_->publish(std::move(message));
+}
+
+}  // namespace rt_g

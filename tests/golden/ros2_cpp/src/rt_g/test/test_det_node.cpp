@@ -1,0 +1,97 @@
+// Made by archgen from archgen.yaml:40:3.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "rt_g/det_behaviour.hpp"
+#include "rt_g/det_node.hpp"
+#include "rclcpp/rclcpp.hpp"
+
+/// The node has what the architecture says of it.
+class DetTest : public ::testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    rclcpp::init(0, nullptr);
+    rclcpp::NodeOptions options;
+    node_ = std::make_shared<rt_g::Det>(options);
+    node_->configure();
+  }
+
+  void TearDown() override
+  {
+    node_.reset();
+    rclcpp::shutdown();
+  }
+
+  /// Return the names that are not there after a minute: the graph learns of them late.
+  template<typename Reader>
+  static std::set<std::string> wait_for(std::set<std::string> missing, const Reader & read_names)
+  {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!missing.empty() && std::chrono::steady_clock::now() < end) {
+      for (const auto & known : read_names()) {
+        missing.erase(known.first);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return missing;
+  }
+
+  std::shared_ptr<rt_g::Det> node_;
+};
+
+TEST_F(DetTest, Starts)
+{
+  EXPECT_EQ(node_->get_name(), std::string("det"));
+}
+
+TEST_F(DetTest, Publishes)
+{
+  const auto node_topics = node_->get_node_topics_interface();
+  std::set<std::string> names;
+  // g.det.found
+  names.insert(node_topics->resolve_topic_name("detections"));
+  const auto missing = wait_for(
+    names, [this]() {
+      return node_->get_node_graph_interface()->get_publisher_names_and_types_by_node(
+        node_->get_name(), node_->get_namespace());
+    });
+  EXPECT_EQ(missing, std::set<std::string>());
+}
+
+TEST_F(DetTest, Subscribes)
+{
+  const auto node_topics = node_->get_node_topics_interface();
+  std::set<std::string> names;
+  // g.det.image
+  names.insert(node_topics->resolve_topic_name("/camera/image"));
+  // g.det.cloud
+  names.insert(node_topics->resolve_topic_name("/g/cam/cloud"));
+  const auto missing = wait_for(
+    names, [this]() {
+      return node_->get_node_graph_interface()->get_subscriber_names_and_types_by_node(
+        node_->get_name(), node_->get_namespace());
+    });
+  EXPECT_EQ(missing, std::set<std::string>());
+}
+
+TEST_F(DetTest, Serves)
+{
+  const auto node_services = node_->get_node_services_interface();
+  std::set<std::string> names;
+  // g.det.plan
+  names.insert(node_services->resolve_service_name("/g/det/plan"));
+  const auto missing = wait_for(
+    names, [this]() {
+      return node_->get_node_graph_interface()->get_service_names_and_types_by_node(
+        node_->get_name(), node_->get_namespace());
+    });
+  EXPECT_EQ(missing, std::set<std::string>());
+}

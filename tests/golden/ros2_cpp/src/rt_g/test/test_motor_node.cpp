@@ -1,0 +1,91 @@
+// Made by archgen from archgen.yaml:24:7.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "rt_g/motor_behaviour.hpp"
+#include "rt_g/motor_node.hpp"
+#include "rclcpp/rclcpp.hpp"
+
+/// The node has what the architecture says of it.
+class MotorTest : public ::testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    rclcpp::init(0, nullptr);
+    rclcpp::NodeOptions options;
+    options.append_parameter_override(
+      "joint",
+      std::string("left"));
+    node_ = std::make_shared<rt_g::Motor>(options);
+  }
+
+  void TearDown() override
+  {
+    node_.reset();
+    rclcpp::shutdown();
+  }
+
+  /// Return the names that are not there after a minute: the graph learns of them late.
+  template<typename Reader>
+  static std::set<std::string> wait_for(std::set<std::string> missing, const Reader & read_names)
+  {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!missing.empty() && std::chrono::steady_clock::now() < end) {
+      for (const auto & known : read_names()) {
+        missing.erase(known.first);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return missing;
+  }
+
+  std::shared_ptr<rt_g::Motor> node_;
+};
+
+TEST_F(MotorTest, Starts)
+{
+  EXPECT_EQ(node_->get_name(), std::string("motor"));
+}
+
+TEST_F(MotorTest, Publishes)
+{
+  const auto node_topics = node_->get_node_topics_interface();
+  std::set<std::string> names;
+  // g.m1.state
+  names.insert(node_topics->resolve_topic_name("state"));
+  const auto missing = wait_for(
+    names, [this]() {
+      return node_->get_node_graph_interface()->get_publisher_names_and_types_by_node(
+        node_->get_name(), node_->get_namespace());
+    });
+  EXPECT_EQ(missing, std::set<std::string>());
+}
+
+TEST_F(MotorTest, Subscribes)
+{
+  const auto node_topics = node_->get_node_topics_interface();
+  std::set<std::string> names;
+  // g.m1.target
+  names.insert(node_topics->resolve_topic_name("target"));
+  const auto missing = wait_for(
+    names, [this]() {
+      return node_->get_node_graph_interface()->get_subscriber_names_and_types_by_node(
+        node_->get_name(), node_->get_namespace());
+    });
+  EXPECT_EQ(missing, std::set<std::string>());
+}
+
+TEST_F(MotorTest, HasItsParameters)
+{
+  ASSERT_TRUE(node_->has_parameter("joint"));
+}
