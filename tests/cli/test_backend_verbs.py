@@ -127,8 +127,14 @@ def test_each_verb_names_the_right_one_for_others(
     ("words", "error"),
     [
         (("generate", "coed"), "there is no text backend `coed`; did you mean `code`?"),
-        (("export", "zzz"), "there is no text backend `zzz`; there are reqif, table"),
-        (("export", "report"), "there is no text backend `report`; there are reqif, table"),
+        (
+            ("export", "zzz"),
+            "there is no text backend `zzz`; there are d2, graphml, mermaid, plantuml, reqif, structurizr, table",
+        ),
+        (
+            ("export", "report"),
+            "there is no text backend `report`; there are d2, graphml, mermaid, plantuml, reqif, structurizr, table",
+        ),
     ],
 )
 def test_a_name_that_is_no_backend(
