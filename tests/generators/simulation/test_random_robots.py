@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.generators.simulation.random_robots import Robot, make_robot, make_scenario, write_behaviours
+from tests.generators.simulation.random_robots import Robot, make_robot, make_scenario
+from tests.generators.simulation.robot_behaviours import write_behaviours
 from tests.generators.simulation.simulated_workspaces import generate, run_python
 from tests.running import QUICK_START
 
@@ -46,7 +47,8 @@ def run_all_in_java(folder: Path, robots: list[Robot]) -> dict[str, str]:
     sources = [f"{robots[0].name}/java/runtime"]
     sources += [f"{each.name}/java/{place}" for each in robots for place in ("generated", "src")]
     javac, java = shutil.which("javac"), shutil.which("java")
-    assert javac and java, "this test needs a JDK (Debian: `default-jdk-headless`)"
+    assert javac, "this test needs a JDK (Debian: `default-jdk-headless`)"
+    assert java, "this test needs a JDK (Debian: `default-jdk-headless`)"
     options = ["-Xlint:all", "-Werror", "-encoding", "UTF-8", "--release", "17", "-d", "build"]
     quick = [f"-J{each}" for each in QUICK_START]
     for command in (
