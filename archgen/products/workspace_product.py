@@ -77,7 +77,9 @@ def write_workspace(
     if files is None:
         return WorkspaceResult(folder, None, findings)
     run = _name_run(checked_project, options, request.host)
-    return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
+    return WorkspaceResult(
+        folder, _write_files(files, backend, folder, run, request, is_sound=not checked_project.has_errors), findings
+    )
 
 
 def _run_passes(
@@ -183,15 +185,21 @@ def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str
 
 
 def _write_files(
-    files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
+    files: Sequence[GeneratedFile],
+    backend: Backend,
+    folder: Path,
+    run: str,
+    request: WorkspaceRequest,
+    *,
+    is_sound: bool,
 ) -> WorkspacePlan:
     """Plan, and unless only a look is asked for, do what is planned."""
     _refuse_unusable(folder)
     try:
         if request.only_look:
-            return _plan_files(files, backend, folder, run, request)
+            return _plan_files(files, backend, folder, run, request, is_sound=is_sound)
         with workspace_writing.lock_workspace(folder):
-            plan = _plan_files(files, backend, folder, run, request)
+            plan = _plan_files(files, backend, folder, run, request, is_sound=is_sound)
             workspace_writing.carry_out(plan, folder)
             return plan
     except OSError as error:
@@ -206,7 +214,13 @@ def _refuse_unusable(folder: Path) -> None:
 
 
 def _plan_files(
-    files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
+    files: Sequence[GeneratedFile],
+    backend: Backend,
+    folder: Path,
+    run: str,
+    request: WorkspaceRequest,
+    *,
+    is_sound: bool,
 ) -> WorkspacePlan:
     other_backends = read_other_records(folder, backend.id)
     for file in files:
@@ -223,7 +237,7 @@ def _plan_files(
         _find_named_paths(request.overwritten, folder, known_paths),
         _find_named_paths(request.kept, folder, known_paths),
     )
-    return plan_workspace(record, run, files, DiskReader(folder), choices)
+    return plan_workspace(record, run, files, DiskReader(folder), choices, is_sound=is_sound)
 
 
 def _find_named_paths(names: Sequence[str], folder: Path, known_paths: set[str]) -> frozenset[str]:

@@ -66,15 +66,26 @@ class WorkspacePlan:
 
 
 def plan_workspace(
-    record: RunRecord, run: str, files: Iterable[GeneratedFile], disk: DiskReader, choices: UserChoices
+    record: RunRecord,
+    run: str,
+    files: Iterable[GeneratedFile],
+    disk: DiskReader,
+    choices: UserChoices,
+    *,
+    is_sound: bool = True,
 ) -> WorkspacePlan:
-    """Plan what a run of a backend does. `run` names the part that was asked for; the paths of `files` are sound."""
+    """Plan what a run of a backend does. `run` names the part that was asked for; the paths of `files` are sound.
+
+    Where the project is not sound, a file that is not made may only be missing because of an error: none is removed.
+    """
     planner = _Planner(record, run, disk, choices)
     wanted_files = {file.path: file for file in files}
     # First what goes: a folder may take the place of a file, and a file that of a folder.
     for path, entry in record.files.items():
-        if path not in wanted_files:
+        if path not in wanted_files and is_sound:
             planner.plan_unwanted(path, entry)
+        elif path not in wanted_files:
+            planner.entries[path] = entry
     for file in wanted_files.values():
         planner.plan_wanted(file)
     return planner.finish()
