@@ -248,7 +248,9 @@ def _find_named_paths(names: Sequence[str], folder: Path, known_paths: set[str])
         with contextlib.suppress(ValueError):
             spellings.append(Path(name).resolve().relative_to(folder.resolve()).as_posix())
         named_paths = {
-            path for path in known_paths if any(path == each or path.startswith(f"{each}/") for each in spellings)
+            path
+            for path in known_paths
+            if any(each in {path, "."} or path.startswith(f"{each}/") for each in spellings)
         }
         if not named_paths:
             msg = f"this backend makes no file `{name}` here"
