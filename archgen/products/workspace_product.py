@@ -35,6 +35,8 @@ class WorkspaceRequest:
     overwritten: Sequence[str] = ()
     kept: Sequence[str] = ()
     only_look: bool = False
+    removes_unmade: bool = True
+    """Whether files go that are no longer made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +79,8 @@ def write_workspace(
     if files is None:
         return WorkspaceResult(folder, None, findings)
     run = _name_run(checked_project, options, request.host)
-    return WorkspaceResult(
-        folder, _write_files(files, backend, folder, run, request, is_sound=not checked_project.has_errors), findings
-    )
+    request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
+    return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
 
 
 def _run_passes(
@@ -185,21 +186,15 @@ def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str
 
 
 def _write_files(
-    files: Sequence[GeneratedFile],
-    backend: Backend,
-    folder: Path,
-    run: str,
-    request: WorkspaceRequest,
-    *,
-    is_sound: bool,
+    files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     """Plan, and unless only a look is asked for, do what is planned."""
     _refuse_unusable(folder)
     try:
         if request.only_look:
-            return _plan_files(files, backend, folder, run, request, is_sound=is_sound)
+            return _plan_files(files, backend, folder, run, request)
         with workspace_writing.lock_workspace(folder):
-            plan = _plan_files(files, backend, folder, run, request, is_sound=is_sound)
+            plan = _plan_files(files, backend, folder, run, request)
             workspace_writing.carry_out(plan, folder)
             return plan
     except OSError as error:
@@ -214,13 +209,7 @@ def _refuse_unusable(folder: Path) -> None:
 
 
 def _plan_files(
-    files: Sequence[GeneratedFile],
-    backend: Backend,
-    folder: Path,
-    run: str,
-    request: WorkspaceRequest,
-    *,
-    is_sound: bool,
+    files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     other_backends = read_other_records(folder, backend.id)
     for file in files:
@@ -236,8 +225,9 @@ def _plan_files(
     choices = UserChoices(
         _find_named_paths(request.overwritten, folder, known_paths),
         _find_named_paths(request.kept, folder, known_paths),
+        request.removes_unmade,
     )
-    return plan_workspace(record, run, files, DiskReader(folder), choices, is_sound=is_sound)
+    return plan_workspace(record, run, files, DiskReader(folder), choices)
 
 
 def _find_named_paths(names: Sequence[str], folder: Path, known_paths: set[str]) -> frozenset[str]:

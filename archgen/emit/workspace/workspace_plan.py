@@ -36,6 +36,8 @@ class UserChoices:
 
     overwritten: Collection[str] = ()
     kept: Collection[str] = ()
+    removes_unmade: bool = True
+    """Whether what is no longer made goes: not in spite of errors, since it may only be missing because of one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,23 +68,14 @@ class WorkspacePlan:
 
 
 def plan_workspace(
-    record: RunRecord,
-    run: str,
-    files: Iterable[GeneratedFile],
-    disk: DiskReader,
-    choices: UserChoices,
-    *,
-    is_sound: bool = True,
+    record: RunRecord, run: str, files: Iterable[GeneratedFile], disk: DiskReader, choices: UserChoices
 ) -> WorkspacePlan:
-    """Plan what a run of a backend does. `run` names the part that was asked for; the paths of `files` are sound.
-
-    Where the project is not sound, a file that is not made may only be missing because of an error: none is removed.
-    """
+    """Plan what a run of a backend does. `run` names the part that was asked for; the paths of `files` are sound."""
     planner = _Planner(record, run, disk, choices)
     wanted_files = {file.path: file for file in files}
     # First what goes: a folder may take the place of a file, and a file that of a folder.
     for path, entry in record.files.items():
-        if path not in wanted_files and is_sound:
+        if path not in wanted_files and choices.removes_unmade:
             planner.plan_unwanted(path, entry)
         elif path not in wanted_files:
             planner.entries[path] = entry
