@@ -24,6 +24,13 @@ def is_generated(node: Node) -> bool:
     return node.status in {None, "planned"} and not (node.is_program or node.command)
 
 
+def list_generated_nodes(architecture: Architecture) -> list[Node]:
+    """Return the nodes whose programs generators make: none that exists already, since another node says so."""
+    nodes = architecture.nodes.values()
+    made_programs = {(each.package, each.executable) for each in nodes if not is_generated(each) and each.executable}
+    return [each for each in nodes if is_generated(each) and (each.package, each.executable) not in made_programs]
+
+
 def name_package(architecture: Architecture, node: Node) -> str:
     """Return the package of a node: what it says, else one for the nodes of its group."""
     if node.package:
@@ -110,8 +117,7 @@ class ProgramNames:
         self._ros = ros
         self._endpoints = index_endpoints(architecture)
         self._names: dict[str, list[tuple[str, str, str]]] = {}
-        generated_nodes = (each for each in architecture.nodes.values() if is_generated(each))
-        for nodes in group_by_program(architecture, generated_nodes).values():
+        for nodes in group_by_program(architecture, list_generated_nodes(architecture)).values():
             if len(nodes) > 1:
                 self._name_shared_ports(nodes)
 

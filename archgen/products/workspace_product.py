@@ -35,6 +35,8 @@ class WorkspaceRequest:
     overwritten: Sequence[str] = ()
     kept: Sequence[str] = ()
     only_look: bool = False
+    removes_unmade: bool = True
+    """Whether files go that are no longer made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +79,7 @@ def write_workspace(
     if files is None:
         return WorkspaceResult(folder, None, findings)
     run = _name_run(checked_project, options, request.host)
+    request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
     return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
 
 
@@ -222,6 +225,7 @@ def _plan_files(
     choices = UserChoices(
         _find_named_paths(request.overwritten, folder, known_paths),
         _find_named_paths(request.kept, folder, known_paths),
+        request.removes_unmade,
     )
     return plan_workspace(record, run, files, DiskReader(folder), choices)
 
@@ -234,7 +238,9 @@ def _find_named_paths(names: Sequence[str], folder: Path, known_paths: set[str])
         with contextlib.suppress(ValueError):
             spellings.append(Path(name).resolve().relative_to(folder.resolve()).as_posix())
         named_paths = {
-            path for path in known_paths if any(path == each or path.startswith(f"{each}/") for each in spellings)
+            path
+            for path in known_paths
+            if any(each in {path, "."} or path.startswith(f"{each}/") for each in spellings)
         }
         if not named_paths:
             msg = f"this backend makes no file `{name}` here"

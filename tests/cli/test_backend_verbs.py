@@ -18,8 +18,11 @@ archgen: 1
 groups: {a: {components: {b: {functionality: Waits., inputs: {x: {external: The world}}}}}}
 nodes: {b: {implements: b, subscribes: {x: {topic: x, message: std_msgs/msg/Empty}}}}
 """
-GENERATORS = [name for name, each in find_backends(ROOT / "docs")[0].items() if each.makes == "workspace"]
-"""The backends of workspaces that ship: the folder has none of its own."""
+SHIPPED = find_backends(ROOT / "docs")[0]
+"""The folder has none of its own."""
+GENERATORS = [name for name, each in SHIPPED.items() if each.makes == "workspace"]
+OF_OTHER_TOOLS = [name for name, each in SHIPPED.items() if each.makes == "workspace" or each.views == ("structure",)]
+"""Generators and models for other tools, which are more and more."""
 COMPONENT_FILES = '[{template: t.j2, path: "{{ item.title }}.txt", for_each: graphs, only: {kind: component}}]'
 BACKENDS = {
     "pages": "documents",
@@ -60,6 +63,20 @@ def test_generate_leaves_files_of_others_alone(run: Run, robot: Path) -> None:
     after = contents(robot)
     assert {path: after.pop(path) for path in ("B.txt", ".archgen/code.json")}["B.txt"] == "code: ä\n".encode()
     assert after == before
+
+
+def test_errors_remove_nothing_that_was_generated(run: Run, robot: Path) -> None:
+    second = robot / "second.yaml"
+    second.write_text("groups: {a: {components: {c: {functionality: Waits.}}}}\n")
+    assert run("generate", "code", "-C", robot).status == 0
+    made = contents(robot / "archgen-out" / "code")
+    assert "C.txt" in made
+    second.write_text("groups: {a: {components: {c: {functionality: [\n")
+    assert run("generate", "code", "-C", robot, "--keep-going").status == 1
+    assert contents(robot / "archgen-out" / "code") == made
+    second.unlink()
+    assert run("generate", "code", "-C", robot).status == 0
+    assert "C.txt" not in contents(robot / "archgen-out" / "code")
 
 
 def test_export_makes_a_file(robot: Path, tmp_path: Path) -> None:
@@ -208,11 +225,11 @@ table           The table                  file       text     record           
 
 def test_backends_are_listed(run: Run, robot: Path) -> None:
     lines = run("list", "--of", "backends", "-C", robot).out.splitlines()
-    # The columns are as wide as the words of all backends; generators that ship are more and more.
-    shown_rows = [line.split() for line in lines if line.split()[0] not in GENERATORS]
+    # The columns are as wide as the words of all backends.
+    shown_rows = [line.split() for line in lines if line.split()[0] not in OF_OTHER_TOOLS]
     assert shown_rows == [line.split() for line in TABLE.splitlines()]
     assert len({line.rindex("  ") for line in lines[1:]}) == 1
-    assert {line.split()[0] for line in lines} >= set(GENERATORS)
+    assert {line.split()[0] for line in lines} >= set(OF_OTHER_TOOLS)
     rows = json.loads(run("list", "--of", "backends", "--format", "json", "-C", robot).out)
     assert rows[-1] == {
         "id": "table",
@@ -247,7 +264,7 @@ def test_a_selector_does_not_go_with_backends(run: Run, robot: Path) -> None:
     ("words", "names"),
     [
         ("generate c", ["code"]),
-        ("export ", ["reqif", "table"]),
+        ("export ", ["d2", "graphml", "mermaid", "plantuml", "reqif", "structurizr", "table"]),
         ("build --backend p", ["pages"]),
         ("build --only report,p", ["report,packed", "report,pages"]),
     ],

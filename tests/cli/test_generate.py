@@ -80,6 +80,15 @@ def test_what_is_asked_for(run: Run, robot: Path, tmp_path: Path, words: list[st
     assert made(tmp_path / "ws") == files
 
 
+def test_the_workspace_itself_names_all_of_its_files(run: Run, robot: Path, tmp_path: Path) -> None:
+    workspace = tmp_path / "ws"
+    run("generate", "code", "-C", robot, "-o", workspace)
+    for path in BOTH:
+        (workspace / path).write_text("by hand")
+    assert run("generate", "code", "-C", robot, "-o", workspace, "--overwrite", workspace).status == 0
+    assert made(workspace) == BOTH
+
+
 def test_parts_are_apart_and_variants_are_not(run: Run, robot: Path, tmp_path: Path) -> None:
     def generate(*words: str) -> str:
         return run("generate", "code", "-C", robot, "-o", tmp_path / "ws", *words).out

@@ -36,6 +36,8 @@ class UserChoices:
 
     overwritten: Collection[str] = ()
     kept: Collection[str] = ()
+    removes_unmade: bool = True
+    """Whether what is no longer made goes: not in spite of errors, since it may only be missing because of one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +75,10 @@ def plan_workspace(
     wanted_files = {file.path: file for file in files}
     # First what goes: a folder may take the place of a file, and a file that of a folder.
     for path, entry in record.files.items():
-        if path not in wanted_files:
+        if path not in wanted_files and choices.removes_unmade:
             planner.plan_unwanted(path, entry)
+        elif path not in wanted_files:
+            planner.entries[path] = entry
     for file in wanted_files.values():
         planner.plan_wanted(file)
     return planner.finish()

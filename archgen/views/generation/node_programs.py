@@ -8,7 +8,7 @@ from archgen.bringup.program_names import (
     ProgramNames,
     group_by_program,
     index_endpoints,
-    is_generated,
+    list_generated_nodes,
     name_package,
 )
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -115,9 +115,7 @@ def _name_module(program_name: str) -> str:
 
 def _find_programs(context: GenerationContext, language: str) -> dict[tuple[str, str], list[Node]]:
     """Return the nodes of each program that is asked for. One node is enough for all of its package, which is made whole."""
-    nodes = [
-        each for each in context.architecture.nodes.values() if is_generated(each) and _is_in_language(each, language)
-    ]
+    nodes = [each for each in list_generated_nodes(context.architecture) if _is_in_language(each, language)]
     programs = group_by_program(context.architecture, nodes)
     packages = {
         package
@@ -140,8 +138,8 @@ def _find_mixed_packages(
     other_language = "cpp" if language == "python" else "python"
     others = {
         name_package(context.architecture, node): node
-        for node in context.architecture.nodes.values()
-        if is_generated(node) and _is_in_language(node, other_language)
+        for node in list_generated_nodes(context.architecture)
+        if _is_in_language(node, other_language)
     }
     told = set[str]()
     for (package_name, _), nodes in programs.items():

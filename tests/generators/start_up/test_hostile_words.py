@@ -54,7 +54,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 "command": ["camera", *WORDS],
                 "host": "box",
                 "start": {
-                    "environment": {"HOSTILE": "\0".join(" ".join(WORDS))},
+                    "environment": {"HOSTILE": "\0".join(" ".join(WORDS)), "NO": "no"},
                     "directory": "-a $(touch trace) %h",
                     "ready": {"log": "$(touch trace)\\ %n 'x' \"y\"", "within": "90 s"},
                 },
@@ -127,6 +127,7 @@ def test_systemd_reads_nothing_of_them(workspace: Path) -> None:
 def test_compose_reads_nothing_of_them(workspace: Path) -> None:
     text = (workspace / "start" / "compose" / "box.yaml").read_text(encoding="utf-8")
     service = yaml.safe_load(text)["services"]["a"]
+    assert service["environment"]["NO"] == "no"
     words = [
         word.replace("$$", "\0")
         for word in [

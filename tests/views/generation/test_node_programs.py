@@ -20,6 +20,15 @@ def test_a_module_is_no_word_of_the_language(tmp_path: Path) -> None:
     ]
 
 
+def test_a_program_of_a_node_that_exists_is_not_made_for_another_one(tmp_path: Path) -> None:
+    made = make_programs(
+        tmp_path,
+        "{a: {implements: a, package: cams, executable: cam, status: existing}, b: {implements: b, package: cams,"
+        " executable: cam}, c: {implements: c, package: cams, executable: other}, d: {implements: d, status: existing}}",
+    )
+    assert [each["executable"] for each in made.data["programs"]] == ["other"]
+
+
 @pytest.mark.parametrize("part", [{"host": "left"}, {"nodes": frozenset({"a"})}])
 def test_a_package_is_made_whole_or_not_at_all(tmp_path: Path, part: dict[str, Any]) -> None:
     nodes = (
