@@ -398,6 +398,9 @@ def transform_project(
         known_passes,
         checked_project.transformed,
     )
+    if not transformed.is_changed and not transformed.findings:
+        # It is judged already: most projects have no generic types to remove.
+        return replace(checked_project, transformed=transformed)
     diagnostics = (*_merge_project(checked_project.loaded_project).diagnostics, *transformed.findings)
     reading_errors = tuple(_list_structural_errors(checked_project.loaded_project.diagnostics))
     damaged_elements = frozenset(error.element for error in reading_errors if error.element)

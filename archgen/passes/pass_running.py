@@ -26,6 +26,8 @@ class TransformedProject:
     findings: tuple[Diagnostic, ...]
     passes: tuple[str, ...]
     """The passes that ran, in order, those included that others needed."""
+    is_changed: bool = True
+    """Whether the last run wrote or dropped anything."""
 
 
 class UnknownPassError(Exception):
@@ -59,6 +61,7 @@ def run_passes(  # noqa: PLR0913, PLR0917 - what passes work with
         work.tree.provenance,
         tuple(dict.fromkeys(work.findings)),
         (*(earlier.passes if earlier else ()), *(each.name for each in ordered_passes)),
+        is_changed=work.tree.edit_count > 0,
     )
 
 

@@ -55,6 +55,21 @@ def test_every_state_that_a_shipped_pass_needs_is_left_by_one() -> None:
     assert {state for each in PASSES.values() for state in each.needs} <= left
 
 
+def test_what_no_pass_changes_is_judged_once(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text("groups: {g: {components: {a: {outputs: {x: Pose}}}}}\n")
+    checked_project = check_project(tmp_path)
+    same_project = transform_project(checked_project, ["remove_generics"])
+    assert same_project.architecture is checked_project.architecture
+    assert same_project.findings == checked_project.findings
+    assert same_project.transformed
+    assert same_project.transformed.passes == ("remove_generics",)
+    cleaning = check_project(EXAMPLES / "cleaning_robot")
+    changed_project = transform_project(cleaning, ["remove_generics"])
+    assert changed_project.architecture is not cleaning.architecture
+    assert changed_project.transformed
+    assert changed_project.transformed.is_changed
+
+
 def test_a_transformed_project_is_judged_and_the_checked_one_stays(tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text("groups: {g: {components: {a: {outputs: {x: Pose}}}}}\n")
 
