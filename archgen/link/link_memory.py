@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from archgen.link.reference_resolution import Answer
+from archgen.link.reference_resolution import Answer, NameList
 from archgen.model.component import Component, Output
 from archgen.model.known_parts import KnownParts
 from archgen.model.node import Node
@@ -18,10 +18,6 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _MAX_INDEXES = 4
 """Indexes of paths that are remembered for each kind: variants differ in few ways."""
-
-
-NameList = tuple[tuple[str, tuple[str, ...]], ...]
-"""All names of a version, by kind: in two versions with the same ones each reference means the same."""
 
 
 class OutlinedPorts(NamedTuple):
@@ -41,7 +37,7 @@ class LinkedLeaf(NamedTuple):
     group_owners: tuple[str, ...]
     source_media: tuple[str, ...]
     """What the outputs travel over that its inputs read, in the order of connections."""
-    names: object
+    names: NameList | None
     answers: tuple[Answer, ...]
     component: Component
 
@@ -54,7 +50,7 @@ class LinkedNode(NamedTuple):
     shared_flags: tuple[bool, ...]
     """For each of its components, whether other nodes implement it, too."""
     container_host: str | None
-    names: object
+    names: NameList | None
     answers: tuple[Answer, ...]
     node: Node
 
