@@ -234,10 +234,10 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
         if not architecture.suspected_ids.isdisjoint((group, output.component, output.id)):
             continue
         # What a library offers for calls waits for whoever needs it; of what it sends, something should be read.
-        is_spare = _kind_of_output(architecture, output) in _CALLED_KINDS or any(
-            each.id in taken_outputs for each in component.outputs.values()
-        )
-        if is_spare and is_offered_by_library(architecture, output):
+        if is_offered_by_library(architecture, output) and (
+            _kind_of_output(architecture, output) in _CALLED_KINDS
+            or any(each.id in taken_outputs for each in component.outputs.values())
+        ):
             continue
         yield Diagnostic(
             "unread-output",

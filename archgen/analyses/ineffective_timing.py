@@ -65,7 +65,8 @@ def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diag
           camera: {implements: camera, timing: {rate: 30 Hz}}
           viewer: {implements: viewer, timing: {behaviour: event, every: 2}}
     """
-    uses = _port_uses(architecture)
+    has_calls = any(timing.calls for node in architecture.nodes.values() for timing in node.timing.values())
+    uses = _port_uses(architecture) if has_calls else {}
     # One `timing` may stand for several components of a node: its faults are reported once.
     reported_spans: set[Span] = set()
     for node in architecture.nodes.values():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -87,12 +88,17 @@ def _list_meant_requirements(
     architecture: Architecture, sentence: str, id_by_title: Mapping[str, str]
 ) -> tuple[str, ...]:
     """Return the requirements that a sentence means: it is made of their ids, or is the title of one; else none."""
-    words = _ID_SEPARATOR.split(sentence) if len(sentence) <= _MAX_SENTENCE else []
-    ids = tuple(dict.fromkeys(word for word in words if word not in {"", "and"}))
+    ids = _split_words(sentence) if len(sentence) <= _MAX_SENTENCE else ()
     if ids and all(word in architecture.requirements for word in ids):
         return ids
     title_id = id_by_title.get(sentence.casefold())
     return (title_id,) if title_id else ()
+
+
+@lru_cache(1 << 12)  # variants have the same sentences, and many components serve the same
+def _split_words(sentence: str) -> tuple[str, ...]:
+    """Return the words that may be ids, each once."""
+    return tuple(dict.fromkeys(word for word in _ID_SEPARATOR.split(sentence) if word not in {"", "and"}))
 
 
 def _index_titles(architecture: Architecture) -> dict[str, str]:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
@@ -26,36 +26,50 @@ _STANDARD_SERVICES = re.compile(
 """Services of every ROS 2 node (parameters, life cycle, loggers) and container: a design does not list them."""
 
 
-@dataclass(slots=True)
 class _TopicUsers:
     """Writers and readers of topics and services, and the outputs that inputs name; shared topics are left out."""
 
-    writers: dict[tuple[str, FlowKind], list[Endpoint]] = field(default_factory=lambda: defaultdict(list))
-    readers: list[Endpoint] = field(default_factory=list)
-    topics_by_output: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    """The names of topics or services that each output is published under, by output id."""
-    outputs_by_component: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    """The ids of all outputs that a component's inputs name, by component id."""
-    outputs_by_input: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    """The ids of the outputs that an input names, by input id."""
+    def __init__(self, architecture: Architecture) -> None:
+        self._architecture = architecture
+        self.writers: dict[tuple[str, FlowKind], list[Endpoint]] = {}
+        self.readers: list[Endpoint] = []
+        shared_topics = {(topic.name, topic.flow) for topic in architecture.topics.values() if topic.shared}
+        for endpoint in architecture.endpoints:
+            key = (endpoint.name, endpoint.flow)
+            if key in shared_topics or endpoint.name in architecture.shared_topics:
+                continue
+            if endpoint.use not in {"publishes", "serves"}:
+                self.readers.append(endpoint)
+            elif key in self.writers:
+                self.writers[key].append(endpoint)
+            else:
+                self.writers[key] = [endpoint]
 
+    @cached_property
+    def topics_by_output(self) -> Mapping[str, set[str]]:
+        """The names of topics or services that each output is published under, by output id."""
+        topics_by_output: dict[str, set[str]] = defaultdict(set)
+        for writers in self.writers.values():
+            for writer in writers:
+                if writer.port:
+                    topics_by_output[writer.port].add(writer.name)
+        return topics_by_output
 
-def _collect_topic_users(architecture: Architecture) -> _TopicUsers:
-    topic_users = _TopicUsers()
-    shared_topics = {(topic.name, topic.flow) for topic in architecture.topics.values() if topic.shared}
-    for endpoint in architecture.endpoints:
-        if (endpoint.name, endpoint.flow) in shared_topics or endpoint.name in architecture.shared_topics:
-            continue
-        if endpoint.use in {"publishes", "serves"}:
-            topic_users.writers[endpoint.name, endpoint.flow].append(endpoint)
-            if endpoint.port:
-                topic_users.topics_by_output[endpoint.port].add(endpoint.name)
-        else:
-            topic_users.readers.append(endpoint)
-    for edge in architecture.edges:
-        topic_users.outputs_by_input[edge.input].add(edge.output)
-        topic_users.outputs_by_component[architecture.inputs[edge.input].component].add(edge.output)
-    return topic_users
+    @cached_property
+    def outputs_by_component(self) -> Mapping[str, set[str]]:
+        """The ids of all outputs that a component's inputs name, by component id."""
+        outputs_by_component: dict[str, set[str]] = defaultdict(set)
+        for edge in self._architecture.edges:
+            outputs_by_component[self._architecture.inputs[edge.input].component].add(edge.output)
+        return outputs_by_component
+
+    @cached_property
+    def outputs_by_input(self) -> Mapping[str, set[str]]:
+        """The ids of the outputs that an input names, by input id."""
+        outputs_by_input: dict[str, set[str]] = defaultdict(set)
+        for edge in self._architecture.edges:
+            outputs_by_input[edge.input].add(edge.output)
+        return outputs_by_input
 
 
 def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -88,7 +102,7 @@ def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
           joystick: {implements: joystick, publishes: {command: /cmd_vel}}
           base: {implements: base}
     """
-    topic_users = _collect_topic_users(architecture)
+    topic_users = _TopicUsers(architecture)
     # Several nodes and ports of a component may read one topic: one finding for each component and topic.
     reported_pairs = set[tuple[str, str]]()
     for reader in topic_users.readers:
@@ -144,7 +158,7 @@ def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
           scan_driver: {implements: scanner, publishes: {scan: /scan}}
           mapper: {implements: mapper, subscribes: {scan: /scan}}
     """
-    topic_users = _collect_topic_users(architecture)
+    topic_users = _TopicUsers(architecture)
     for reader in topic_users.readers:
         if not architecture.nodes[reader.node].implements:
             continue  # `unjustified-node` reports the node as a whole

@@ -103,7 +103,9 @@ def _gather_topics(
     """Gather endpoints by name and flow. Further flows with the same name get a key of their own: `/name (service)`."""
     users: dict[tuple[str, FlowKind], _EndpointUsers] = {}
     for endpoint in endpoints:
-        topic_users = users.setdefault((endpoint.name, endpoint.flow), _EndpointUsers())
+        topic_users = users.get((endpoint.name, endpoint.flow))
+        if topic_users is None:
+            topic_users = users[endpoint.name, endpoint.flow] = _EndpointUsers()
         (topic_users.writers if endpoint.use in {"publishes", "serves"} else topic_users.readers).append(endpoint)
     topics: dict[str, Topic] = {}
     for (name, flow), topic_users in users.items():

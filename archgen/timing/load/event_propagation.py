@@ -16,6 +16,7 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
+from archgen.timing.load.lone_work import find_lone_wait
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.storing_waits import find_core_waits
@@ -108,14 +109,13 @@ class _Propagation(StepUpdates):
                     CoreResponses({}, {}, waits), self._limits_of(step)
                 ).storing_waits
         for name in sorted(readers.difference(self.resources_of)):
-            own_core = ProcessingResource(name, None, 1, ((name,),))
             if state.system.activities[name].uses:
+                own_core = ProcessingResource(name, None, 1, ((name,),))
                 stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
-                state.storing_waits |= {name: self._limit_response(name, stores[name])}
-                continue
-            state.storing_waits |= find_core_waits(
-                state.system, own_core, state.event_models, (name,), self.budget_of[name]
-            )
+                state.storing_waits[name] = self._limit_response(name, stores[name])
+            else:
+                budget = self.budget_of[name]
+                state.storing_waits[name] = find_lone_wait(state.system, name, state.event_models, budget)
 
     def _iterate_steps(self, steps: tuple[str, ...]) -> None:
         """Repeat until nothing changes. Started from the execution times, it approaches the truth from below."""

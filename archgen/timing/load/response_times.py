@@ -24,6 +24,7 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.event_streams import settles_at_full_load
+from archgen.timing.load.lone_work import find_lone_response
 from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
@@ -61,9 +62,8 @@ def find_dedicated_response(
     if work_utilisation(work.cost, work.streams) >= 1:
         return WorstResponse(None, "dedicated", OVERLOAD_CAUSE)
     try:
-        if not works_in_order(system, activity):
-            return WorstResponse(longest_busy_period(GrowingLoad((work,)).demand_function(), budget), "dedicated")
-        return WorstResponse(worst_response(work, NO_DEMAND, budget), "dedicated")
+        in_order = works_in_order(system, activity)
+        return WorstResponse(find_lone_response(work, budget, in_order=in_order), "dedicated")
     except DivergedError:
         return WorstResponse(None, "dedicated", DIVERGED_CAUSE)
 

@@ -35,10 +35,9 @@ def build_arcs(
     joiner = _ArcJoiner(
         architecture,
         activity_names,
-        activities_by_id,
+        _place_activities(architecture, activities_by_id).__getitem__,
         # Cached by pair of hosts: there are far more arcs than pairs.
         cache(_RouteFinder(architecture, tick_unit)),
-        _index_devices(architecture),
         {(edge.output, edge.input): edge.at for edge in architecture.edges},
         message_sizes.make_writer_query(architecture),
     )
@@ -51,6 +50,15 @@ class _Place(NamedTuple):
     host: str | None
     device: str | None = None
     device_links: tuple[str, ...] = ()
+
+
+def _place_activities(architecture: Architecture, activities_by_id: Mapping[str, Activity]) -> Mapping[str, _Place]:
+    """Return where each activity runs."""
+    devices = _index_devices(architecture)
+    return {
+        name: _Place(activity.host, *devices.get(activity.component or "", ()))
+        for name, activity in activities_by_id.items()
+    }
 
 
 def _index_devices(architecture: Architecture) -> Mapping[str, tuple[str, tuple[str, ...]]]:
@@ -70,10 +78,8 @@ class _ArcJoiner:
 
     architecture: Architecture
     activity_names: ActivityNames
-    activities_by_id: Mapping[str, Activity]
+    place_of: Callable[[str], _Place]
     find_route: Callable[[_Place, _Place], LinkRoute]
-    devices: Mapping[str, tuple[str, tuple[str, ...]]]
-    """The device that each component is or is in, with its links."""
     spans: Mapping[tuple[str, str], Span]
     size_of: Callable[[Endpoint, message_sizes.MessageRole], int | None]
 
@@ -94,8 +100,9 @@ class _ArcJoiner:
 
     def _data_arc(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
         """Return the arc from a writer to a reader."""
-        source, target = (activity_of_endpoint(self.activity_names, endpoint) for endpoint in (writer, reader))
-        link, best, worst = self.find_route(self._place_of(source), self._place_of(target))
+        source = activity_of_endpoint(self.activity_names, writer)
+        target = activity_of_endpoint(self.activity_names, reader)
+        link, best, worst = self.find_route(self.place_of(source), self.place_of(target))
         port = self.architecture.inputs.get(reader.port or "")
         qos = reader.qos
         return Arc(
@@ -116,13 +123,9 @@ class _ArcJoiner:
             queue_at=qos.at,
         )
 
-    def _place_of(self, activity_id: str) -> _Place:
-        activity = self.activities_by_id[activity_id]
-        return _Place(activity.host, *self.devices.get(activity.component or "", ()))
-
     def _request_arc(self, answer_arc: Arc) -> Arc:
         """Return the arc from client to server that belongs to an answer."""
-        link, best, worst = self.find_route(self._place_of(answer_arc.target), self._place_of(answer_arc.source))
+        link, best, worst = self.find_route(self.place_of(answer_arc.target), self.place_of(answer_arc.source))
         return replace(
             answer_arc,
             source=answer_arc.target,
