@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from archgen.bringup.program_names import ProgramNames, choose_own_name, group_endpoints, index_endpoints
@@ -78,7 +79,7 @@ def test_a_program_of_one_node_says_the_names_itself(tmp_path: Path) -> None:
     assert names == {"left_goal": "/g/planner/left_goal", "right_goal": "/g/planner/right_goal"}
 
 
-def test_a_plan_starts_what_generators_make(derived: Derived) -> None:
+def test_a_plan_starts_what_generators_make(derived: Callable[[str], Architecture]) -> None:
     """The same programs and classes as launch files name, so that all of the start-up agrees."""
     architecture = derived("""
 component_types: {arm: {functionality: Grips., inputs: {}, outputs: {state: std_msgs/String}}}
