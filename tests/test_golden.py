@@ -80,6 +80,20 @@ def cpp_packages(built: Path) -> Files:
     return {name: data for name, data in contents(folder / "ws").items() if not name.startswith(".")}
 
 
+def simulations(built: Path) -> Files:
+    """Generate the cleaning robot's program in both languages. One text holds a program: its files are no code of the
+    tests'. Of what is the same for all projects only the names are in it.
+    """
+    texts: Files = {}
+    for backend in ("java", "python_simulation"):
+        folder = built.parent / backend
+        archgen("generate", backend, "-o", folder, cwd=ROOT / "examples" / "cleaning_robot")
+        made = {name: data for name, data in contents(folder).items() if not name.startswith(".")}
+        parts = (f"==== {name}\n".encode() + (b"" if "runtime/" in name else data) for name, data in made.items())
+        texts[f"{backend}.txt"] = b"".join(parts)
+    return texts
+
+
 OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "check.txt": said("check", "example_ramcip"),
     "check.json": said("check", "example_ramcip", "--format", "json"),
@@ -94,6 +108,7 @@ OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "wiki": written("wiki"),
     "neighbours": neighbours,
     "ros2_cpp": cpp_packages,
+    "simulations": simulations,
 }
 
 

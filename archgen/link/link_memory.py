@@ -1,7 +1,7 @@
 """What linking remembers of one version of a project for the next: parts whose text and surroundings are the same.
 
 A variant is the project with little changed. Its tree shares what is not changed, so that a component or a node whose
-entry is the same object, and whose references mean what they meant, is the same; see docs/decisions/0039-parts-that-variants-share.md.
+entry is the same object, and whose references mean what they meant, is the same; see docs/decisions/0041-parts-that-variants-share.md.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from archgen.model.code_names import (
     list_name_words,
     make_camel_name,
     make_identifier_in,
+    make_lower_camel_name,
     make_ros_name,
     make_snake_name,
 )
@@ -52,6 +53,8 @@ def test_names_of_ros(name: str) -> None:
 def test_snake_and_camel(name: str) -> None:
     assert re.fullmatch(r"[a-z](?:_?[a-z0-9])*", make_snake_name(name))
     assert re.fullmatch(r"[A-Z][A-Za-z0-9]*", make_camel_name(name))
+    assert re.fullmatch(r"[a-z][A-Za-z0-9]*", make_lower_camel_name(name))
+    assert make_lower_camel_name(name)[1:] == make_camel_name(name)[1:]
 
 
 @pytest.mark.parametrize(

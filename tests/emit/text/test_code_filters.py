@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import io
+import math
 import re
 import shlex
 import shutil
@@ -184,6 +185,14 @@ def test_a_string_of_cpp_has_plain_characters_only(text: str) -> None:
         ("python_name", "class", "class_"),
         ("cpp_name", "class", "class_"),
         ("java_name", "goto", "goto_"),
+        ("java_value", True, "true"),
+        ("java_value", -(2**63), "-9223372036854775808L"),
+        ("java_value", 1.5, "1.5"),
+        ("java_value", 1e16, "1e+16"),
+        ("java_value", -math.inf, "Double.NEGATIVE_INFINITY"),
+        ("java_value", math.nan, "Double.NaN"),
+        ("java_value", 'a"\n', '"a\\"\\n"'),
+        ("java_value", [1, "x", [False]], 'List.of(1L, "x", List.of(false))'),
         ("ros_name", "import", "import_x"),
         ("shell_word", 3, "3"),
         ("yaml_scalar", 1e16, "1.0e+16"),

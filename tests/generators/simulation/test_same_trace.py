@@ -46,6 +46,8 @@ def test_the_cleaning_robot(tmp_path: Path) -> None:
         "1.5 < cleaning.smooth.raw {}",
         '1 < cleaning.smooth.raw {"pos": 1}',
         "1 < cleaning.smooth.raw []",
+        # No blank line: only spaces and tabs are blank.
+        "\u00a0",
     ):
         (tmp_path / "slip.txt").write_text(f"# one\n{slip}\n", "utf-8")
         java = run_java(tmp_path, "cleaning_robot.Main", str(tmp_path / "slip.txt"))

@@ -6,7 +6,7 @@ from fractions import Fraction
 from .errors import SimulationError
 from .values import write_value
 
-_LINE = re.compile(r"([^ \t]+)[ \t]+([<>])[ \t]+([^ \t]+)[ \t]+(.*)")
+_LINE = re.compile(r"([^ \t]+)[ \t]+([<>])[ \t]+([^ \t]+)[ \t]+(.*)", re.DOTALL)
 _TIME = re.compile(r"([0-9]{1,30}(?:\.[0-9]{1,30})?)(ns|us|ms|s)?")
 _FACTORS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9}
 _MOST_NS = 2**63 - 1
@@ -16,7 +16,7 @@ def apply_scenario(text, name, simulation):
     """Give a run what a scenario says: lines as `100ms < group.component.input VALUE`."""
     for number, raw in enumerate(text.split("\n"), start=1):
         line = raw.removesuffix("\r")
-        if not line.strip() or line.startswith("#"):
+        if not line.strip(" \t") or line.startswith("#"):
             continue
         try:
             _apply_line(line, simulation)

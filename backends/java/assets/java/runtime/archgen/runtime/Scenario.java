@@ -7,7 +7,9 @@ import java.util.regex.Pattern;
 
 /** What comes from outside of the architecture: a text with a line for each value. */
 public final class Scenario {
-    private static final Pattern LINE = Pattern.compile("([^ \\t]+)[ \\t]+([<>])[ \\t]+([^ \\t]+)[ \\t]+(.*)");
+    private static final Pattern LINE =
+            Pattern.compile("([^ \\t]+)[ \\t]+([<>])[ \\t]+([^ \\t]+)[ \\t]+(.*)", Pattern.DOTALL);
+    private static final Pattern BLANK = Pattern.compile("[ \\t]*");
     private static final Pattern TIME = Pattern.compile("([0-9]{1,30}(?:\\.[0-9]{1,30})?)(ns|us|ms|s)?");
     private static final Map<String, Integer> DIGITS = Map.of("ns", 0, "us", 3, "ms", 6, "s", 9);
 
@@ -25,7 +27,7 @@ public final class Scenario {
         for (String raw : text.split("\n", -1)) {
             number++;
             String line = raw.endsWith("\r") ? raw.substring(0, raw.length() - 1) : raw;
-            if (line.isBlank() || line.startsWith("#")) {
+            if (BLANK.matcher(line).matches() || line.startsWith("#")) {
                 continue;
             }
             try {
