@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.derivation.ros_names import resolve_ros_name
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_identifier_in, make_ros_name, make_snake_name
+from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
 
 ACTION_PARTS = {
@@ -45,6 +46,27 @@ def name_program(architecture: Architecture, node: Node) -> str:
         return node.executable
     only_component = architecture.components[node.implements[0]] if len(node.implements) == 1 else None
     return make_ros_name((only_component.component_type if only_component else None) or node.id)
+
+
+@dataclass(frozen=True, slots=True)
+class NodeProgram:
+    """What runs a node: an executable of a package, or a class (`plugin`) that its package has for containers."""
+
+    package: str | None
+    executable: str | None
+    plugin: str | None
+
+
+def name_node_program(architecture: Architecture, node: Node, ros: int) -> NodeProgram:
+    """Return what generators make for a node. `ros` is the generation of ROS."""
+    package, executable = name_package(architecture, node), name_program(architecture, node)
+    plugin = f"{package}/{make_camel_name(executable)}" if ros == 1 else name_plugin(node, package, executable)
+    return NodeProgram(package, executable, node.plugin or plugin)
+
+
+def name_plugin(node: Node, package_name: str, program_name: str) -> str:
+    """Return the class of a generated node, with its namespace: what `plugin` says, else one after package and program."""
+    return node.plugin or f"{make_identifier_in('cpp', package_name)}::{make_camel_name(program_name)}"
 
 
 def group_by_program(architecture: Architecture, nodes: Iterable[Node]) -> dict[tuple[str, str], list[Node]]:
@@ -117,7 +139,9 @@ class ProgramNames:
         self._ros = ros
         self._endpoints = index_endpoints(architecture)
         self._names: dict[str, list[tuple[str, str, str]]] = {}
-        for nodes in group_by_program(architecture, list_generated_nodes(architecture)).values():
+        generated_nodes = list_generated_nodes(architecture)
+        self._programs = {each.id: name_node_program(architecture, each, ros) for each in generated_nodes}
+        for nodes in group_by_program(architecture, generated_nodes).values():
             if len(nodes) > 1:
                 self._name_shared_ports(nodes)
 
@@ -130,6 +154,10 @@ class ProgramNames:
             own_name = choose_own_name(key, endpoints, is_shared=True)
             for endpoint in endpoints:
                 self._names[endpoint.node].append((flow, own_name, endpoint.name))
+
+    def find_program(self, node: Node) -> NodeProgram:
+        """Return what runs a node: what it says, completed by what generators make for it."""
+        return self._programs.get(node.id) or NodeProgram(node.package, node.executable, node.plugin)
 
     def find_remaps(self, node: Node) -> dict[str, str]:
         """Return what names of a node's program become, by what the program says. What resolves by itself is not there."""

@@ -30,12 +30,15 @@ def describe_node_launch(architecture: Architecture, node: Node, program_names: 
 
     own_values = give((each.name, each.value) for each in node.own_values)
     commands = {canonical_name(name, ros_1=ros_1): words for name, words in node.parameter_commands.items()}
+    program = program_names.find_program(node)
+    is_loaded = container is not None and not ros_1
     return RosLaunch(
         name=node.name,
         namespace=node.namespace,
-        package=node.package,
-        executable=node.executable,
-        plugin=node.plugin,
+        package=program.package,
+        # A container loads the class; a program beside it is no node of the architecture.
+        executable=node.executable if is_loaded else program.executable,
+        plugin=program.plugin,
         container=container.full_name if container else None,
         earlier_values=give((each.name, each.value) for each in architecture.ros_parameters)
         | give((name, each.value) for name, each in declarations.items()),

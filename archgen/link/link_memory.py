@@ -1,7 +1,7 @@
 """What linking remembers of one version of a project for the next: parts whose text and surroundings are the same.
 
 A variant is the project with little changed. Its tree shares what is not changed, so that a component or a node whose
-entry is the same object, and whose references mean what they meant, is the same; see docs/decisions/0039-parts-that-variants-share.md.
+entry is the same object, and whose references mean what they meant, is the same; see docs/decisions/0041-parts-that-variants-share.md.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from archgen.link.reference_resolution import Answer
+from archgen.link.reference_resolution import Answer, NameList
 from archgen.model.component import Component, Output
 from archgen.model.known_parts import KnownParts
 from archgen.model.node import Node
@@ -18,10 +18,6 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _MAX_INDEXES = 4
 """Indexes of paths that are remembered for each kind: variants differ in few ways."""
-
-
-NameList = tuple[tuple[str, tuple[str, ...]], ...]
-"""All names of a version, by kind: in two versions with the same ones each reference means the same."""
 
 
 class OutlinedPorts(NamedTuple):
@@ -41,7 +37,7 @@ class LinkedLeaf(NamedTuple):
     group_owners: tuple[str, ...]
     source_media: tuple[str, ...]
     """What the outputs travel over that its inputs read, in the order of connections."""
-    names: object
+    names: NameList | None
     answers: tuple[Answer, ...]
     component: Component
 
@@ -54,7 +50,7 @@ class LinkedNode(NamedTuple):
     shared_flags: tuple[bool, ...]
     """For each of its components, whether other nodes implement it, too."""
     container_host: str | None
-    names: object
+    names: NameList | None
     answers: tuple[Answer, ...]
     node: Node
 

@@ -38,6 +38,10 @@ the limit, thousands of unknown references would take time that grows with the s
 """
 
 
+NameList = tuple[tuple[str, tuple[str, ...]], ...]
+"""All names of a version, by kind: in two versions with the same ones each reference means the same."""
+
+
 class Answer(NamedTuple):
     """A reference that was resolved, and what it means; None for what is named by its id alone."""
 
@@ -73,14 +77,16 @@ class ReferenceResolver:
     """Complete ids of what unresolved references most likely meant: later rules do not call these unconnected."""
     make_index: Callable[[str, Iterable[str]], PathIndex] | None = None
     """What indexes the ids of a kind, where somebody remembers these."""
-    all_names: object = None
-    """What stands for all names of this version: with the same object each reference means the same in another one."""
+    all_names: NameList | None = None
+    """All names of this version, where somebody remembers them: the same object for another one with the same names."""
     answers: list[Answer] | None = None
     """What was resolved since somebody began to listen, None where nobody does."""
     names: PathResolver = field(init=False)
     _is_finished: bool = False
     _extra_depth: int = field(init=False, default=0)
     _guesses_left: int = _GUESS_BUDGET
+    _changed_paths: dict[int, tuple[NameList, frozenset[str]]] = field(default_factory=dict)
+    """By the identity of the names of another version, which are kept so that no others have it."""
     _candidate_paths: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -140,17 +146,29 @@ class ReferenceResolver:
         self.answers = None
         heard.is_flawless = counts == (len(self.diagnostics), len(self.suspect_ids))
 
-    def gives_answers(self, answers: Iterable[Answer]) -> bool:
-        """Whether references still mean, without any doubt, what they meant in another version of the project."""
+    def gives_answers(self, answers: Iterable[Answer], names: NameList | None) -> bool:
+        """Whether references still mean, without any doubt, what they meant in a version of the project with these names."""
+        changed_paths = self._find_changed_paths(names or ())
         for text, kinds, component_id, target in answers:
             if target is None:
                 if text not in self.plain_spans.get(kinds[0], ()):
                     return False
-            else:
+            elif text in changed_paths:
                 match = self.names.resolve_path(text, kinds, component_id=component_id)
                 if match.hidden_elements or match.unique_element != target:
                     return False
         return True
+
+    def _find_changed_paths(self, names: NameList) -> frozenset[str]:
+        """Return all paths that may mean what only one of two versions has: any other means what it meant."""
+        if id(names) not in self._changed_paths:
+            own_ids, other_ids = (
+                {(kind, element_id) for kind, ids in each for element_id in ids}
+                for each in (self.all_names or (), names)
+            )
+            paths = frozenset(path for _, element_id in own_ids ^ other_ids for path in list_endings(element_id))
+            self._changed_paths[id(names)] = names, paths
+        return self._changed_paths[id(names)][1]
 
     def finish_resolving(self) -> frozenset[str]:
         """Return the suspects of all references; from here on the resolver refuses to resolve any more."""
@@ -353,6 +371,14 @@ def _list_possible_kinds(kinds: Sequence[str], length: int) -> str:
     """Return the kinds that a path of some length can mean, as words: "component or output"."""
     possible = [kind for kind in kinds if _PATH_LENGTHS[kind] >= length] or [kinds[-1]]
     return join_words(possible, "or")
+
+
+def list_endings(element_id: str) -> Iterator[str]:
+    """Yield every path that an id ends in, itself included."""
+    ending, dot = element_id, "."
+    while dot:
+        yield ending
+        _, dot, ending = ending.partition(".")
 
 
 def take_path_end(path: str, length: int) -> str:

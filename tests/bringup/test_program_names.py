@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from archgen.bringup.program_names import ProgramNames, choose_own_name, group_endpoints, index_endpoints
@@ -76,3 +77,18 @@ def test_a_program_of_one_node_says_the_names_itself(tmp_path: Path) -> None:
     groups = group_endpoints([architecture.nodes["planner"]], index_endpoints(architecture))
     names = {key: choose_own_name(key, each, is_shared=False) for (_, _, key), each in groups.items()}
     assert names == {"left_goal": "/g/planner/left_goal", "right_goal": "/g/planner/right_goal"}
+
+
+def test_a_plan_starts_what_generators_make(derived: Callable[[str], Architecture]) -> None:
+    """The same programs and classes as launch files name, so that all of the start-up agrees."""
+    architecture = derived("""
+component_types: {arm: {functionality: Grips., inputs: {}, outputs: {state: std_msgs/String}}}
+groups: {g: {components: {left: {is: arm}, filter: Filters.}}}
+nodes:
+  left: {implements: g.left}
+  filter: {implements: g.filter, kind: composable, container: box}
+containers: {box: {}}
+""")
+    commands = {step.id: " ".join(step.command) for step in make_start_plan(architecture).steps}
+    assert commands["left"] == "ros2 run robot_g arm --ros-args -r __node:=left"
+    assert commands["filter"] == "ros2 component load /box robot_g robot_g::Filter --node-name filter"

@@ -174,7 +174,7 @@ nodes:
   a: {implements: a, kind: nodelet, plugin: p/A, container: box}
   b: {implements: b, package: p, executable: b, namespace: n}
   c: {implements: c, kind: nodelet, plugin: p/C}
-  d: {implements: d, container: own}
+  d: {implements: d, container: own, status: existing}
   e: {implements: e, status: planned}
 containers: {box: {namespace: m}, own: {package: q, executable: q}}
 """)
@@ -186,7 +186,8 @@ containers: {box: {namespace: m}, own: {package: q, executable: q}}
         "c": "rosrun nodelet nodelet standalone p/C __name:=c",
         "own": "rosrun q q __name:=own",
         "d": "",
-        "e": "",
+        # What generators make of it.
+        "e": "rosrun robot_g e __name:=e",
     }
 
 

@@ -129,7 +129,7 @@ def test_contradictions_are_told_and_end_with_1(tmp_path: Path) -> None:
     file.write_text(
         "groups: {g: {components: {a: A, b: B, c: C}}}\n"
         "nodes:\n"
-        "  a: {implements: a, start: {after: b}}\n"
+        "  a: {implements: a, status: existing, start: {after: b}}\n"
         "  b: {implements: b, start: {after: a}}\n"
         '  c: {implements: c, start: {phase: core, after: [a, c]}, command: ["a b", "$(x)", "\\e[31m"]}\n',
         encoding="utf-8",

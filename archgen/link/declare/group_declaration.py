@@ -174,7 +174,7 @@ class _GroupDeclarer:
                 known.entry is entry
                 and known.outputs is outputs
                 and known.group_owners == self.owners[group_id]
-                and (known.names is resolver.all_names or resolver.gives_answers(known.answers))
+                and (known.names is resolver.all_names or resolver.gives_answers(known.answers, known.names))
                 and wiring.brings_same(known.component)
                 and known.source_media == wiring.list_source_media(known.component)
             ):

@@ -88,7 +88,7 @@ def _recall_node(
             and len(known.components) == len(components)
             and all(map(operator.is_, known.components, components))
             and known.shared_flags == shared_flags
-            and (known.names is resolver.all_names or resolver.gives_answers(known.answers))
+            and (known.names is resolver.all_names or resolver.gives_answers(known.answers, known.names))
             and (not known.node.container or containers[known.node.container].host == known.container_host)
         ):
             return known.node

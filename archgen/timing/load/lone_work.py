@@ -49,12 +49,12 @@ def find_lone_response(work: ActivityWork, budget: SearchBudget, *, in_order: bo
 def find_lone_wait(system: TimingSystem, name: str, event_models: EventModels, budget: SearchBudget) -> WorstResponse:
     """Return how long a message to an activity with a core of its own may wait to be stored while it is activated."""
     work = find_work(system, name, event_models)
+    found = _find_hold(work.cost, work.streams) if isinstance(work, ActivityWork) else None
+    if found is not None and budget.repeat_searches(found.terms):
+        return WorstResponse(found.ticks, "host")
     if not isinstance(work, ActivityWork) or work_utilisation(work.cost, work.streams) >= 1:
         own_core = ProcessingResource(name, None, 1, ((name,),))
         return find_core_waits(system, own_core, event_models, (name,), budget)[name]
-    found = _find_hold(work.cost, work.streams)
-    if found is not None and budget.repeat_searches(found.terms):
-        return WorstResponse(found.ticks, "host")
     try:
         return WorstResponse(_search_hold(work, budget), "host")
     except DivergedError:
@@ -78,6 +78,8 @@ def _search_response(work: ActivityWork, budget: SearchBudget, *, in_order: bool
 
 @lru_cache(1 << 14)
 def _find_hold(cost: int, streams: EventStreams) -> _FoundTime | None:
+    if work_utilisation(cost, streams) >= 1:
+        return None
     budget = SearchBudget(_MAX_TERMS)
     try:
         return _FoundTime(_search_hold(ActivityWork(cost, streams), budget), budget.spent_terms)

@@ -6,10 +6,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from archgen.bringup.program_names import name_plugin
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_camel_name, make_identifier_in, make_snake_name
+from archgen.model.code_names import make_identifier_in, make_snake_name
 from archgen.model.node import Node
 from archgen.views.generation.cpp_parameters import choose_library_parameters
 from archgen.views.generation.generation_context import tell_left_out
@@ -17,11 +18,6 @@ from archgen.views.generation.program_ports import PORT_SECTIONS
 
 _CLASS_NAME = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?:::([A-Za-z_][A-Za-z0-9_]*))+\Z", re.ASCII)
 _REENTRANT_GROUP = "reentrant"
-
-
-def name_plugin(node: Node, package_name: str, program_name: str) -> str:
-    """Return the class of a generated node, with its namespace: what `plugin` says, else one after package and program."""
-    return node.plugin or f"{make_identifier_in('cpp', package_name)}::{make_camel_name(program_name)}"
 
 
 def find_bad_classes(

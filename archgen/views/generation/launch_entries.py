@@ -7,14 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.bringup.plan_shapes import RosLaunch, StartStep, format_seconds
-from archgen.bringup.program_names import ProgramNames, is_generated, name_package, name_program
+from archgen.bringup.program_names import ProgramNames
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_camel_name, make_ros_name
+from archgen.model.code_names import make_ros_name
 from archgen.model.node import Node
 from archgen.views import start_phrases
-from archgen.views.generation.cpp_programs import name_plugin
 from archgen.views.generation.generation_context import write_place
 from archgen.views.generation.launch_parameters import (
     read_simulated_time,
@@ -59,7 +58,7 @@ def record_node_entry(
         words = [*step.command, *node.arguments] if step.command else []
         form = "program" if words else "nobody"
         return {**entry, "form": form, "words": words, "remarks": _list_remarks(step, form)}, []
-    program = _find_program(architecture, node, step, ros)
+    program = _find_program(program_names, node, step, ros)
     if program["form"] in {"program", "nobody"}:
         return {**entry, **program, "remarks": _list_remarks(step, str(program["form"]))}, []
     launch = replace(step.ros, earlier_values={**_fill_manager(node, step.ros, managed), **step.ros.earlier_values})
@@ -106,13 +105,10 @@ def _record_entry(step: StartStep, element: str, place: str) -> dict[str, Any]:
     }
 
 
-def _find_program(architecture: Architecture, node: Node, step: StartStep, ros: int) -> dict[str, Any]:
+def _find_program(program_names: ProgramNames, node: Node, step: StartStep, ros: int) -> dict[str, Any]:
     """Return what runs a node of ROS: its own program or that of its generated package, or the container that loads it."""
-    package, executable, plugin = node.package, node.executable, node.plugin
-    if is_generated(node):
-        package, executable = name_package(architecture, node), name_program(architecture, node)
-        named = f"{package}/{make_camel_name(executable)}" if ros == 1 else name_plugin(node, package, executable)
-        plugin = plugin or named
+    program = program_names.find_program(node)
+    package, executable, plugin = program.package, program.executable, program.plugin
     found: dict[str, Any] = {"package": package, "executable": executable, "plugin": plugin, "arguments": []}
     if ros == 1:
         return _find_ros_1_program(node, step, found)
