@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import datetime
+import datetime as dt
 import re
 
 import pytest
@@ -34,7 +34,7 @@ def test_each_source_says_where_which_version_when_and_what_it_is(distro: str) -
             assert re.fullmatch(r"\d+(\.\d+)+", source.version), (name, source)
             assert re.fullmatch(r"\d+(\.\d+)+", source.released), (name, source)
             assert re.fullmatch(r"[0-9a-f]{40}", source.commit), (name, source)
-            assert datetime.date(2007, 1, 1) < datetime.date.fromisoformat(source.date), (name, source)
+            assert dt.date(2007, 1, 1) < dt.date.fromisoformat(source.date), (name, source)
             assert source.kind in SOURCE_KINDS, (name, source)
             for file, lines in source.files.items():
                 assert not file.startswith("/"), (name, source)
