@@ -38,6 +38,12 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
     known.name: known
     for known in (
         ImportFormat(REQIF, "requirements of Doors, Polarion and others (.reqif, .reqifz)", (".reqif", ".reqifz"), ""),
+        ImportFormat(
+            "xmi",
+            "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
+            (".xmi", ".uml", ".mdzip", ".zargo"),
+            "archgen.importers.xmi:read_xmi",
+        ),
     )
 }
 

@@ -62,7 +62,9 @@ def _read_property(
     elif name.lower() == _PERIOD_NAME and (text := uml_values.read_default(index, element)) is not None:
         timing = uml_values.read_period(text)
         if timing is None:
-            ledger.leave(element, f"`{text[:60]}` of `{name}` is no period in seconds", "write a number, such as `0.02`")
+            ledger.leave(
+                element, f"`{text[:60]}` of `{name}` is no period in seconds", "write a number, such as `0.02`"
+            )
             return
         features.timing |= timing
         ledger.take(element)
@@ -119,7 +121,9 @@ def _add_default(
     try:
         values = [uml_values.convert_value(each, kind) for each in words]
     except ValueError:
-        ledger.leave(element, f"the default `{text[:60]}` of `{get_name(element)}` is no {kind}: the parameter has no value")
+        ledger.leave(
+            element, f"the default `{text[:60]}` of `{get_name(element)}` is no {kind}: the parameter has no value"
+        )
         return
     if choices and values[0] not in choices:
         ledger.leave(element, f"the default `{text[:60]}` of `{get_name(element)}` is none of its enumeration's values")

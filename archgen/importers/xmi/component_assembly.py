@@ -113,7 +113,9 @@ class ComponentAssembly:
             active[id(facts)] = None
             stack.append((facts, True))
             for inner in list(facts.inside):
-                if inner.base is not None and any(id(each) in active for each in (inner.base, *inner.base.list_bases())):
+                if inner.base is not None and any(
+                    id(each) in active for each in (inner.base, *inner.base.list_bases())
+                ):
                     words = f"{call(inner.element)} is not taken: the component type would contain itself"
                     self._ledger.leave(inner.element, words)
                     facts.inside.remove(inner)

@@ -77,7 +77,9 @@ class ClassSorting:
                     words = f"{call(element)} is made from a class that is not among the classes of these files"
                     self._ledger.leave(generalization, words)
                 elif element in generals:
-                    words = f"{call(element)} is made from `{get_name(general)}`, too: a component type is made from one"
+                    words = (
+                        f"{call(element)} is made from `{get_name(general)}`, too: a component type is made from one"
+                    )
                     self._ledger.leave(generalization, words)
                 elif self._closes_circle(generals, element, general):
                     words = f"{call(element)} would be made from itself: the generalizations go round in a circle"

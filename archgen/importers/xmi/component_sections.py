@@ -51,7 +51,12 @@ class ComponentSections:
     """Makes the sections `groups` and `component_types`."""
 
     def __init__(
-        self, index: UmlIndex, ledger: ImportLedger, uses: InterfaceUses, assembly: ComponentAssembly, wiring: PortWiring
+        self,
+        index: UmlIndex,
+        ledger: ImportLedger,
+        uses: InterfaceUses,
+        assembly: ComponentAssembly,
+        wiring: PortWiring,
     ) -> None:
         self._index, self._ledger, self._uses = index, ledger, uses
         self._assembly, self._wiring = assembly, wiring
@@ -75,7 +80,11 @@ class ComponentSections:
             has_same = all(_list_keys(each) == _list_keys(missing[0]) for each in missing)
             is_plain = not is_true(base.element, "isAbstract") and base not in bases
             for user, ports in zip(users, missing, strict=True):
-                if self._adds_features(user) or is_true(base.element, "isAbstract") or (ports and not (is_plain and has_same)):
+                if (
+                    self._adds_features(user)
+                    or is_true(base.element, "isAbstract")
+                    or (ports and not (is_plain and has_same))
+                ):
                     self._make_type(user, ports)
                 else:
                     self._type_of[user] = base.id
@@ -145,6 +154,9 @@ class ComponentSections:
             if type_id not in self._made_types:
                 body |= _keep_values(features)
             return body | make_hints(facts.element)
+        if get_kind(facts.element) == "Component" and facts.base is None and not features.list_sections():
+            words = f"no class realizes {call(facts.element)}: it has no parameters and no operations"
+            self._ledger.note(facts.element, words)
         body |= self._write_ports(facts.ports, facts, is_type=False)
         body |= features.list_sections() | self._write_inside(facts)
         if not _DECLARING_KEYS & body.keys():
@@ -169,7 +181,7 @@ class ComponentSections:
             if port.is_output:
                 given = list_inner_references(self._wiring, facts, port)
                 outputs[port.output_id] = (port_type if not given else {}) | _write_sources(given) | hints
-        return ({"inputs": inputs} if inputs else {}) | ({"outputs": outputs} if outputs else {})
+        return _leave_out_empty(inputs=inputs, outputs=outputs)
 
     def _write_instance_ports(self, facts: ClassFacts) -> dict[str, object]:
         inputs: dict[str, object] = {}
@@ -178,11 +190,13 @@ class ComponentSections:
         own = {id(port) for port in facts.ports}
         for port in (*facts.ports, *(port for port in read if id(port) not in own)):
             hints = self._make_hints(port, is_fed=bool(read.get(port))) if id(port) in own else {}
-            if port.is_input and (written := _write_sources(read.get(port, [])) | (hints if not port.is_output else {})):
+            if port.is_input and (
+                written := _write_sources(read.get(port, [])) | (hints if not port.is_output else {})
+            ):
                 inputs[port.input_id] = written
             if port.is_output and hints:
                 outputs[port.output_id] = hints
-        return ({"inputs": inputs} if inputs else {}) | ({"outputs": outputs} if outputs else {})
+        return _leave_out_empty(inputs=inputs, outputs=outputs)
 
     def _find_type(self, port: PortFacts, facts: ClassFacts) -> dict[str, object]:
         features = [self._assembly.features[each.element] for each in (facts, *facts.list_bases())]
@@ -229,4 +243,8 @@ def _keep_values(features: ClassFeatures) -> dict[str, object]:
         for name, parameter in features.parameters.items()
         if isinstance(parameter, dict) and "value" in parameter
     }
-    return ({"parameters": values} if values else {}) | ({"timing": features.timing} if features.timing else {})
+    return _leave_out_empty(parameters=values, timing=features.timing)
+
+
+def _leave_out_empty(**sections: dict[str, object]) -> dict[str, object]:
+    return {key: value for key, value in sections.items() if value}

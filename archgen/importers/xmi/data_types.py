@@ -40,7 +40,13 @@ class DataTypes:
             known = uml_values.find_field_type(type_name) or (name_type(type_name) if type_name else "")
             is_known = uml_values.find_field_type(type_name) is not None or known in self._elements
             if not name or name in fields or not is_known:
-                why = "it has no name" if not name else "there is another one" if name in fields else "its type is not known"
+                why = (
+                    "it has no name"
+                    if not name
+                    else "there is another one"
+                    if name in fields
+                    else "its type is not known"
+                )
                 words = f"the fields of `{get_name(element)[:80]}` are not taken: of `{get_name(child)[:80]}` {why}"
                 self._ledger.leave(child, words)
                 return None

@@ -17,7 +17,9 @@ from archgen.model.element_ids import make_unique_id
 class DeploymentSections:
     """Makes the sections `hosts`, `links` and `nodes`."""
 
-    def __init__(self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, assembly: ComponentAssembly) -> None:
+    def __init__(
+        self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, assembly: ComponentAssembly
+    ) -> None:
         self._index, self._ledger, self._catalogue, self._assembly = index, ledger, catalogue, assembly
         self._facts_of = {facts.element: facts for facts in assembly.components}
         self._hosts: dict[XmlElement, str] = {}
@@ -65,11 +67,11 @@ class DeploymentSections:
 
     def _read_manifestations(self) -> None:
         for element in self._catalogue.manifestations:
-            artifacts = self._index.list_named(element, "client") or [self._index.get_parent(element)]
+            artifacts = self._index.list_named(element, "client") or _list_parent(self._index, element)
             manifested = self._index.list_named(element, "utilizedElement", "supplier")
             components = [self._facts_of[each] for each in manifested if each in self._facts_of]
             for artifact in artifacts:
-                if artifact is not None and get_kind(artifact) == "Artifact":
+                if get_kind(artifact) == "Artifact":
                     for facts in components:
                         self._package_of.setdefault(facts, artifact)
             if components:
@@ -87,7 +89,9 @@ class DeploymentSections:
             host = self._find_host(targets[0] if targets else parent)
             deployed = self._index.list_named(element, "deployedArtifact", "supplier")
             if host is None or not deployed:
-                self._ledger.leave(element, f"{call(element)} is not taken: it does not lead from an artifact to a node")
+                self._ledger.leave(
+                    element, f"{call(element)} is not taken: it does not lead from an artifact to a node"
+                )
                 continue
             for each in deployed:
                 self._deploy(element, each, manifested.get(each, []), host)
@@ -136,10 +140,13 @@ class DeploymentSections:
             if facts in self._host_of:
                 node["host"] = self._host_of[facts]
             section[make_unique_id(facts.id, section.keys())] = node
+        library_names = {name for names in self._libraries.values() for name in names}
         for artifact in self._catalogue.artifacts:
-            is_used = artifact in self._package_of.values() or get_name(artifact) in sum(self._libraries.values(), [])
+            is_used = artifact in self._package_of.values() or get_name(artifact) in library_names
             if not is_used:
-                self._ledger.leave(artifact, f"{call(artifact)} is not taken: it is on no node, and no component is in it")
+                self._ledger.leave(
+                    artifact, f"{call(artifact)} is not taken: it is on no node, and no component is in it"
+                )
         return section
 
     def make_links(self) -> dict[str, object]:
@@ -169,3 +176,8 @@ class DeploymentSections:
                 return None
             references.append(host or ".".join(facts.path if facts else ()))
         return list(dict.fromkeys(references)) if len(set(references)) > 1 else None
+
+
+def _list_parent(index: UmlIndex, element: XmlElement) -> list[XmlElement]:
+    parent = index.get_parent(element)
+    return [] if parent is None else [parent]

@@ -98,12 +98,10 @@ class InterfaceUses:
         facts = PortFacts(element, get_name(element))
         facts.provided += self.provided.get(element, ())
         facts.required += self.required.get(element, ())
-        for role, keys in (("provided", facts.provided), ("required", facts.required)):
-            for child in element.children:
-                if child.tag == role and (key := self._find_written(child)) is not None:
-                    keys.append(key)
-            named = self._index.list_references(element, role)
-            keys += (each.element for each in named if each.element is not None and each.element in self._interfaces)
+        for role, interfaces in (("provided", facts.provided), ("required", facts.required)):
+            named = self._index.list_named(element, role)
+            interfaces.extend(self._list_written(element, role))
+            interfaces.extend(each for each in named if each in self._interfaces)
         self._add_by_type(element, facts)
         facts.provided = list(dict.fromkeys(facts.provided))
         facts.required = list(dict.fromkeys(facts.required))

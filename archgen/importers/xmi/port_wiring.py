@@ -39,7 +39,9 @@ class PortWiring:
         """The ports inside that a port of a composed component gives on, by component and port."""
         self._pairs: list[tuple[PortEnd, PortEnd]] = []
         self._everyone = [*assembly.types.values(), *assembly.components]
-        self._owners_of_ports = {port.element: facts for facts in self._everyone for port in facts.ports if port.is_port}
+        self._owners_of_ports = {
+            port.element: facts for facts in self._everyone for port in facts.ports if port.is_port
+        }
         joined = [ends for each in catalogue.connectors if (ends := self._read_connector(each))]
         self._decide_directions(joined)
         self.sources: dict[ClassFacts, dict[PortFacts, list[str]]] = defaultdict(lambda: defaultdict(list))
@@ -50,7 +52,7 @@ class PortWiring:
 
     def _read_connector(self, connector: XmlElement) -> tuple[XmlElement, PortEnd, PortEnd] | None:
         ends = list_children(connector, "ConnectorEnd")
-        found = [end for each in ends if (end := self._find_end(connector, each))]
+        found = [end for each in ends if (end := self._find_end(each))]
         if len(ends) != 2 or len(found) != 2:  # noqa: PLR2004 - a connector joins two
             words = f"{call(connector)} is not taken: it does not join two ports of components"
             self._ledger.leave(connector, words)
@@ -59,7 +61,7 @@ class PortWiring:
             each.port.is_joined = True
         return connector, found[0], found[1]
 
-    def _find_end(self, connector: XmlElement, end: XmlElement) -> PortEnd | None:
+    def _find_end(self, end: XmlElement) -> PortEnd | None:
         role = self._index.find_reference(end, "role")
         if role is None or role.element is None:
             return None

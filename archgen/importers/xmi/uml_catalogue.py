@@ -23,7 +23,16 @@ _SILENT_TAGS = frozenset(
     {"name", "client", "supplier", "type", "lowerValue", "upperValue", "defaultValue", "provided", "required"}
     | {"memberEnd", "navigableOwnedEnd", "ownedEnd", "clientDependency", "association", "value", "mapping", "body"}
     | {"contract", "implementingClassifier", "realizingClassifier", "abstraction", "deployedArtifact", "location"}
-    | {"utilizedElement", "member", "elementImport", "interface", "qualifiedName", "feature", "attribute", "ownedReception"}
+    | {
+        "utilizedElement",
+        "member",
+        "elementImport",
+        "interface",
+        "qualifiedName",
+        "feature",
+        "attribute",
+        "ownedReception",
+    }
 )
 """Parts of elements that are read with them, or say again what stands elsewhere."""
 _TOOL_TAGS = frozenset({"Extension", "eAnnotations", "Documentation"})

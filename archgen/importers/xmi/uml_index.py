@@ -62,7 +62,7 @@ class UmlIndex:
             element_id = element.attributes.get("xmi:id")
             if element_id and self._by_id.setdefault((position, element_id), element) is not element:
                 self.doubled.append(element)
-            for child in element.children:
+            for child in reversed(element.children):
                 # What a tool keeps for itself says again what the model says, with the same ids.
                 if child.tag != "Extension":
                     self._parents[child] = element
@@ -82,7 +82,9 @@ class UmlIndex:
         position = self._document_of.get(element, 0)
         found = self._by_id.get((position, element_id))
         others = range(len(self._documents)) if found is None else ()
-        return found or next((self._by_id[each, element_id] for each in others if (each, element_id) in self._by_id), None)
+        return found or next(
+            (self._by_id[each, element_id] for each in others if (each, element_id) in self._by_id), None
+        )
 
     def list_references(self, element: XmlElement, *roles: str) -> list[Reference]:
         """Return what an element names in one of several roles, as attributes or as children, each element once."""
@@ -92,8 +94,7 @@ class UmlIndex:
             for child in element.children:
                 if child.tag == role:
                     references += self._read_child(child)
-        seen: set[XmlElement | str] = set()
-        return [each for each in references if (key := each.element or each.name) not in seen and not seen.add(key)]  # type: ignore[func-returns-value]
+        return list({each.element or each.name: each for each in reversed(references)}.values())[::-1]
 
     def find_reference(self, element: XmlElement, *roles: str) -> Reference | None:
         """Return the first of what an element names in one of several roles."""
@@ -178,7 +179,9 @@ def _name_from_id(element_id: str) -> str:
     name = element_id.removesuffix("_id")
     if name.startswith("EA") and "_" in name and not name.startswith(("EAID_", "EAPK_")):
         name = name.partition("_")[2]
-    return name if name.isidentifier() and name.isascii() and not name.startswith("_") and len(name) <= _MAX_NAME else ""
+    return (
+        name if name.isidentifier() and name.isascii() and not name.startswith("_") and len(name) <= _MAX_NAME else ""
+    )
 
 
 _MAX_NAME = 24

@@ -52,7 +52,9 @@ def is_many(element: XmlElement) -> bool:
     """Whether a property has more than one value."""
     upper = element.find("upperValue")
     value = (upper.attributes.get("value", "0") if upper is not None else element.attributes.get("upper", "1")).strip()
-    return value in {"*", "-1"} or (value.isascii() and value.isdigit() and len(value) <= _MAX_DIGITS and int(value) > 1)
+    return value in {"*", "-1"} or (
+        value.isascii() and value.isdigit() and len(value) <= _MAX_DIGITS and int(value) > 1
+    )
 
 
 def read_default(index: UmlIndex, element: XmlElement) -> str | None:
@@ -108,7 +110,7 @@ def read_period(text: str) -> dict[str, object] | None:
         seconds = Decimal(words)
     except InvalidOperation:
         return None
-    if not seconds.is_finite() or seconds < 0 or seconds > _LONGEST or seconds.as_tuple().exponent < -9:  # type: ignore[operator]
+    if not seconds.is_finite() or seconds < 0 or seconds > _LONGEST or seconds * 1_000_000_000 % 1:
         return None
     return {"behaviour": "periodic", "period": write_duration(seconds)} if seconds else {}
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from archgen.importers.foreign.foreign_import import ForeignImport
+from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassSorting
 from archgen.importers.xmi.component_sections import ComponentSections, assign_port_ids
@@ -52,16 +53,16 @@ def read_xmi(files: Sequence[Path]) -> ForeignImport:
         "links": deployment.make_links(),
         "nodes": deployment.make_nodes(),
     }
-    _count_relations(catalogue, uses, ledger)
+    _count_relations(catalogue, uses, ledger, frozenset(assembly.groups.values()))
     slices = {
-        name: kept
-        for name, keys in _FILES.items()
-        if (kept := {key: sections[key] for key in keys if sections[key]})
+        name: kept for name, keys in _FILES.items() if (kept := {key: sections[key] for key in keys if sections[key]})
     }
     return ForeignImport(slices, dict(ledger.taken), ledger.list_notes(), title=_find_title(documents))
 
 
-def _count_relations(catalogue: UmlCatalogue, uses: InterfaceUses, ledger: ImportLedger) -> None:
+def _count_relations(
+    catalogue: UmlCatalogue, uses: InterfaceUses, ledger: ImportLedger, groups: frozenset[XmlElement]
+) -> None:
     """Count usages, realizations and interfaces, and note those that say nothing here."""
     for element in (*catalogue.dependencies, *catalogue.realizations):
         if element in uses.used_elements:
@@ -69,6 +70,9 @@ def _count_relations(catalogue: UmlCatalogue, uses: InterfaceUses, ledger: Impor
         elif get_kind(element) in {"Usage", "Dependency", "Abstraction", "Substitution"}:
             words = f"{call(element)} is not taken: it does not say what flows"
             ledger.leave(element, words, "let ports use and realize an interface")
+    for package in dict.fromkeys(catalogue.packages.values()):
+        if package not in groups:
+            ledger.note(package, f"{call(package)} is no group: no component stands directly in it")
     meant = {key for keys in (*uses.provided.values(), *uses.required.values()) for key in keys}
     for element in catalogue.interfaces:
         if element in meant:
