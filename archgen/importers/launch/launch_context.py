@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ast
-import operator
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 
 from archgen.importers.launch.launch_actions import LaunchCondition
+from archgen.importers.launch.launch_expressions import evaluate_expression
 from archgen.importers.launch.launch_values import (
     MAX_PARTS,
     MAX_TEXT,
@@ -19,13 +18,10 @@ from archgen.importers.launch.launch_values import (
     describe_value,
     write_plain,
 )
-from archgen.importers.launch.python_parsing import parse_expression
 
 _TRUE_WORDS = frozenset({"true", "1", "yes", "on"})
 _FALSE_WORDS = frozenset({"false", "0", "no", "off", ""})
 _MAX_DEPTH = 40
-_COMPARISONS = {ast.Eq: operator.eq, ast.NotEq: operator.ne}
-_ARITHMETIC = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
 
 
 @dataclass(slots=True)
@@ -95,7 +91,7 @@ class LaunchContext:
         joined = separator.join(texts)
         return joined if len(joined) <= MAX_TEXT else UnknownValue("a very long text")
 
-    def _resolve_substitution(self, value: Substitution, depth: int) -> str | UnknownValue:
+    def _resolve_substitution(self, value: Substitution, depth: int) -> str | UnknownValue:  # noqa: PLR0911 - a kind each
         match value.kind:
             case "join":
                 return self._join(value.parts, "", depth)
@@ -149,8 +145,13 @@ class LaunchContext:
         text = self.resolve(expression, depth)
         if isinstance(text, UnknownValue):
             return text
-        found = evaluate_expression(text, self)
+        found = evaluate_expression(text, self._look_up)
         return write_plain(found) if found is not None else UnknownValue(f"$(eval {describe_value(expression)})")
+
+    def _look_up(self, name: str) -> str | None:
+        """Return the value of an argument that an expression of ROS 1 names; None where it is not known."""
+        known = self.resolve(Substitution("var", (name,)), 1) if self.is_ros_1 else None
+        return known if isinstance(known, str) and OPEN not in known else None
 
     def judge(self, value: LaunchValue, depth: int = 0) -> bool | None:
         """Return whether a value counts as true; None where only running it would tell."""
@@ -187,74 +188,3 @@ class LaunchContext:
             verdict = None if verdict is None else not verdict
         word = "unless" if condition.is_negated else "if"
         return f"{word} {describe_value(condition.value)}", verdict
-
-
-def evaluate_expression(text: str, context: LaunchContext | None = None) -> bool | str | int | float | None:
-    """Return the value of a short expression of plain values, comparisons, `and`, `or` and `not`; None for any other."""
-    expression = None if OPEN in text else parse_expression(text)
-    return None if expression is None else _evaluate_node(expression, context, 0)
-
-
-def _evaluate_node(node: ast.expr, context: LaunchContext | None, depth: int) -> bool | str | int | float | None:  # noqa: PLR0911
-    if depth > _MAX_DEPTH:
-        return None
-    match node:
-        case ast.Constant(value=bool() | int() | float() | str() as value):
-            return value
-        case ast.Name(id="true" | "True"):
-            return True
-        case ast.Name(id="false" | "False"):
-            return False
-        case ast.Name(id=name) if context is not None and context.is_ros_1:
-            # `$(eval x)` of ROS 1 knows the arguments by their names.
-            known = context.resolve(Substitution("var", (name,)))
-            return None if isinstance(known, UnknownValue) or OPEN in known else _read_word(known)
-        case ast.Call(func=ast.Name(id="arg"), args=[ast.Constant(value=str() as name)]) if context is not None:
-            known = context.resolve(Substitution("var", (name,)))
-            return None if isinstance(known, UnknownValue) or OPEN in known else _read_word(known)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return _calculate(ast.Sub(), 0, _evaluate_node(operand, context, depth + 1))
-        case ast.UnaryOp(op=ast.Not(), operand=operand):
-            found = _evaluate_node(operand, context, depth + 1)
-            return None if found is None else not found
-        case ast.BoolOp(op=joint, values=values):
-            found_values = [_evaluate_node(value, context, depth + 1) for value in values]
-            decisive = isinstance(joint, ast.Or)
-            if any(found is not None and bool(found) == decisive for found in found_values):
-                return decisive
-            return None if None in found_values else not decisive
-        case ast.IfExp(test=test, body=body, orelse=other):
-            verdict = _evaluate_node(test, context, depth + 1)
-            return None if verdict is None else _evaluate_node(body if verdict else other, context, depth + 1)
-        case ast.BinOp(left=left, op=sign, right=right):
-            return _calculate(sign, *(_evaluate_node(side, context, depth + 1) for side in (left, right)))
-        case ast.Compare(left=left, ops=[comparison], comparators=[right]):
-            sides = [_evaluate_node(side, context, depth + 1) for side in (left, right)]
-            compare = _COMPARISONS.get(type(comparison))
-            return None if compare is None or None in sides else bool(compare(*sides))
-    return None
-
-
-def _calculate(sign: ast.operator, left: object, right: object) -> str | int | float | None:
-    if isinstance(left, str) and isinstance(right, str):
-        return left + right if isinstance(sign, ast.Add) else None
-    calculate = _ARITHMETIC.get(type(sign))
-    if calculate is None or not isinstance(left, int | float) or not isinstance(right, int | float):
-        return None
-    try:
-        found: int | float = calculate(left, right)
-    except (ArithmeticError, ValueError):
-        return None
-    return found if abs(found) < 1e15 else None  # noqa: PLR2004 - no parameter is larger
-
-
-def _read_word(text: str) -> bool | str | int | float:
-    word = text.strip().lower()
-    if word in {"true", "false"}:
-        return word == "true"
-    for kind in (int, float):
-        try:
-            return kind(text) if len(text) < 30 else text  # noqa: PLR2004 - no number is longer
-        except ValueError:
-            continue
-    return text

@@ -129,7 +129,7 @@ def _find_root(path: Path) -> Path:
 
 def _holds_packages(folder: Path) -> bool:
     try:
-        return 1 < sum((inner / "package.xml").is_file() for inner in list(folder.iterdir())[:500])
+        return sum((inner / "package.xml").is_file() for inner in list(folder.iterdir())[:500]) > 1
     except OSError:
         return False
 

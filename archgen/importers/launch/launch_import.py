@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.launch.launch_files import LaunchFiles
 from archgen.importers.launch.launch_loading import load_actions, load_included
@@ -16,7 +17,6 @@ from archgen.importers.launch.launched_nodes import LaunchedNode
 from archgen.importers.launch.server_parameters import give_server_parameters
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.path_resolver import title_from_id
-from archgen.diagnostics.source_span import Span
 
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
 

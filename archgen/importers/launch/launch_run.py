@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ImportNote
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_context import LaunchContext, LaunchScope
 from archgen.importers.launch.launch_files import LaunchFiles
-from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_values import OPEN, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
 from archgen.importers.launch.node_making import NodeMaker
 from archgen.importers.launch.parameter_files import ParameterFileReader
+from archgen.importers.launch.scope_run import ScopeRun
+from archgen.importers.launch.server_parameters import read_server_parameters
 
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
 MAX_NODES = 20_000
@@ -24,35 +25,23 @@ _MAX_DEPTH = 25
 _LATER_HELP = "what it starts is taken; say with `start: {after: ...}` what it waits for"
 
 
-class LaunchRun:
+class LaunchRun(ScopeRun):
     """Everything that was found so far. One run reads all files that were given."""
 
     def __init__(self, files: LaunchFiles, load_actions: ActionLoader) -> None:
+        super().__init__()
         self.files = files
         self.nodes: list[LaunchedNode] = []
-        self.notes: list[ImportNote] = []
         self.taken: Counter[str] = Counter()
         """What was taken of the file that is read."""
         self.included: set[Path] = set()
-        self.arguments: dict[str, str] = {}
-        """The launch arguments with their defaults."""
         self.server_parameters: list[tuple[str, Any, Span]] = []
         """Parameters of ROS 1 that stand outside of nodes, by their full names."""
-        self.hosts: dict[str, str] = {}
-        self.context = LaunchContext()
         self.parameter_reader = ParameterFileReader()
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
         self._includes = 0
         self._open_files: list[Path] = []
-        self._seen_notes: set[tuple[str, str, int, str]] = set()
-
-    def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
-        """Add a note, once for each place."""
-        key = (span.file, kind, span.line, message)
-        if key not in self._seen_notes:
-            self._seen_notes.add(key)
-            self.notes.append(ImportNote(kind, message, span, help_line, fate))
 
     def run_file(self, path: Path) -> None:
         """Walk through a file that was given, with nothing set from outside."""
@@ -68,11 +57,6 @@ class LaunchRun:
         self.run_actions(actions)
         self._open_files.pop()
         self.context.is_ros_1 = was_ros_1
-
-    @property
-    def file(self) -> Path:
-        """The file that is walked through."""
-        return self._open_files[-1]
 
     def run_actions(self, actions: list[LaunchAction]) -> None:
         """Walk through actions in their order."""
@@ -116,75 +100,9 @@ class LaunchRun:
     def _run_description(self, action: LaunchAction) -> None:
         self.run_actions(action.children)
 
-    def _run_argument(self, action: LaunchAction) -> None:
-        name = self.context.resolve(action.get("name"))
-        if isinstance(name, UnknownValue):
-            self._tell_computed(action, "its name", name)
-            return
-        default = action.get("default")
-        if name not in self.context.scope.configurations and default is not None:
-            value = self.context.resolve(default)
-            if isinstance(value, UnknownValue):
-                self.add_note(
-                    action.word, f"the default of `{name}` is computed: `{value.reason}`", action.span, fate="noted"
-                )
-            self.context.scope.configurations[name] = value
-        if len(self._open_files) == 1:
-            shown = describe_value(default) if default is not None else None
-            self.arguments[name] = "" if shown is None else shown
-        if default is None and name not in self.context.scope.configurations:
-            message = f"the argument `{name}` has no default: what it gives stays `{describe_value(Substitution('var', (name,)))}`"
-            self.add_note(action.word, message, action.span, fate="noted")
-
-    def _run_configure(self, action: LaunchAction) -> None:
-        name = self.context.resolve(action.get("name"))
-        if isinstance(name, str):
-            self.context.scope.configurations[name] = self.context.resolve(action.get("value"))
-
-    def _run_namespace(self, action: LaunchAction) -> None:
-        self._push_namespace(action, action.get("namespace"))
-
-    def _push_namespace(self, action: LaunchAction, value: LaunchValue) -> None:
-        text = self.context.resolve(value)
-        scope = self.context.scope
-        if isinstance(text, UnknownValue):
-            self._tell_computed(action, "the namespace", text)
-            scope.namespace = text
-        elif isinstance(scope.namespace, str):
-            scope.namespace = join_names(scope.namespace, text)
-
-    def _run_parameter(self, action: LaunchAction) -> None:
-        self.context.scope.parameters = (*self.context.scope.parameters, (action.get("name"), action.get("value")))
-
-    def _run_parameter_file(self, action: LaunchAction) -> None:
-        self.context.scope.parameter_files = (*self.context.scope.parameter_files, action.get("file"))
-
-    def _run_remap(self, action: LaunchAction) -> None:
-        pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
-        own_name, name = pair
-        if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
-            self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
-        else:
-            self.context.scope.remaps = (*self.context.scope.remaps, (own_name, name))
-
-    def _run_environment(self, action: LaunchAction) -> None:
-        name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
-        if isinstance(name, str) and isinstance(value, str):
-            self.context.scope.environment = (*self.context.scope.environment, (name, value))
-        else:
-            self._tell_computed(
-                action, "the value", value if isinstance(value, UnknownValue) else UnknownValue(str(name))
-            )
-
-    def _run_host(self, action: LaunchAction) -> None:
-        name = self.context.resolve(action.get("name"))
-        address = self.context.resolve(action.get("address", ""))
-        if isinstance(name, str):
-            self.hosts[name] = address if isinstance(address, str) else ""
-
     def _run_server_parameter(self, action: LaunchAction) -> None:
         scope = self.context.scope
-        for name, value in self._maker.read_parameters(action, action.values["entries"], "").items():
+        for name, value in read_server_parameters(self, action).items():
             if isinstance(scope.namespace, str):
                 self.server_parameters.append((join_names(scope.namespace, name), value, action.span))
 
@@ -193,23 +111,13 @@ class LaunchRun:
         is_scoped = is_scoped if isinstance(is_scoped, bool) else self.context.judge(is_scoped) is not False
         if is_scoped:
             self.context.push()
-        for name, value in self._resolve_pairs(action.get("configurations")):
+        for name, value in self.resolve_pairs(action.get("configurations")):
             self.context.scope.configurations[name] = value
         if action.get("namespace") is not None:
-            self._push_namespace(action, action.get("namespace"))
+            self.push_namespace(action, action.get("namespace"))
         self.run_actions(action.children)
         if is_scoped:
             self.context.pop()
-
-    def _resolve_pairs(self, pairs: LaunchValue) -> list[tuple[str, LaunchValue]]:
-        items = pairs.items() if isinstance(pairs, Mapping) else pairs if isinstance(pairs, list | tuple) else ()
-        resolved = []
-        for pair in items:
-            if isinstance(pair, list | tuple) and len(pair) == 2:  # noqa: PLR2004 - a name and a value
-                name, value = self.context.resolve(pair[0]), self.context.resolve(pair[1])
-                if isinstance(name, str):
-                    resolved.append((name, value))
-        return resolved
 
     def _run_later(self, action: LaunchAction) -> None:
         if action.children:
@@ -248,7 +156,7 @@ class LaunchRun:
         self._run_included(action, path)
 
     def _run_included(self, action: LaunchAction, path: Path) -> None:
-        given = self._resolve_pairs(action.get("arguments"))
+        given = self.resolve_pairs(action.get("arguments"))
         is_scoped = bool(action.get("scoped"))
         if is_scoped:
             self.context.push()
@@ -257,7 +165,7 @@ class LaunchRun:
         for name, value in given:
             self.context.scope.configurations[name] = value
         if action.get("namespace") is not None:
-            self._push_namespace(action, action.get("namespace"))
+            self.push_namespace(action, action.get("namespace"))
         self.included.add(path)
         self._run_file(path)
         if is_scoped:
@@ -316,11 +224,3 @@ class LaunchRun:
             self.add_note(action.word, f"more than {MAX_NODES:,} nodes are not taken", action.span)
         else:
             self.nodes.append(node)
-
-    def _tell_computed(self, action: LaunchAction, what: str, value: UnknownValue) -> None:
-        self.tell_computed(action.word, what, value, action.span)
-
-    def tell_computed(self, word: str, what: str, value: UnknownValue, span: Span) -> None:
-        """Note what only running the file would tell."""
-        place = span._replace(line=value.line, column=1, end_line=value.line, end_column=2) if value.line else span
-        self.add_note(word, f"{what} is computed: `{value.reason}`", place)

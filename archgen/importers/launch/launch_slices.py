@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from archgen.analyses.name_validity import find_name_fault, find_node_name_fault
 from archgen.importers.launch.launch_run import LaunchRun
 from archgen.importers.launch.launch_values import OPEN
 from archgen.importers.launch.launched_nodes import LaunchedNode
 from archgen.model.element_ids import make_id, make_unique_id
-from archgen.analyses.name_validity import find_name_fault, find_node_name_fault
 
 HINT = "launch"
 _MAX_COMMENT = 120
@@ -39,7 +39,7 @@ class SliceMaker:
             if node.form == "loaded" and node.container is None and node.container_name:
                 self._add_far_container(node, containers)
         written = {self._make_node_id(node): node for node in nodes if node.form != "container"}
-        hosts = {make_id(node.host, "host"): {} for node in nodes if node.host in self._run.hosts}
+        hosts: dict[str, None] = {make_id(node.host, "host"): None for node in nodes if node.host in self._run.hosts}
         sections = {
             "hosts": {host: self._write_host(host) for host in hosts},
             "containers": containers,

@@ -74,7 +74,7 @@ def describe_value(value: LaunchValue, depth: int = 0) -> str:
     return write_plain(value)
 
 
-def _describe_substitution(value: Substitution, depth: int) -> str:
+def _describe_substitution(value: Substitution, depth: int) -> str:  # noqa: PLR0911 - a kind each
     parts = [describe_value(part, depth) for part in value.parts]
     match value.kind:
         case "join":

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Any
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
+from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
 from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_words
-from archgen.importers.launch.ros_arguments import read_ros_arguments
+from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
 
 if TYPE_CHECKING:
     from archgen.importers.launch.launch_run import LaunchRun
-
-FILE_KIND = "parameter file"
-"""The substitution for a file among parameters: its path, the namespace of its values, and values written over it."""
 
 
 class NodeMaker:
@@ -44,7 +42,7 @@ class NodeMaker:
         """Return the program that an action starts; None where its words are computed."""
         node = self._begin(action, "program")
         words: list[str] = []
-        for value in _list_items(action.get("command")):
+        for value in list_items(action.get("command")):
             text = self._run.context.resolve(value)
             if isinstance(text, UnknownValue):
                 self._run.tell_computed(action.word, "a word of the command", text, action.span)
@@ -114,7 +112,7 @@ class NodeMaker:
 
     def _set_remaps(self, node: LaunchedNode, action: LaunchAction) -> None:
         # The first rule for a name counts, and those of the scope come first.
-        pairs: list[Any] = [*self._run.context.scope.remaps, *_list_items(action.get("remaps"))]
+        pairs: list[Any] = [*self._run.context.scope.remaps, *list_items(action.get("remaps"))]
         for pair in pairs:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
                 unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_value(pair))
@@ -159,7 +157,7 @@ class NodeMaker:
         words: list[str] = []
         for key in ("arguments", "ros_arguments"):
             given: list[str] = []
-            for value in _list_items(action.get(key)):
+            for value in list_items(action.get(key)):
                 text = self._run.context.resolve(value)
                 if isinstance(text, UnknownValue):
                     self._run.tell_computed(action.word, "an argument of the program", text, action.span)
@@ -171,14 +169,14 @@ class NodeMaker:
         if not self._run.context.is_ros_1:
             read_ros_arguments(node, lambda path: self._add_file(node, path, "", {}))
         elif action.get("keeps_arguments") is not True:
-            _read_nodelet(node)
+            read_nodelet(node)
 
     def _set_parameters(self, node: LaunchedNode, action: LaunchAction) -> None:
         scope = self._run.context.scope
         for path in scope.parameter_files:
             self._add_file_value(node, action, Substitution(FILE_KIND, (path, "", {})))
         entries = [*({name: value} for name, value in scope.parameters if isinstance(name, str))]
-        entries += _list_items(action.get("parameters"))
+        entries += list_items(action.get("parameters"))
         for entry in entries:
             if isinstance(entry, Mapping):
                 for raw_name, value in entry.items():
@@ -254,71 +252,13 @@ class NodeMaker:
             values = {part: values}
         merge_values(node.parameters, values)
 
-    def read_parameters(self, action: LaunchAction, entries: LaunchValue, prefix: str) -> dict[str, Any]:
-        """Return parameters of ROS 1 that stand outside of nodes, by their names."""
-        found: dict[str, Any] = {}
-        for entry in _list_items(entries):
-            if isinstance(entry, Substitution) and entry.kind == FILE_KIND:
-                self._read_server_file(action, entry, found)
-            if isinstance(entry, Mapping):
-                for raw_name, raw_value in entry.items():
-                    name = self._run.context.resolve(raw_name)
-                    value = evaluate_parameter(raw_value, self._run.context)
-                    if isinstance(value, UnknownValue) or not isinstance(name, str):
-                        unknown = value if isinstance(value, UnknownValue) else UnknownValue(str(name))
-                        self._run.tell_computed(
-                            action.word, f"the parameter `{describe_value(raw_name)}`", unknown, action.span
-                        )
-                    else:
-                        found[f"{prefix}{name}"] = value
-        return found
 
-    def _read_server_file(self, action: LaunchAction, entry: Substitution, found: dict[str, Any]) -> None:
-        text = self._run.context.resolve(entry.parts[0])
-        path = self._run.files.find_file(text) if isinstance(text, str) else None
-        values = None if path is None else self._run.parameter_reader.read_whole(path)
-        if values is None:
-            shown = text if isinstance(text, str) else text.reason
-            self._run.add_note(FILE_KIND, f"`{shown}`: it is not read", action.span)
-            return
-        for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
-            values = {part: values}
-        merge_values(found, values)
-
-
-def merge_values(values: dict[str, Any], more: Mapping[str, Any]) -> None:
-    """Put values over others, leaf by leaf."""
-    for name, value in more.items():
-        old = values.get(name)
-        if isinstance(old, dict) and isinstance(value, dict):
-            merge_values(old, value)
-        else:
-            values[name] = value
-
-
-def _read_nodelet(node: LaunchedNode) -> None:
-    """Read what `nodelet` of ROS 1 is told: to load a plug-in, or to be a manager."""
-    if node.package != "nodelet" or node.executable != "nodelet" or not node.arguments:
-        return
-    verb, *rest = node.arguments
-    if verb == "manager":
-        node.form, node.package, node.executable, node.arguments = "container", "", "", rest
-        return
-    if verb not in {"load", "standalone"} or not rest:
-        return
-    node.is_nodelet, node.form, node.plugin = True, "loaded", rest[0]
-    node.package, node.executable = rest[0].partition("/")[0] if "/" in rest[0] else "", ""
-    is_loaded = verb == "load" and len(rest) > 1
-    if is_loaded:
-        node.container_name = join_names(node.namespace, rest[1])
-    node.arguments = rest[2:] if is_loaded else rest[1:]
-
-
-def _list_items(value: LaunchValue) -> list[LaunchValue]:
+def list_items(value: LaunchValue) -> list[LaunchValue]:
+    """Return a list of values; of one value alone a list of it."""
     if value is None:
         return []
     return list(value) if isinstance(value, list | tuple) else [value]
 
 
 def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
-    return [(each[0], each[1]) for each in _list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004
+    return [(each[0], each[1]) for each in list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004

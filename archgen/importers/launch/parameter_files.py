@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ from archgen.link.parameter_texts import ParameterText, matches_node_name, read_
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_data
 
 _MAX_BYTES = 4_000_000
+FILE_KIND = "parameter file"
+"""The substitution for a file among parameters: its path, the namespace of its values, and values written over it."""
 
 
 class ParameterFileReader:
@@ -71,3 +74,13 @@ def read_inline_values(text: str, span: Span) -> dict[str, Any] | None:
 def read_inline_value(text: str) -> Any:  # noqa: ANN401
     """Return one value of YAML that stands in a launch file."""
     return read_value_text(text)
+
+
+def merge_values(values: dict[str, Any], more: Mapping[str, Any]) -> None:
+    """Put values over others, leaf by leaf."""
+    for name, value in more.items():
+        old = values.get(name)
+        if isinstance(old, dict) and isinstance(value, dict):
+            merge_values(old, value)
+        else:
+            values[name] = value

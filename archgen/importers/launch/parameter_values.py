@@ -29,7 +29,7 @@ class CommandWords(list[str]):
     """The words of a command whose output is the value."""
 
 
-def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 0) -> Any:  # noqa: ANN401, PLR0911
+def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 0) -> Any:  # noqa: ANN401
     """Return the value of a parameter as data; CommandWords or an UnknownValue where it is no plain value."""
     if depth > _MAX_DEPTH:
         return UnknownValue("values nested very deep")
@@ -53,10 +53,10 @@ def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 
             for item in value
         ]
         return next((item for item in items if isinstance(item, UnknownValue)), items)
-    return _evaluate_substitution(value, context, depth + 1)
+    return _evaluate_substitution(value, context)
 
 
-def _evaluate_substitution(value: Substitution, context: LaunchContext, depth: int) -> Any:  # noqa: ANN401
+def _evaluate_substitution(value: Substitution, context: LaunchContext) -> Any:  # noqa: ANN401
     if value.kind == "command":
         return _split_command(value, context)
     if value.kind == "typed":

@@ -7,9 +7,10 @@ import posixpath
 from collections.abc import Callable, Mapping
 
 from archgen.importers.launch.launch_actions import LaunchAction
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value, join_values
+from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
+from archgen.importers.launch.parameter_files import FILE_KIND
 from archgen.importers.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
-from archgen.importers.launch.python_statements import StatementReader
+from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
 
 _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -55,15 +56,9 @@ _MODULES = {
     "process": "xacro",
     "process_file": "xacro",
 }
-_TEXT_METHODS = frozenset(
-    {"lower", "upper", "strip", "lstrip", "rstrip", "replace", "split", "startswith", "endswith", "title"}
-)
-_SAME_METHODS = frozenset(
-    {"perform", "as_posix", "resolve", "absolute", "toxml", "toprettyxml", "expanduser", "copy", "string"}
-)
 
 
-class CallReader(StatementReader):
+class CallReader(MethodReader):
     """Reads calls. `own_folder` and `own_name` are the file's as launch files name them."""
 
     def __init__(self, file: str, own_name: str, lines: list[str]) -> None:
@@ -75,12 +70,14 @@ class CallReader(StatementReader):
         if isinstance(function, FunctionValue):
             return self.call_function(function, arguments, node)
         if isinstance(function, BoundMethod):
-            return self._call_method(function, arguments, node)
+            return self.call_method(function, arguments, node)
         if isinstance(function, ImportedName):
             return self._call_imported(function, arguments, node)
         return self.quote(node)
 
-    def _call_imported(self, function: ImportedName, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _call_imported(  # noqa: PLR0911 - a kind of name each
+        self, function: ImportedName, arguments: CallArguments, node: ast.Call
+    ) -> LaunchValue:
         name = function.last
         if name in _SUBSTITUTIONS:
             return self._make_substitution(name, arguments, node)
@@ -97,10 +94,6 @@ class CallReader(StatementReader):
         if function.name.partition(".")[0] in LAUNCH_MODULES and ".actions" in function.name:
             return self._finish_action(LaunchAction("unread", name, self.place(node)))
         return self.quote(node)
-
-    def place(self, node: ast.AST):  # noqa: ANN201 - a Span, made by the reader of the whole file
-        """Return where a part of the file stands."""
-        raise NotImplementedError
 
     def _finish_action(self, action: LaunchAction) -> LaunchAction:
         action.conditions += self.conditions
@@ -120,21 +113,6 @@ class CallReader(StatementReader):
         action = LaunchAction("description", "LaunchDescription", self.place(node))
         self.add_children(action, arguments.get(0, "initial_entities"))
         return action
-
-    def add_children(self, action: LaunchAction, value: LaunchValue, depth: int = 0) -> None:
-        """Put what a value holds into an action, list by list."""
-        if value is None or depth > 20 or not self.count_step():  # noqa: PLR2004 - lists in lists
-            return
-        if isinstance(value, LaunchAction):
-            action.children.append(value)
-        elif isinstance(value, list | tuple):
-            for item in value:
-                self.add_children(action, item, depth + 1)
-        elif isinstance(value, UnknownValue):
-            span = action.span._replace(line=value.line or action.span.line, column=1)
-            span = span._replace(end_line=span.line, end_column=2)
-            reason = f"what it gives is computed: `{value.reason}`"
-            action.children.append(LaunchAction("unread", _name_call(value.reason), span, {"reason": reason}))
 
     def _call_pathjoinsubstitution(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         parts = arguments.get(0, "substitutions")
@@ -175,7 +153,7 @@ class CallReader(StatementReader):
         self.tell_noted(
             "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
         )
-        return Substitution("parameter file", (arguments.get(0, "source_file"), "" if root is None else root, changes))
+        return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "" if root is None else root, changes))
 
     def _call_replacestring(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return arguments.get(0, "source_file")
@@ -227,8 +205,10 @@ class CallReader(StatementReader):
             return dict(arguments.named)
         if isinstance(value, list | tuple):
             pairs = [
-                pair for pair in value if isinstance(pair, list | tuple) and len(pair) == 2 and isinstance(pair[0], str)
-            ]  # noqa: PLR2004
+                pair
+                for pair in value
+                if isinstance(pair, list | tuple) and len(pair) == 2 and isinstance(pair[0], str)  # noqa: PLR2004 - a name and a value
+            ]
             return {pair[0]: pair[1] for pair in pairs} if len(pairs) == len(value) else self.quote(node)
         return {**value, **arguments.named} if isinstance(value, Mapping) else self.quote(node)
 
@@ -251,114 +231,13 @@ class CallReader(StatementReader):
     def _call_float(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         return self._convert(float, arguments, node)
 
-    def _convert(self, kind: type[int] | type[float], arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _convert(self, kind: type[int | float], arguments: CallArguments, node: ast.Call) -> LaunchValue:
         value = self.force(arguments.get(0))
+        is_short = isinstance(value, str) and len(value) < 30  # noqa: PLR2004 - no number is longer
         try:
-            return (
-                kind(value)
-                if isinstance(value, int | float) or (isinstance(value, str) and len(value) < 30)
-                else self.quote(node)
-            )  # noqa: PLR2004
+            return kind(value) if is_short or isinstance(value, int | float) else self.quote(node)
         except (ValueError, OverflowError):
             return self.quote(node)
-
-    def _call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:  # noqa: C901, PLR0911
-        owner, name = method.owner, method.name
-        if name == "perform_substitution":
-            return arguments.get(0, "substitution")
-        if name == "get" and isinstance(owner, BoundMethod) and owner.name == "launch_configurations":
-            return Substitution("var", tuple(arguments.positional[:2]))
-        if isinstance(owner, LaunchAction) and name in {"add_action", "add_entity"}:
-            self.add_children(owner, arguments.get(0, "action", "entity"))
-            if owner.children and self.conditions and not owner.children[-1].conditions:
-                owner.children[-1].conditions += self.conditions
-            return None
-        if name == "read" and isinstance(owner, Substitution) and owner.kind == "open file":
-            # What a file holds is what printing it gives.
-            return Substitution("command", (["cat ", owner.parts[0]],))
-        if name in _SAME_METHODS and isinstance(owner, str | Substitution):
-            return owner
-        if isinstance(owner, list):
-            return self._call_list_method(owner, name, arguments, node)
-        if isinstance(owner, dict):
-            return self._call_dict_method(owner, name, arguments, node)
-        if name == "join" and isinstance(owner, str):
-            return self._join_texts(owner, arguments.get(0), node)
-        if name in {"joinpath"} and isinstance(owner, str | Substitution):
-            return Substitution("path", (owner, *arguments.positional))
-        if name == "format" and isinstance(owner, str):
-            return self._format_text(owner, arguments, node)
-        text = self.force(owner)
-        if (
-            name in _TEXT_METHODS
-            and isinstance(text, str)
-            and all(isinstance(each, str) for each in arguments.positional)
-        ):
-            found: LaunchValue = getattr(text, name)(*arguments.positional) if len(arguments.positional) <= 2 else None  # noqa: PLR2004
-            return found if not isinstance(found, str) or len(found) <= 2 * len(text) + 100 else self.quote(node)
-        return self.quote(node)
-
-    def _call_list_method(
-        self, owner: list[LaunchValue], name: str, arguments: CallArguments, node: ast.Call
-    ) -> LaunchValue:
-        value = arguments.get(0)
-        if name == "append":
-            owner.append(self._with_conditions(value))
-        elif name == "extend":
-            owner += [self._with_conditions(each) for each in value] if isinstance(value, list | tuple) else [value]
-        elif name == "insert" and len(arguments.positional) == 2 and isinstance(value, int):  # noqa: PLR2004 - place and value
-            owner.insert(value, self._with_conditions(arguments.positional[1]))
-        elif name == "copy":
-            return list(owner)
-        else:
-            return self.quote(node)
-        return None
-
-    def _with_conditions(self, value: LaunchValue) -> LaunchValue:
-        """Return an action that is added only if the conditions around hold."""
-        if isinstance(value, LaunchAction):
-            value.conditions += [each for each in self.conditions if each not in value.conditions]
-        return value
-
-    def _call_dict_method(
-        self, owner: dict[LaunchValue, LaunchValue], name: str, arguments: CallArguments, node: ast.Call
-    ) -> LaunchValue:
-        value = arguments.get(0)
-        match name:
-            case "update":
-                owner |= value if isinstance(value, Mapping) else {}
-                owner |= arguments.named
-                return None
-            case "items":
-                return [[key, each] for key, each in owner.items()]
-            case "keys":
-                return list(owner)
-            case "values":
-                return list(owner.values())
-            case "copy":
-                return dict(owner)
-            case "get" if isinstance(value, str | int):
-                return owner.get(value, arguments.get(1, "default"))
-        return self.quote(node)
-
-    def _join_texts(self, separator: str, items: LaunchValue, node: ast.Call) -> LaunchValue:
-        if not isinstance(items, list | tuple) or not all(isinstance(item, str | Substitution) for item in items):
-            return self.quote(node)
-        parts: list[LaunchValue] = []
-        for item in items:
-            parts += [separator, item] if parts and separator else [item]
-        return join_values(parts) if parts else ""
-
-    def _format_text(self, text: str, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        pieces = text.split("{}")
-        values = arguments.positional
-        fits = len(pieces) == len(values) + 1 and not any("{" in piece for piece in pieces) and not arguments.named
-        if not fits or not all(isinstance(value, str | int | float | Substitution) for value in values):
-            return self.quote(node)
-        parts: list[LaunchValue] = [pieces[0]]
-        for value, piece in zip(values, pieces[1:], strict=True):
-            parts += [str(value) if isinstance(value, bool) else value, piece]
-        return join_values([part for part in parts if part != ""] or [""])
 
 
 def _is_meant(function: ImportedName) -> bool:
@@ -367,9 +246,3 @@ def _is_meant(function: ImportedName) -> bool:
     if name in _BUILTINS:
         return not module
     return _MODULES.get(name, "") in module or not module
-
-
-def _name_call(text: str) -> str:
-    """Return the name of what is called, for the kind of a note."""
-    name = text.partition("(")[0].strip()
-    return name.rpartition(".")[2] if name.replace(".", "").replace("_", "").isalnum() else "expression"

@@ -3,39 +3,18 @@
 from __future__ import annotations
 
 import ast
-import operator
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue, join_values
+from archgen.importers.launch.python_operators import MAX_ITEMS, combine_values, compare_values
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName, NameScope
 
 MAX_STEPS = 300_000
 MAX_DEPTH = 60
-MAX_ITEMS = 5_000
 _MAX_QUOTED = 80
-_COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-    ast.In: lambda left, right: left in right,
-    ast.NotIn: lambda left, right: left not in right,
-    ast.Is: lambda left, right: left is right or left == right,
-    ast.IsNot: lambda left, right: not (left is right or left == right),
-}
-_ARITHMETIC: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.FloorDiv: operator.floordiv,
-    ast.Mod: operator.mod,
-}
 _NUMBERS = (int, float)
 
 
@@ -176,43 +155,8 @@ class ExpressionReader:
 
     def combine(self, sign: ast.operator, left: LaunchValue, right: LaunchValue, node: ast.AST) -> LaunchValue:
         """Return what an operator makes of two values."""
-        if isinstance(left, UnknownValue) or isinstance(right, UnknownValue):
-            return self.quote(node) if not isinstance(left, list | tuple) else [*left, right]
-        texts = (str, Substitution)
-        if isinstance(sign, ast.Div) and isinstance(left, texts) and isinstance(right, texts):
-            return Substitution("path", (left, right))
-        if isinstance(sign, ast.Add):
-            if isinstance(left, texts) and isinstance(right, texts):
-                return join_values([left, right])
-            if isinstance(left, list | tuple) and isinstance(right, list | tuple):
-                return [*left, *right] if len(left) + len(right) <= MAX_ITEMS else self.quote(node)
-        if isinstance(sign, ast.BitOr) and isinstance(left, dict) and isinstance(right, dict):
-            return left | right
-        if isinstance(sign, ast.Mod) and isinstance(left, str):
-            return self._format_percent(left, right, node)
-        return self._calculate(sign, left, right, node)
-
-    def _format_percent(self, text: str, values: LaunchValue, node: ast.AST) -> LaunchValue:
-        items = list(values) if isinstance(values, tuple) else [values]
-        pieces = text.split("%s")
-        if len(pieces) != len(items) + 1 or "%" in "".join(pieces):
-            return self.quote(node)
-        parts: list[LaunchValue] = [pieces[0]]
-        for item, piece in zip(items, pieces[1:], strict=True):
-            parts += [str(item) if isinstance(item, bool) else item, piece]
-        fits = all(isinstance(part, str | int | float | Substitution) for part in parts)
-        return join_values([part for part in parts if part != ""] or [""]) if fits else self.quote(node)
-
-    def _calculate(self, sign: ast.operator, left: LaunchValue, right: LaunchValue, node: ast.AST) -> LaunchValue:
-        left, right = self.force(left), self.force(right)
-        calculate = _ARITHMETIC.get(type(sign))
-        fits = isinstance(left, _NUMBERS) and isinstance(right, _NUMBERS) and max(abs(left), abs(right)) < 1e15  # noqa: PLR2004
-        if calculate is None or not fits:
-            return self.quote(node)
-        try:
-            return calculate(left, right)
-        except (ArithmeticError, ValueError):
-            return self.quote(node)
+        made = combine_values(sign, left, right)
+        return self.quote(node) if made is None else made
 
     def _read_unaryop(self, node: ast.UnaryOp, scope: NameScope) -> LaunchValue:
         value = self.evaluate(node.operand, scope)
@@ -239,14 +183,11 @@ class ExpressionReader:
     def _read_compare(self, node: ast.Compare, scope: NameScope) -> LaunchValue:
         values = [self.force(self.evaluate(each, scope)) for each in (node.left, *node.comparators)]
         for sign, left, right in zip(node.ops, values, values[1:], strict=False):
-            compare = _COMPARISONS.get(type(sign))
-            if compare is None or any(map(_is_open, (left, right))):
+            verdict = compare_values(sign, left, right)
+            if verdict is None:
                 return self.quote(node)
-            try:
-                if not compare(left, right):
-                    return False
-            except TypeError:
-                return self.quote(node)
+            if not verdict:
+                return False
         return True
 
     def _read_ifexp(self, node: ast.IfExp, scope: NameScope) -> LaunchValue:
@@ -353,15 +294,6 @@ class ExpressionReader:
             elif isinstance(value, Mapping):
                 named |= {str(key): inner for key, inner in value.items()}
         return self.call(function, CallArguments(positional, named), node)
-
-
-def _is_open(value: LaunchValue) -> bool:
-    """Whether a value is not known here, or is more than a plain value or a list of such."""
-    items = list(value) if isinstance(value, list | tuple | dict) else [value]
-    return not all(
-        item is None or isinstance(item, bool | int | float) or (isinstance(item, str) and "$(" not in item)
-        for item in items
-    )
 
 
 def list_items(value: LaunchValue) -> list[LaunchValue] | None:

@@ -9,8 +9,7 @@ from typing import Any
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_value
-from archgen.importers.launch.node_making import FILE_KIND
-from archgen.importers.launch.parameter_files import read_inline_value, read_inline_values
+from archgen.importers.launch.parameter_files import FILE_KIND, read_inline_value, read_inline_values
 from archgen.importers.launch.substitution_texts import read_text
 
 _NODE_KEYS = {

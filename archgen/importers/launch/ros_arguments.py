@@ -44,3 +44,21 @@ def _read_rule(node: LaunchedNode, word: str, rule: str, add_file: Callable[[str
             node.name = value
         else:
             node.remaps.setdefault(name, value)
+
+
+def read_nodelet(node: LaunchedNode) -> None:
+    """Read what `nodelet` of ROS 1 is told: to load a plug-in, or to be a manager."""
+    if node.package != "nodelet" or node.executable != "nodelet" or not node.arguments:
+        return
+    verb, *rest = node.arguments
+    if verb == "manager":
+        node.form, node.package, node.executable, node.arguments = "container", "", "", rest
+        return
+    if verb not in {"load", "standalone"} or not rest:
+        return
+    node.is_nodelet, node.form, node.plugin = True, "loaded", rest[0]
+    node.package, node.executable = rest[0].partition("/")[0] if "/" in rest[0] else "", ""
+    is_loaded = verb == "load" and len(rest) > 1
+    if is_loaded:
+        node.container_name = join_names(node.namespace, rest[1])
+    node.arguments = rest[2:] if is_loaded else rest[1:]

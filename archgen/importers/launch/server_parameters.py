@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
-from archgen.importers.launch.launch_run import LaunchRun
+from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_values import Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import LaunchedNode
-from archgen.importers.launch.node_making import merge_values
+from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
+from archgen.importers.launch.parameter_values import evaluate_parameter
+
+if TYPE_CHECKING:
+    from archgen.importers.launch.launch_run import LaunchRun
 
 SIMULATED_TIME = "use_sim_time"
 
@@ -37,3 +43,33 @@ def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[st
         merge_values(owner.parameters, given)
         merge_values(owner.parameters, own)
     return for_all
+
+
+def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, Any]:
+    """Return parameters of ROS 1 that stand outside of nodes, by their names."""
+    found: dict[str, Any] = {}
+    for entry in action.values["entries"]:
+        if isinstance(entry, Substitution) and entry.kind == FILE_KIND:
+            _read_server_file(run, action, entry, found)
+        elif isinstance(entry, Mapping):
+            for raw_name, raw_value in entry.items():
+                name, value = run.context.resolve(raw_name), evaluate_parameter(raw_value, run.context)
+                if isinstance(value, UnknownValue) or not isinstance(name, str):
+                    unknown = value if isinstance(value, UnknownValue) else UnknownValue(str(name))
+                    run.tell_computed(action.word, f"the parameter `{describe_value(raw_name)}`", unknown, action.span)
+                else:
+                    found[name] = value
+    return found
+
+
+def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution, found: dict[str, Any]) -> None:
+    text = run.context.resolve(entry.parts[0])
+    path = run.files.find_file(text) if isinstance(text, str) else None
+    values = None if path is None else run.parameter_reader.read_whole(path)
+    if values is None:
+        shown = text if isinstance(text, str) else text.reason
+        run.add_note(FILE_KIND, f"`{shown}`: it is not read", action.span)
+        return
+    for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
+        values = {part: values}
+    merge_values(found, values)
