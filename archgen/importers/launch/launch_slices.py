@@ -197,6 +197,8 @@ class SliceMaker:
             start["environment"] = node.environment
         if node.directory:
             start["directory"] = node.directory
+        if node.user:
+            start["user"] = node.user
         return start
 
     def _write_hint(self, node: LaunchedNode, *, keeps_rest: bool) -> dict[str, Any]:

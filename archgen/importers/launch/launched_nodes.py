@@ -36,6 +36,7 @@ class LaunchedNode:
     respawn_delay: str = ""
     environment: dict[str, str] = field(default_factory=dict)
     directory: str = ""
+    user: str = ""
     container: LaunchedNode | None = None
     container_name: str = ""
     """The full name of the container that loads it, where another action starts that."""

@@ -6,15 +6,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from archgen.importers.launch.command_words import split_words
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
-from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_words
+from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter
 from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
 
 if TYPE_CHECKING:
     from archgen.importers.launch.launch_run import LaunchRun
+
+
+CONTAINER_PACKAGE = "rclcpp_components"
 
 
 class NodeMaker:
@@ -28,6 +32,9 @@ class NodeMaker:
         node = self._begin(action, form)
         for key in ("package", "executable", "plugin", "name"):
             setattr(node, key, self._resolve_key(node, action, key))
+        if form == "node" and node.package == CONTAINER_PACKAGE and node.executable.startswith("component_container"):
+            # Nav2 starts its container as a node.
+            node.form = "container"
         node.is_lifecycle = bool(action.get("is_lifecycle"))
         self._set_namespace(node, action)
         self._set_remaps(node, action)
@@ -145,8 +152,17 @@ class NodeMaker:
             if isinstance(texts[0], str) and isinstance(texts[1], str):
                 node.environment[texts[0]] = texts[1]
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
-        node.directory = directory if isinstance(directory, str) and OPEN not in directory else ""
+        node.directory = directory if isinstance(directory, str) else ""
         prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
+        words = split_words(prefix) if isinstance(prefix, str) else []
+        if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
+            node.user = words[words.index("-u") + 1]
+            del words[: words.index("-u") + 2]
+            prefix = "" if not words or words == ["--"] else prefix
+            if words[1:3] == ["env", "-C"] and len(words) == 4:  # noqa: PLR2004 - `-- env -C FOLDER`
+                node.directory, prefix = words[3], ""
+        elif words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
+            node.directory, prefix = words[2], ""
         if prefix:
             shown = prefix if isinstance(prefix, str) else prefix.reason
             self._run.add_note(action.word, f"what runs it is left out: `{shown}`", action.span)

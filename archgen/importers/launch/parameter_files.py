@@ -13,6 +13,8 @@ from archgen.importers.launch.parameter_values import read_value_text
 from archgen.link.parameter_texts import ParameterText, matches_node_name, read_parameter_text
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_data
 
+_YAML_1_1_WORDS = {"yes": True, "on": True, "no": False, "off": False}
+"""What ROS 1 reads as booleans besides `true` and `false`."""
 _MAX_BYTES = 4_000_000
 FILE_KIND = "parameter file"
 """The substitution for a file among parameters: its path, the namespace of its values, and values written over it."""
@@ -62,6 +64,8 @@ def _read_tree(node: MappingNode) -> dict[str, Any]:
 def _read_value(node: YamlNode) -> Any:  # noqa: ANN401
     if isinstance(node, MappingNode):
         return _read_tree(node)
+    if isinstance(node, ScalarNode) and node.is_plain and node.text.lower() in _YAML_1_1_WORDS:
+        return _YAML_1_1_WORDS[node.text.lower()]
     return node.text if isinstance(node, ScalarNode) and not node.is_plain else node_to_data(node)
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
-import shlex
 from collections.abc import Mapping
 from typing import Any
 
+from archgen.importers.launch.command_words import split_words
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue
 from archgen.syntax.plain_scalars import resolve_scalar
@@ -22,7 +21,6 @@ _PARAMETER_TYPES = {
     "integer": "plain",
     "double": "float",
 }
-_OPEN_PART = re.compile(r"\$\([^()]*\)")
 
 
 class CommandWords(list[str]):
@@ -92,19 +90,3 @@ def _split_command(value: Substitution, context: LaunchContext) -> Any:  # noqa:
     """Return the words of a command, with `$(...)` in one piece."""
     text = context.resolve(value.parts[0])
     return text if isinstance(text, UnknownValue) else CommandWords(split_words(text))
-
-
-def split_words(text: str) -> list[str]:
-    """Split a command line into words as a shell does; `$(...)` stays in one piece."""
-    kept: list[str] = []
-
-    def hide(match: re.Match[str]) -> str:
-        kept.append(match[0])
-        return f"\x00{len(kept) - 1}\x01"
-
-    hidden = _OPEN_PART.sub(hide, text.replace("\x00", "").replace("\x01", ""))
-    try:
-        words = shlex.split(hidden)
-    except ValueError:
-        words = hidden.split()
-    return [re.sub("\x00([0-9]+)\x01", lambda match: kept[int(match[1])], word) for word in words]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, join_values
 
 _MAX_DEPTH = 20
@@ -19,29 +21,48 @@ _KINDS = {
     "equals": "equals",
     "not-equals": "differs",
 }
+_ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _MANY_WORDS = frozenset({"eval", "command"})
 
 
 def read_text(text: str, folder: str, *, is_ros_1: bool, depth: int = 0) -> LaunchValue:
     """Return a text with its substitutions. `folder` is what `$(dirname)` stands for."""
     if "$(" not in text or depth > _MAX_DEPTH:
-        return text
+        return text if is_ros_1 else _take_escapes(text)
     if is_ros_1 and text.strip().startswith("$(eval "):
         # In ROS 1 it takes the whole text, with all brackets in it.
         return Substitution("eval", (text.strip().removeprefix("$(eval ").removesuffix(")"),))
     parts: list[LaunchValue] = []
     position = 0
-    while (start := text.find("$(", position)) >= 0:
+    while (start := _find_start(text, position, is_ros_1=is_ros_1)) >= 0:
         end = _find_end(text, start + 2)
         if end < 0:
             break
         if start > position:
-            parts.append(text[position:start])
+            parts.append(text[position:start] if is_ros_1 else _take_escapes(text[position:start]))
         parts.append(_read_substitution(text[start + 2 : end], folder, is_ros_1=is_ros_1, depth=depth + 1))
         position = end + 1
     if position < len(text):
-        parts.append(text[position:])
+        parts.append(text[position:] if is_ros_1 else _take_escapes(text[position:]))
     return join_values(parts)
+
+
+def _take_escapes(text: str) -> str:
+    """Return a text of ROS 2 without the backslashes that keep a character as it is."""
+    return _ESCAPE.sub(r"\1", text) if "\\" in text else text
+
+
+def _find_start(text: str, position: int, *, is_ros_1: bool) -> int:
+    """Return where the next substitution begins; -1 if there is none. In ROS 2 a backslash takes its meaning away."""
+    start = text.find("$(", position)
+    while start > 0 and not is_ros_1:
+        backslashes = start - len(text[:start].rstrip("\\"))
+        if start - backslashes < position:
+            backslashes = start - position
+        if backslashes % 2 == 0:
+            return start
+        start = text.find("$(", start + 2)
+    return start
 
 
 def _find_end(text: str, position: int) -> int:
@@ -49,7 +70,9 @@ def _find_end(text: str, position: int) -> int:
     depth, quote = 1, ""
     while position < len(text):
         character = text[position]
-        if quote:
+        if character == "\\":
+            position += 1
+        elif quote:
             quote = "" if character == quote else quote
         elif character in "'\"":
             quote = character
@@ -86,8 +109,11 @@ def _split_words(text: str) -> list[str]:
     """Split at blanks that stand in no quotes and no brackets."""
     words: list[str] = []
     word, depth, quote = "", 0, ""
+    is_escaped = False
     for character in text:
-        if quote:
+        if is_escaped or character == "\\":
+            is_escaped = not is_escaped
+        elif quote:
             quote = "" if character == quote else quote
         elif character in "'\"":
             quote = character
@@ -103,4 +129,4 @@ def _split_words(text: str) -> list[str]:
 
 def _strip_quotes(text: str) -> str:
     is_quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "'\""
-    return text[1:-1] if is_quoted and text[0] not in text[1:-1] else text
+    return text[1:-1] if is_quoted and text[0] not in _ESCAPE.sub("", text[1:-1]) else text
