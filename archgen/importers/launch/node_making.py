@@ -154,18 +154,9 @@ class NodeMaker:
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
         node.directory = directory if isinstance(directory, str) else ""
         prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
-        words = split_words(prefix) if isinstance(prefix, str) else []
-        if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
-            node.user = words[words.index("-u") + 1]
-            del words[: words.index("-u") + 2]
-            prefix = "" if not words or words == ["--"] else prefix
-            if words[1:3] == ["env", "-C"] and len(words) == 4:  # noqa: PLR2004 - `-- env -C FOLDER`
-                node.directory, prefix = words[3], ""
-        elif words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
-            node.directory, prefix = words[2], ""
-        if prefix:
-            shown = prefix if isinstance(prefix, str) else prefix.reason
-            self._run.add_note(action.word, f"what runs it is left out: `{shown}`", action.span)
+        rest = prefix.reason if isinstance(prefix, UnknownValue) else _read_prefix(node, prefix)
+        if rest:
+            self._run.add_note(action.word, f"what runs it is left out: `{rest}`", action.span)
         host = context.resolve(action.get("host")) if action.get("host") is not None else ""
         node.host = host if isinstance(host, str) else ""
 
@@ -278,3 +269,16 @@ def list_items(value: LaunchValue) -> list[LaunchValue]:
 
 def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
     return [(each[0], each[1]) for each in list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004
+
+
+def _read_prefix(node: LaunchedNode, prefix: str) -> str:
+    """Set the user and the folder that a prefix such as `sudo -u robot -- env -C /opt` says; return what is left of it."""
+    words = split_words(prefix)
+    if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
+        place = words.index("-u")
+        node.user = words[place + 1]
+        words = words[place + 2 :]
+        words = words[1:] if words[:1] == ["--"] else words
+    if words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
+        node.directory, words = words[2], []
+    return " ".join(words)

@@ -45,8 +45,9 @@ def combine_values(  # noqa: PLR0911 - a kind of values each
         # A list stays a list: what is known of it counts.
         return [*left, right] if isinstance(left, list | tuple) and isinstance(sign, ast.Add) else None
     if isinstance(sign, ast.Div) and isinstance(left, _TEXTS) and isinstance(right, _TEXTS):
-        is_plain = isinstance(left, str) and isinstance(right, str)
-        return posixpath.join(left, right) if is_plain else Substitution("path", (left, right))
+        if isinstance(left, str) and isinstance(right, str):
+            return posixpath.join(left, right)
+        return Substitution("path", (left, right))
     if isinstance(sign, ast.Add) and isinstance(left, _TEXTS) and isinstance(right, _TEXTS):
         return join_values([left, right])
     if isinstance(sign, ast.Add) and isinstance(left, list | tuple) and isinstance(right, list | tuple):
