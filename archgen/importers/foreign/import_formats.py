@@ -44,6 +44,12 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             (".xmi", ".uml", ".mdzip", ".zargo"),
             "archgen.importers.xmi:read_xmi",
         ),
+        ImportFormat(
+            "launch",
+            "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
+            (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
+            "archgen.importers.launch.launch_import:read_launch",
+        ),
     )
 }
 
