@@ -1,0 +1,303 @@
+"""The view `aadl`: the architecture as packages of AADL, each classifier with its sections as lines that only want layout."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import Any
+
+from archgen.model.architecture import Architecture
+from archgen.model.node import Endpoint
+from archgen.timing.analysis import Analysis
+from archgen.views.generation.aadl_flows import FlowWriter
+from archgen.views.generation.aadl_platform import Platform
+from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_types import TypeBook
+from archgen.views.generation.aadl_words import (
+    AadlProperty,
+    NameSpace,
+    can_be_written,
+    make_aadl_name,
+    make_classifier,
+    make_item,
+    make_property,
+    make_text_properties,
+    write_range,
+    write_text,
+)
+from archgen.views.generation.generation_context import GeneratedView, GenerationContext
+
+LIBRARY_UNITS = ("cnc", "ros", "topic_properties", "archgen")
+"""The packages and property sets that are the same for each project."""
+_STANDARD_UNITS = (
+    *("Base_Types", "Data_Model", "AADL_Project", "Timing_Properties", "Thread_Properties", "Memory_Properties"),
+    *("Communication_Properties", "Programming_Properties", "Deployment_Properties", "Modeling_Properties", "EMV2"),
+)
+_USED_UNIT = re.compile(r"\b([A-Za-z][A-Za-z0-9_]*)::")
+_QUOTED = re.compile(r'"[^"]*"')
+_ROOT, _LAUNCH = "robot", "robot.launch"
+
+
+def make_view(context: GenerationContext) -> GeneratedView:
+    """Return the packages: messages, types, nodes, hosts, and the system that joins them."""
+    architecture = context.architecture
+    units = NameSpace((*LIBRARY_UNITS, *_STANDARD_UNITS))
+    project = make_aadl_name(architecture.project.id)
+    names = {
+        key: units.take_name(f"{project}_{key}" if key != "system" else project)
+        for key in ("types", "nodes", "hosts", "system")
+    }
+    types = TypeBook(architecture, names["types"], units)
+    endpoints: dict[str, list[Endpoint]] = {}
+    for endpoint in architecture.list_endpoints():
+        endpoints.setdefault(endpoint.node, []).append(endpoint)
+    node_names = NameSpace()
+    processes = {
+        node.id: Process(architecture, types, node, endpoints.get(node.id, ()), node_names)
+        for node in context.wanted_nodes.values()
+    }
+    if context.is_whole:
+        for declared in architecture.types.values():
+            if declared.origin == "project" and not declared.generic:
+                types.name_type(declared.name, _find_flow(architecture, declared.name))
+    system = _System(context, processes, names)
+    system.write()
+    packages = [
+        *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
+        _make_package(
+            names["nodes"], [each for process in processes.values() for each in process.make_classifiers()]
+        ),
+        _make_package(names["hosts"], system.platform.classifiers),
+        _make_package(names["system"], system.classifiers, system.comments),
+    ]
+    return GeneratedView(
+        {
+            "project": {
+                "id": architecture.project.id,
+                "title": architecture.project.title,
+                "system": f"{names['system']}::{_LAUNCH}",
+            },
+            "packages": [each for each in packages if each["classifiers"]],
+        }
+    )
+
+
+def _find_flow(architecture: Architecture, type_name: str) -> str:
+    """Return whether a type is data, or is called for: as a port with it is."""
+    from archgen.model.component import Output
+    from archgen.model.port_media import flow_of_port
+
+    return flow_of_port(Output("", "", "", type_name), architecture.types[type_name])
+
+
+def _make_package(
+    name: str, classifiers: list[dict[str, Any]], comments: Iterable[str] = ()
+) -> dict[str, Any]:
+    return {
+        "name": name,
+        "path": f"aadl/{name}.aadl",
+        "uses": _find_used_units(name, classifiers),
+        "comments": list(comments),
+        "classifiers": classifiers,
+    }
+
+
+def _find_used_units(name: str, classifiers: Iterable[dict[str, Any]]) -> list[str]:
+    """Return the packages and property sets that a package names, but for itself."""
+    found: dict[str, None] = {}
+    for classifier in classifiers:
+        texts = [classifier["extends"]]
+        for section in ("features", "subcomponents", "connections", "flows"):
+            for item in classifier[section]:
+                texts += [item["text"], *(f"{each['name']} {each['value']}" for each in item["properties"])]
+        texts += [f"{each['name']} {each['value']}" for each in classifier["properties"]]
+        for text in texts:
+            found.update(dict.fromkeys(_USED_UNIT.findall(_QUOTED.sub("", text))))
+    return sorted(unit for unit in found if unit != name)
+
+
+class _System:
+    """The launch of everything: processes, computers, links, what flows between them, and where it runs."""
+
+    def __init__(self, context: GenerationContext, processes: dict[str, Process], names: dict[str, str]) -> None:
+        self._context = context
+        self._architecture = context.architecture
+        self._processes = processes
+        self._packages = names
+        self._names = NameSpace()
+        self._subcomponents: list[dict[str, Any]] = []
+        self._connections: list[dict[str, Any]] = []
+        self._bound: dict[str, list[str]] = {}
+        self._properties: list[AadlProperty] = []
+        self._connection_names: dict[tuple[str, str, str, str], str] = {}
+        self.classifiers: list[dict[str, Any]] = []
+        self.comments: list[str] = []
+        for process in processes.values():
+            # A process has the same name as its classifier wherever that is free: flows name it so.
+            process.name_in_system = self._names.take_name(process.name)
+            self._subcomponents.append(
+                make_item(process.name_in_system, f"process {names['nodes']}::{process.name}.impl")
+            )
+        hosts = {
+            host.id
+            for host in self._architecture.hosts.values()
+            if context.is_whole or host.id in {process.node.host for process in processes.values()}
+        }
+        self.platform = Platform(self._architecture, hosts, self._names, names["hosts"])
+        self._analysis = _analyse(self._architecture)
+
+    def write(self) -> None:
+        """Write the package of the system."""
+        self._join_processes()
+        self._join_tf()
+        flows = self._write_flows()
+        self._bind_processes()
+        properties = [*self._properties, *self.platform.properties]
+        for bus, connections in self._bound.items():
+            properties.append(
+                make_property("Actual_Connection_Binding", f"(reference ({bus}))", ", ".join(connections))
+            )
+        project = self._architecture.project
+        self.classifiers = [
+            make_classifier(
+                "system",
+                _ROOT,
+                properties=make_text_properties(
+                    id=project.id, title=project.title, description=project.description, version=project.version
+                ),
+            ),
+            make_classifier(
+                "system",
+                _LAUNCH,
+                subcomponents=[*self._subcomponents, *self.platform.subcomponents],
+                connections=[*self._connections, *self.platform.connections],
+                flows=flows,
+                properties=properties,
+            ),
+        ]
+
+    def _join_processes(self) -> None:
+        """Write a connection for each pair of processes that implement the two ends of one."""
+        latencies = _find_link_latencies(self._analysis)
+        for edge in self._architecture.edges:
+            for source in self._list_processes(edge.output):
+                for reader in self._list_processes(edge.input):
+                    output, name = edge.output.rpartition(".")[2], edge.input.rpartition(".")[2]
+                    endpoint = reader.find_endpoint(edge.input, edge.output) or source.find_endpoint(edge.output)
+                    properties = _list_topic_properties(endpoint)
+                    if reader is source:
+                        source.join_inside(edge.output, edge.input, f"{output}_to_{name}", properties)
+                        continue
+                    latency = latencies.get((edge.output, edge.input, source.node.id, reader.node.id))
+                    if latency:
+                        properties.append(make_property("Latency", write_range(*latency)))
+                    self._join(source, reader, edge.output, edge.input, properties)
+
+    def _join(
+        self, source: Process, reader: Process, output_id: str, input_id: str, properties: list[AadlProperty]
+    ) -> None:
+        is_call = "subprogram" in source.describe(output_id)
+        kind = "subprogram access" if is_call else "port"
+        ends = (
+            f"{source.name_in_system}.{source.features[output_id]}",
+            f"{reader.name_in_system}.{reader.features[input_id]}",
+        )
+        name = self._names.take_name(f"{source.name}_{source.features[output_id]}_to_{reader.name}")
+        self._connection_names[source.node.id, output_id, reader.node.id, input_id] = name
+        self._connections.append(make_item(name, f"{kind} {ends[0]} -> {ends[1]}", properties))
+        self._bind_connection(name, source, reader, is_call=is_call)
+
+    def _bind_connection(self, name: str, source: Process, reader: Process, *, is_call: bool) -> None:
+        """Bind a connection to the link between two computers where there is exactly one, else to ROS's own."""
+        hosts = {source.node.host, reader.node.host}
+        links = [
+            link.id
+            for link in self._architecture.links.values()
+            if len(hosts) > 1 and hosts <= set(link.connects) and ("link", link.id) in self.platform.names
+        ]
+        if len(links) == 1:
+            bus = self.platform.names["link", links[0]]
+        else:
+            kind = "services" if is_call else "topics"
+            if ("bus", kind) not in self.platform.names:
+                bus = self.platform.names["bus", kind] = self._names.take_name(kind)
+                self._subcomponents.append(make_item(bus, f"virtual bus ros::{kind}"))
+            bus = self.platform.names["bus", kind]
+        self._bound.setdefault(bus, []).append(name)
+
+    def _list_processes(self, port_id: str) -> list[Process]:
+        return [each for each in self._processes.values() if port_id in each.features]
+
+    def _join_tf(self) -> None:
+        users = [process for process in self._processes.values() if process.uses_tf]
+        if users:
+            name = self._names.take_name("tf")
+            self._subcomponents.append(make_item(name, "data ros::tf"))
+            for process in users:
+                own_name = self._names.take_name(f"{process.name}_tf")
+                self._connections.append(
+                    make_item(own_name, f"data access {name} -> {process.name_in_system}.tf")
+                )
+
+    def _bind_processes(self) -> None:
+        """Bind processes to the containers that load them, else to their hosts."""
+        bound: dict[str, list[str]] = {}
+        for process in self._processes.values():
+            node = process.node
+            place = self.platform.names.get(("container", node.container or "")) or self.platform.names.get(
+                ("host", node.host or "")
+            )
+            if place:
+                bound.setdefault(place, []).append(process.name_in_system)
+        for place, names in bound.items():
+            self._properties.append(
+                make_property("Actual_Processor_Binding", f"(reference ({place}))", ", ".join(names))
+            )
+
+    def _write_flows(self) -> list[dict[str, Any]]:
+        if self._analysis is None or not self._architecture.chains:
+            return []
+        from archgen.timing.chains.chain_bounds import bound_all_chains
+
+        results = bound_all_chains(self._analysis, self._architecture)
+        writer = FlowWriter(self._architecture, self._analysis, self._processes)
+        flows = []
+        for chain in self._architecture.chains.values():
+            flow = writer.write_chain(chain, results[chain.id], self._connection_names, self._names)
+            if isinstance(flow, str):
+                self.comments.append(f"The chain {chain.id} is no end to end flow here: {flow}")
+            else:
+                flows.append(flow)
+        return flows
+
+
+def _analyse(architecture: Architecture) -> Analysis | None:
+    if not architecture.chains and not any(node.timing for node in architecture.nodes.values()):
+        return None
+    # Imported here: the engine takes time to load.
+    from archgen.timing.run_analysis import analyse_architecture
+
+    return analyse_architecture(architecture)
+
+
+def _find_link_latencies(analysis: Analysis | None) -> dict[tuple[str, str, str, str], tuple[Fraction, Fraction]]:
+    """Return how long data takes on links, by the two ends and their nodes."""
+    if analysis is None:
+        return {}
+    found = {}
+    for arc in analysis.system.arcs:
+        if arc.role == "data" and arc.link is not None and arc.worst is not None:
+            nodes = (analysis.system.activities[arc.source].node, analysis.system.activities[arc.target].node)
+            best, worst = (arc.best or 0) * analysis.system.tick, arc.worst * analysis.system.tick
+            if can_be_written(worst):
+                found[arc.output, arc.input, *nodes] = (best, worst)
+    return found
+
+
+def _list_topic_properties(endpoint: Endpoint | None) -> list[AadlProperty]:
+    return (
+        []
+        if endpoint is None or endpoint.medium != "ros"
+        else [make_property("topic_properties::Name", write_text(endpoint.name))]
+    )
