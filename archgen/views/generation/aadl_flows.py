@@ -16,9 +16,7 @@ from archgen.views.generation.aadl_words import (
     NameSpace,
     can_be_written,
     make_item,
-    make_named_properties,
     make_property,
-    make_text_properties,
     write_range,
 )
 
@@ -65,7 +63,7 @@ class FlowWriter:
         return make_item(
             name,
             f"end to end flow {' -> '.join(steps)}",
-            [*make_named_properties(name, chain.id, chain.title), *_list_latencies(chain, result)],
+            _list_latencies(chain, result),
         )
 
     def _node_of(self, term: ChainTerm) -> str:
@@ -103,9 +101,11 @@ class FlowWriter:
         """Return the name of a flow through a process: waiting to be read, and what its threads take to answer."""
         ends = []
         if entry:
-            ends.append(process.features[entry.input])
+            reader = process.find_part(entry.input, is_output=False, source_id=entry.output)
+            ends.append(process.features[reader.key] if reader else "")
         if leave:
-            ends.append(process.features[leave.output])
+            output = process.find_part(leave.output, is_output=True)
+            ends.append(process.features[output.key] if output else "")
         kind = "path" if entry and leave else "sink" if entry else "source"
         properties = self._list_flow_latency(terms)
         text = f"flow {kind} {' -> '.join(ends)}"
@@ -149,5 +149,4 @@ def _list_latencies(chain: Chain, result: ChainResult) -> list[AadlProperty]:
     if bound.value is not None and bound.complete and can_be_written(bound.value):
         shortest = min(result.best.value or Fraction(0), bound.value)
         found.append(make_property("Actual_Latency", write_range(shortest, bound.value)))
-    found += make_text_properties(through=", ".join(each.id for each in chain.through) or None)
     return found

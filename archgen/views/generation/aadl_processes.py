@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from archgen.model.architecture import Architecture
-from archgen.model.component import Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node
 from archgen.views.generation.aadl_behaviours import Behaviour
 from archgen.views.generation.aadl_hints import list_function_properties, list_source_properties, read_aadl_hints
+from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -30,6 +30,13 @@ _TF_TOPICS = frozenset({"/tf", "/tf_static"})
 _LONGEST_QUEUE = 512
 """What the standard's own project file lets readers take."""
 _NO_TIMING = Timing()
+_INTERNAL_KINDS = {
+    "publishes": "out data port",
+    "subscribes": "in event data port",
+    "serves": "provides subprogram access",
+    "calls": "requires subprogram access",
+}
+"""What a node has that is no port of a component, by its use."""
 
 
 class Process:
@@ -45,51 +52,59 @@ class Process:
     ) -> None:
         """Write a node; `package_names` are those of the package in which its classifiers stand."""
         self.node = node
-        self.names = NameSpace(_RESERVED_NAMES)
-        self.features: dict[str, str] = {}
-        """The names of its features by the complete ids of the ports."""
-        self.connections: list[dict[str, Any]] = []
-        self.flows: list[dict[str, Any]] = []
         self.name = package_names.take_name(node.id)
         self.name_in_system = self.name
-        self._ports = _group_by_port(endpoints)
-        self._architecture = architecture
-        self._types = types
-        # Ports come before threads: it is they that others see.
-        components = [
-            component for each in node.implements if (component := architecture.find_component(each)) is not None
-        ]
-        behaviours = [
-            Behaviour(architecture, types, each, node.timing.get(each.id) or node.timing.get("") or _NO_TIMING)
+        self.names = NameSpace(_RESERVED_NAMES)
+        self.features: dict[tuple[bool, str, str], str] = {}
+        """The names of its features by the keys of the parts of its ports."""
+        self.threads: dict[str, str] = {}
+        """The names of its threads by the complete ids of the components."""
+        self.connections: list[dict[str, Any]] = []
+        self.flows: list[dict[str, Any]] = []
+        self.thread_classifiers: list[dict[str, Any]] = []
+        self._endpoints = endpoints
+        self._subcomponents: list[dict[str, Any]] = []
+        self._properties: list[AadlProperty] = []
+        components = [found for each in node.implements if (found := architecture.find_component(each)) is not None]
+        self._hints = read_aadl_hints(node, *components)
+        self.behaviours = {
+            each.id: Behaviour(architecture, types, each, node.timing.get(each.id) or node.timing.get("") or _NO_TIMING)
             for each in components
-        ]
+        }
+        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or "tf" in (
+            self._hints.get("access") or ()
+        )
+        # Ports come before threads: it is they that others see.
         self._feature_items = [
-            self._make_feature(port, behaviour) for behaviour in behaviours for port in behaviour.component.ports
+            self._make_feature(part) for behaviour in self.behaviours.values() for part in behaviour.parts
         ]
         self._feature_items += [
-            self._make_internal_feature(each)
+            self._make_internal_feature(types, each)
             for each in endpoints
             if each.port is None and each.name not in _TF_TOPICS
         ]
-        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or "tf" in (
-            read_aadl_hints(node, *components).get("access") or ()
-        )
-        self.threads: dict[str, str] = {}
-        """The names of its threads by the complete ids of the components."""
-        self._properties: list[AadlProperty] = []
-        self._subcomponents: list[dict[str, Any]] = []
-        self.thread_classifiers: list[dict[str, Any]] = []
-        self._behaviours = {each.component.id: each for each in behaviours}
-        for behaviour in behaviours:
-            self._add_thread(behaviour, package_names, is_only=len(behaviours) == 1)
-        self._properties += list_source_properties(read_aadl_hints(node, *components))
+        for behaviour in self.behaviours.values():
+            self._add_thread(behaviour, package_names, is_only=len(self.behaviours) == 1)
+        self._properties += list_source_properties(self._hints)
 
-    def _make_feature(self, port: Input | Output, behaviour: Behaviour) -> dict[str, Any]:
-        endpoints = self._ports.get(port.id, ())
-        name = self.features[port.id] = self.names.take_name(port.name)
+    def find_endpoints(self, part: PortPart, source_id: str = "") -> Iterable[Endpoint]:
+        """Yield what a part of a port uses; with a source only what it arrives on."""
+        uses = {"publishes", "serves"} if part.is_output else {"subscribes", "calls"}
+        for endpoint in self._endpoints:
+            if endpoint.port != part.port.id or endpoint.use not in uses:
+                continue
+            if part.is_output or not endpoint.sources or any(
+                part.reads(each) and source_id in {"", each} for each in endpoint.sources
+            ):
+                yield endpoint
+
+    def _make_feature(self, part: PortPart) -> dict[str, Any]:
+        port = part.port
+        name = self.features[part.key] = self.names.take_name(part.name)
         properties = make_named_properties(name, port.name)
-        if endpoints and endpoints[0].medium == "ros":
-            own_name = endpoints[0].own_name or endpoints[0].name
+        endpoint = next(iter(self.find_endpoints(part)), None)
+        if endpoint and endpoint.medium == "ros":
+            own_name = endpoint.own_name or endpoint.name
             properties.append(make_property("topic_properties::Default_Name", write_text(own_name)))
         properties += make_text_properties(
             medium=port.medium if port.medium != "ros" else None,
@@ -97,23 +112,16 @@ class Process:
             description=port.description,
             frame=port.frame,
         )
-        return make_item(name, behaviour.describe_port(port), properties)
+        return make_item(name, part.text, properties)
 
-    def _make_internal_feature(self, endpoint: Endpoint) -> dict[str, Any]:
-        flow = endpoint.flow
-        classifier = self._types.name_type(endpoint.type or endpoint.message, flow)
-        kinds = {
-            "publishes": "out data port",
-            "subscribes": "in event data port",
-            "serves": "provides subprogram access",
-            "calls": "requires subprogram access",
-        }
+    def _make_internal_feature(self, types: TypeBook, endpoint: Endpoint) -> dict[str, Any]:
+        classifier = types.name_type(endpoint.type or endpoint.message, endpoint.flow)
         name = self.names.take_name(endpoint.name.strip("/").replace("/", "_") or "internal")
         properties = [
             make_property("topic_properties::Default_Name", write_text(endpoint.own_name or endpoint.name)),
             make_property("archgen::Is_Internal", "true"),
         ]
-        return make_item(name, f"{kinds[endpoint.use]} {classifier}", properties)
+        return make_item(name, f"{_INTERNAL_KINDS[endpoint.use]} {classifier}", properties)
 
     def _add_thread(self, behaviour: Behaviour, package_names: NameSpace, *, is_only: bool) -> None:
         component, hints = behaviour.component, read_aadl_hints(behaviour.component)
@@ -121,64 +129,47 @@ class Process:
         own_words = self.node.id if is_only else f"{self.node.id}_{component.name}"
         classifier = package_names.take_name(f"{kind}_{own_words}")
         self.thread_classifiers += behaviour.make_classifiers(classifier)
-        # The process and its only thread may be called alike: they stand in different namespaces.
         name = self.threads[component.id] = self.names.take_name(component.name)
         properties = make_text_properties(component=None if is_only else component.id)
         self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
-        for port in component.ports:
-            feature, own_port = self.features[port.id], f"{name}.{behaviour.port_names[port.id]}"
-            text = behaviour.describe_port(port)
-            ends = (own_port, feature) if text.startswith(("out", "provides")) else (feature, own_port)
-            kind = "subprogram access" if "subprogram" in text else "port"
-            self.connections.append(
-                make_item(self.names.take_name(f"{feature}_link"), f"{kind} {ends[0]} -> {ends[1]}")
-            )
-        self._add_access(f"{name}_state", "internal_state", f"{name}.ist")
+        for part in behaviour.parts:
+            feature, own_port = self.features[part.key], f"{name}.{behaviour.port_names[part.key]}"
+            ends = (own_port, feature) if part.is_output else (feature, own_port)
+            self._connect(f"{feature}_link", f"{part.connection_kind} {ends[0]} -> {ends[1]}")
+        self._connect(f"{name}_state", f"data access internal_state -> {name}.ist")
         if behaviour.uses_tf and self.uses_tf:
-            self._add_access(f"{name}_tf", "tf", f"{name}.tf")
-        own = behaviour.list_properties()
-        own += self._list_queue_sizes(behaviour, name)
+            self._connect(f"{name}_tf", f"data access tf -> {name}.tf")
+        own = behaviour.list_properties() + self._list_queue_sizes(behaviour)
         own += list_function_properties(hints, component.name)
         self._properties += [
             {**each, "applies_to": f"{name}.{each['applies_to']}" if each["applies_to"] else name} for each in own
         ]
 
-    def _list_queue_sizes(self, behaviour: Behaviour, thread: str) -> list[AadlProperty]:
+    def _list_queue_sizes(self, behaviour: Behaviour) -> list[AadlProperty]:
         found = []
-        for port in behaviour.component.inputs.values():
-            endpoint = next(iter(self._ports.get(port.id, ())), None)
+        for part in behaviour.parts:
+            endpoint = next(iter(self.find_endpoints(part)), None)
             depth = endpoint.qos.depth if endpoint and endpoint.qos.written else None
-            if depth and depth <= _LONGEST_QUEUE and "in event data" in behaviour.describe_port(port):
-                found.append(make_property("Queue_Size", str(depth), behaviour.port_names[port.id]))
+            if depth and depth <= _LONGEST_QUEUE and part.kind == "in event data port":
+                found.append(make_property("Queue_Size", str(depth), behaviour.port_names[part.key]))
         return found
 
-    def _add_access(self, name: str, provider: str, user: str) -> None:
-        self.connections.append(make_item(self.names.take_name(name), f"data access {provider} -> {user}"))
+    def _connect(self, name: str, text: str, properties: Iterable[AadlProperty] = ()) -> None:
+        self.connections.append(make_item(self.names.take_name(name), text, properties))
 
-    def join_inside(self, output_id: str, input_id: str, name: str, properties: list[AadlProperty]) -> str:
-        """Join the ports of two components that this node implements; return the connection's name."""
-        source, reader = self._find_port(output_id), self._find_port(input_id)
-        if "subprogram" in self.describe(output_id):
-            text = f"subprogram access {source} -> {reader}"
-        else:
-            text = f"port {source} -> {reader}"
-        own_name = self.names.take_name(name)
-        self.connections.append(make_item(own_name, text, properties))
-        return own_name
+    def find_part(self, port_id: str, *, is_output: bool, source_id: str = "") -> PortPart | None:
+        """Return the part of a port that this node has; None where another one has it."""
+        behaviour = self.behaviours.get(port_id.rpartition(".")[0])
+        return behaviour.find_part(port_id, is_output=is_output, source_id=source_id) if behaviour else None
 
-    def _find_port(self, port_id: str) -> str:
-        component_id = port_id.rpartition(".")[0]
-        return f"{self.threads[component_id]}.{self._behaviours[component_id].port_names[port_id]}"
-
-    def describe(self, port_id: str) -> str:
-        """Return the feature of a port as AADL writes it."""
-        name = self.features[port_id]
-        return str(next(each["text"] for each in self._feature_items if each["name"] == name))
-
-    def find_endpoint(self, port_id: str, source_id: str = "") -> Endpoint | None:
-        """Return what a port uses; of an input that has several topics the one on which a source arrives."""
-        endpoints = self._ports.get(port_id, ())
-        return next((each for each in endpoints if source_id in each.sources), next(iter(endpoints), None))
+    def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
+        """Join the ports of two components that this node implements."""
+        ends = []
+        for part in (output, reader):
+            component = part.port.component
+            ends.append(f"{self.threads[component]}.{self.behaviours[component].port_names[part.key]}")
+        name = f"{self.features[output.key]}_to_{self.features[reader.key]}"
+        self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
 
     def make_classifiers(self) -> list[dict[str, Any]]:
         """Return its threads, its type and its implementation."""
@@ -194,31 +185,10 @@ class Process:
                 node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
             ),
         ]
-        return [
-            *self.thread_classifiers,
-            make_classifier(
-                "process",
-                self.name,
-                extends="ros::node",
-                features=self._feature_items,
-                flows=self.flows,
-                properties=properties,
-                place=write_place(node.at),
-            ),
-            make_classifier(
-                "process",
-                f"{self.name}.impl",
-                extends="ros::node.impl",
-                subcomponents=self._subcomponents,
-                connections=self.connections,
-                properties=self._properties,
-            ),
-        ]
-
-
-def _group_by_port(endpoints: Sequence[Endpoint]) -> Mapping[str, list[Endpoint]]:
-    grouped: dict[str, list[Endpoint]] = {}
-    for endpoint in endpoints:
-        if endpoint.port is not None:
-            grouped.setdefault(endpoint.port, []).append(endpoint)
-    return grouped
+        own_type = make_classifier("process", self.name, extends="ros::node", properties=properties)
+        implementation = make_classifier("process", f"{self.name}.impl", extends="ros::node.impl")
+        own_type.update(features=self._feature_items, flows=self.flows, place=write_place(node.at))
+        implementation.update(
+            subcomponents=self._subcomponents, connections=self.connections, properties=self._properties
+        )
+        return [*self.thread_classifiers, own_type, implementation]

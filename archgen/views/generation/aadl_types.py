@@ -119,9 +119,10 @@ class TypeBook:
 
     def _record_field(self, field: DataField, names: NameSpace) -> dict[str, Any]:
         name = names.take_name(field.name)
-        base = BASE_TYPES.get(field.element_type)
+        element_type, bound, _ = field.element_type.partition("<=")
+        base = BASE_TYPES.get(element_type)
         is_fixed = _FIXED_ARRAY.match(field.array) is not None
-        is_plain = (base is None or field.element_type not in _SHARED_BASES) and (not field.array or is_fixed)
+        is_plain = not bound and element_type not in _SHARED_BASES and (not field.array or is_fixed)
         if base:
             classifier = f"Base_Types::{base}"
         else:

@@ -7,11 +7,13 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, Chain
 from archgen.model.node import Endpoint
+from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
 from archgen.views.generation.aadl_flows import FlowWriter
 from archgen.views.generation.aadl_platform import Platform
+from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
@@ -25,6 +27,7 @@ from archgen.views.generation.aadl_words import (
     make_text_properties,
     write_range,
     write_text,
+    write_texts,
 )
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
 
@@ -181,32 +184,39 @@ class _System:
         """Write a connection for each pair of processes that implement the two ends of one."""
         latencies = _find_link_latencies(self._analysis)
         for edge in self._architecture.edges:
-            for source in self._list_processes(edge.output):
-                for reader in self._list_processes(edge.input):
-                    output, name = edge.output.rpartition(".")[2], edge.input.rpartition(".")[2]
-                    endpoint = reader.find_endpoint(edge.input, edge.output) or source.find_endpoint(edge.output)
+            for source, output in self._find_parts(edge.output, is_output=True):
+                for reader, part in self._find_parts(edge.input, is_output=False, source_id=edge.output):
+                    endpoint = next(iter(reader.find_endpoints(part, edge.output)), None)
+                    endpoint = endpoint or next(iter(source.find_endpoints(output)), None)
                     properties = _list_topic_properties(endpoint)
                     if reader is source:
-                        source.join_inside(edge.output, edge.input, f"{output}_to_{name}", properties)
+                        source.join_inside(output, part, properties)
                         continue
                     latency = latencies.get((edge.output, edge.input, source.node.id, reader.node.id))
                     if latency:
                         properties.append(make_property("Latency", write_range(*latency)))
-                    self._join(source, reader, edge.output, edge.input, properties)
+                    self._join((source, output), (reader, part), properties)
+
+    def _find_parts(
+        self, port_id: str, *, is_output: bool, source_id: str = ""
+    ) -> Iterable[tuple[Process, PortPart]]:
+        for process in self._processes.values():
+            part = process.find_part(port_id, is_output=is_output, source_id=source_id)
+            if part is not None:
+                yield process, part
 
     def _join(
-        self, source: Process, reader: Process, output_id: str, input_id: str, properties: list[AadlProperty]
+        self, source: tuple[Process, PortPart], reader: tuple[Process, PortPart], properties: list[AadlProperty]
     ) -> None:
-        is_call = "subprogram" in source.describe(output_id)
-        kind = "subprogram access" if is_call else "port"
+        (sender, output), (receiver, part) = source, reader
         ends = (
-            f"{source.name_in_system}.{source.features[output_id]}",
-            f"{reader.name_in_system}.{reader.features[input_id]}",
+            f"{sender.name_in_system}.{sender.features[output.key]}",
+            f"{receiver.name_in_system}.{receiver.features[part.key]}",
         )
-        name = self._names.take_name(f"{source.name}_{source.features[output_id]}_to_{reader.name}")
-        self._connection_names[source.node.id, output_id, reader.node.id, input_id] = name
-        self._connections.append(make_item(name, f"{kind} {ends[0]} -> {ends[1]}", properties))
-        self._bind_connection(name, source, reader, is_call=is_call)
+        name = self._names.take_name(f"{sender.name}_{sender.features[output.key]}_to_{receiver.name}")
+        self._connection_names[sender.node.id, output.port.id, receiver.node.id, part.port.id] = name
+        self._connections.append(make_item(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties))
+        self._bind_connection(name, sender, receiver, is_call=output.flow != "topic")
 
     def _bind_connection(self, name: str, source: Process, reader: Process, *, is_call: bool) -> None:
         """Bind a connection to the link between two computers where there is exactly one, else to ROS's own."""
@@ -225,9 +235,6 @@ class _System:
                 self._subcomponents.append(make_item(bus, f"virtual bus ros::{kind}"))
             bus = self.platform.names["bus", kind]
         self._bound.setdefault(bus, []).append(name)
-
-    def _list_processes(self, port_id: str) -> list[Process]:
-        return [each for each in self._processes.values() if port_id in each.features]
 
     def _join_tf(self) -> None:
         users = [process for process in self._processes.values() if process.uses_tf]
@@ -262,13 +269,23 @@ class _System:
 
         results = bound_all_chains(self._analysis, self._architecture)
         writer = FlowWriter(self._architecture, self._analysis, self._processes)
-        flows = []
+        flows, written = [], dict[str, Chain]()
         for chain in self._architecture.chains.values():
             flow = writer.write_chain(chain, results[chain.id], self._connection_names, self._names)
             if isinstance(flow, str):
                 self.comments.append(f"The chain {chain.id} is no end to end flow here: {flow}")
             else:
                 flows.append(flow)
+                written[flow["name"]] = chain
+        for name, texts in (
+            ("Titles", {key: chain.title for key, chain in written.items() if chain.title != title_from_id(key)}),
+            ("Ways", {key: ", ".join(each.id for each in chain.through) for key, chain in written.items()}),
+            ("Ids", {key: chain.id for key, chain in written.items() if chain.id != key}),
+        ):
+            if texts:
+                value = write_texts(f"{key}: {text}" for key, text in texts.items())
+                # Ocarina takes no property of another set at an end to end flow itself.
+                self._properties.append(make_property(f"archgen::Flow_{name}", value))
         return flows
 
 

@@ -74,6 +74,8 @@ def write_texts(texts: Iterable[str]) -> str:
 
 def write_duration(duration: Fraction, *, round_up: bool = False) -> str:
     """Return a duration (ns) in the largest unit in which it is whole; what is no whole ps is rounded."""
+    if not duration:
+        return "0 ns"
     for unit, factor in _UNITS:
         if duration % factor == 0:
             return f"{duration / factor} {unit}"
