@@ -18,7 +18,6 @@ from archgen.views.generation.aadl_words import (
     make_classifier,
     make_duration_property,
     make_item,
-    make_named_properties,
     make_property,
     make_text_properties,
     write_duration,

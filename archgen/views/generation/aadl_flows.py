@@ -69,9 +69,7 @@ class FlowWriter:
     def _node_of(self, term: ChainTerm) -> str:
         return self._analysis.system.activities[term.activity].node
 
-    def _split_terms(
-        self, terms: Sequence[ChainTerm]
-    ) -> list[tuple[list[ChainTerm], _Entry | None, Arc | None]] | str:
+    def _split_terms(self, terms: Sequence[ChainTerm]) -> list[tuple[list[ChainTerm], _Entry | None, Arc | None]] | str:
         """Return the terms by process, each with how the chain comes in and goes out."""
         parts: list[tuple[list[ChainTerm], _Entry | None, Arc | None]] = [([terms[0]], None, None)]
         for before, term in pairwise(terms):
@@ -95,9 +93,7 @@ class FlowWriter:
         ]
         return next(iter(arcs), None)
 
-    def _write_flow(
-        self, process: Process, terms: Sequence[ChainTerm], entry: Arc | None, leave: Arc | None
-    ) -> str:
+    def _write_flow(self, process: Process, terms: Sequence[ChainTerm], entry: Arc | None, leave: Arc | None) -> str:
         """Return the name of a flow through a process: waiting to be read, and what its threads take to answer."""
         ends = []
         if entry:
@@ -125,7 +121,9 @@ class FlowWriter:
                     return []
                 longest += value.value
         shortest = sum((self._find_best(term) for term in terms), Fraction(0))
-        return [make_property("Latency", write_range(min(shortest, longest), longest))] if can_be_written(longest) else []
+        return (
+            [make_property("Latency", write_range(min(shortest, longest), longest))] if can_be_written(longest) else []
+        )
 
     def _find_best(self, term: ChainTerm) -> Fraction:
         response = self._analysis.responses.get(term.activity)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping
 from fractions import Fraction
 from typing import Any
@@ -18,6 +17,7 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
+    write_duration,
     write_range,
 )
 from archgen.views.generation.generation_context import write_place
@@ -27,7 +27,6 @@ _SCHEDULING: Mapping[str, str] = {
     "edf": "EARLIEST_DEADLINE_FIRST_PROTOCOL",
     "round_robin": "ROUND_ROBIN_PROTOCOL",
 }
-_PICOSECONDS = 10**12
 
 
 class Platform:
@@ -84,8 +83,8 @@ class Platform:
             lowest = link.best.value if link.best else Fraction(0)
             properties.append(make_property("Latency", write_range(lowest, link.worst.value)))
         if link.bandwidth and link.bandwidth.value and not is_virtual:
-            per_byte = math.ceil(Fraction(8 * _PICOSECONDS) / link.bandwidth.value)
-            value = f"[Fixed => 0 ns .. 0 ns; PerByte => {per_byte} ps .. {per_byte} ps;]"
+            per_byte = write_duration(Fraction(8 * 10**9) / link.bandwidth.value, round_up=True)
+            value = f"[Fixed => 0 ns .. 0 ns; PerByte => {per_byte} .. {per_byte};]"
             properties.append(make_property("Transmission_Time", value))
         properties += make_text_properties(
             bandwidth=str(link.bandwidth) if link.bandwidth else None, protocol=link.protocol
@@ -93,7 +92,10 @@ class Platform:
         category = "virtual bus" if is_virtual else "bus"
         self._buses[link.id] = f"{category} access {name}"
         self._add(
-            "link", category, link.id, make_classifier(category, name, properties=properties, place=write_place(link.at))
+            "link",
+            category,
+            link.id,
+            make_classifier(category, name, properties=properties, place=write_place(link.at)),
         )
 
     def _make_accesses(self, links: Collection[Link], names: NameSpace) -> list[dict[str, Any]]:
@@ -113,7 +115,7 @@ class Platform:
         name = self._classifier_names.take_name(host.id)
         accesses = self._make_accesses(links, NameSpace())
         properties = make_named_properties(name, host.id, host.title)
-        if host.scheduling in _SCHEDULING:
+        if host.scheduling and host.scheduling in _SCHEDULING:
             properties.append(make_property("Scheduling_Protocol", f"({_SCHEDULING[host.scheduling]})"))
         elif host.scheduling:
             properties += make_text_properties(scheduling=host.scheduling)
@@ -132,12 +134,12 @@ class Platform:
         properties += make_text_properties(container=container.id, scheduling=container.scheduling)
         if container.threads is not None:
             properties.append(make_property("archgen::Threads", str(container.threads)))
-        classifier = make_classifier(
-            "virtual processor", name, properties=properties, place=write_place(container.at)
-        )
+        classifier = make_classifier("virtual processor", name, properties=properties, place=write_place(container.at))
         own_name = self._add("container", "virtual processor", container.id, classifier)
         self.properties.append(
-            make_property("Actual_Processor_Binding", f"(reference ({self.names['host', container.host or '']}))", own_name)
+            make_property(
+                "Actual_Processor_Binding", f"(reference ({self.names['host', container.host or '']}))", own_name
+            )
         )
 
     def _add_device(self, architecture: Architecture, component_id: str, links: Collection[Link]) -> None:

@@ -93,8 +93,10 @@ class Process:
         for endpoint in self._endpoints:
             if endpoint.port != part.port.id or endpoint.use not in uses:
                 continue
-            if part.is_output or not endpoint.sources or any(
-                part.reads(each) and source_id in {"", each} for each in endpoint.sources
+            if (
+                part.is_output
+                or not endpoint.sources
+                or any(part.reads(each) and source_id in {"", each} for each in endpoint.sources)
             ):
                 yield endpoint
 

@@ -133,7 +133,10 @@ class TypeBook:
         properties = [
             *make_named_properties(name, field.name),
             *make_text_properties(
-                field_type=None if is_plain else field.type, default_value=default, unit_name=field.unit, description=field.comment
+                field_type=None if is_plain else field.type,
+                default_value=default,
+                unit_name=field.unit,
+                description=field.comment,
             ),
         ]
         return make_item(name, f"data {classifier}{field.array if is_fixed else ''}", properties)

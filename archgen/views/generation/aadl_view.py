@@ -68,9 +68,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     system.write()
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
-        _make_package(
-            names["nodes"], [each for process in processes.values() for each in process.make_classifiers()]
-        ),
+        _make_package(names["nodes"], [each for process in processes.values() for each in process.make_classifiers()]),
         _make_package(names["hosts"], system.platform.classifiers),
         _make_package(names["system"], system.classifiers, system.comments),
     ]
@@ -94,9 +92,7 @@ def _find_flow(architecture: Architecture, type_name: str) -> str:
     return flow_of_port(Output("", "", "", type_name), architecture.types[type_name])
 
 
-def _make_package(
-    name: str, classifiers: list[dict[str, Any]], comments: Iterable[str] = ()
-) -> dict[str, Any]:
+def _make_package(name: str, classifiers: list[dict[str, Any]], comments: Iterable[str] = ()) -> dict[str, Any]:
     return {
         "name": name,
         "path": f"aadl/{name}.aadl",
@@ -197,9 +193,7 @@ class _System:
                         properties.append(make_property("Latency", write_range(*latency)))
                     self._join((source, output), (reader, part), properties)
 
-    def _find_parts(
-        self, port_id: str, *, is_output: bool, source_id: str = ""
-    ) -> Iterable[tuple[Process, PortPart]]:
+    def _find_parts(self, port_id: str, *, is_output: bool, source_id: str = "") -> Iterable[tuple[Process, PortPart]]:
         for process in self._processes.values():
             part = process.find_part(port_id, is_output=is_output, source_id=source_id)
             if part is not None:
@@ -243,9 +237,7 @@ class _System:
             self._subcomponents.append(make_item(name, "data ros::tf"))
             for process in users:
                 own_name = self._names.take_name(f"{process.name}_tf")
-                self._connections.append(
-                    make_item(own_name, f"data access {name} -> {process.name_in_system}.tf")
-                )
+                self._connections.append(make_item(own_name, f"data access {name} -> {process.name_in_system}.tf"))
 
     def _bind_processes(self) -> None:
         """Bind processes to the containers that load them, else to their hosts."""
