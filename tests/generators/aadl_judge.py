@@ -30,7 +30,7 @@ def split_tokens(text: str) -> list[str]:
     tokens, position = [], 0
     while position < len(text):
         match = _TOKEN.match(text, position)
-        assert match, f"no token: {text[position : position + 60]!r}"
+        assert match, f"no word: {text[position : position + 60]!r}"
         if match.lastgroup:
             tokens.append(match[0])
         position = match.end()
@@ -61,8 +61,8 @@ def read_package(text: str) -> tuple[str, list[str], dict[str, Classifier]]:
 
 def _find_end(tokens: list[str]) -> int:
     """Return where a classifier ends: behind `end NAME;`."""
-    for index, token in enumerate(tokens):
-        if token == "end" and tokens[index + 1] != "to" and tokens[index - 1] != "to":
+    for index, word in enumerate(tokens):
+        if word == "end" and tokens[index + 1] != "to" and tokens[index - 1] != "to":
             return tokens.index(";", index) + 1
     raise AssertionError(tokens[:5])
 
@@ -99,19 +99,19 @@ def _split_sections(tokens: list[str]) -> Iterator[tuple[str, list[tuple[str, li
     assert not tokens or tokens[0] in _SECTIONS, tokens[:5]
     title, item, depth = "", list[str](), 0
     items: list[tuple[str, list[str]]] = []
-    for token in tokens:
-        if not item and token in _SECTIONS and depth == 0:
+    for word in tokens:
+        if not item and word in _SECTIONS and depth == 0:
             if title:
-                assert _SECTIONS.index(title) < _SECTIONS.index(token)
+                assert _SECTIONS.index(title) < _SECTIONS.index(word)
                 yield title, items
-            title, items = token, []
+            title, items = word, []
             continue
-        depth += (token in "({[") - (token in ")}]")
-        if token == ";" and depth == 0:
+        depth += (word in "({[") - (word in ")}]")
+        if word == ";" and depth == 0:
             items.append((item[0], item))
             item = []
         else:
-            item.append(token)
+            item.append(word)
     assert not item, item
     if title:
         yield title, items
@@ -159,27 +159,27 @@ def _judge_classifier(
     packages: dict[str, dict[str, Classifier]], units: dict[str, set[str]], package: str, classifier: Classifier
 ) -> None:
     names: set[str] = set()
-    for title, items in classifier.sections.items():
-        if title == "properties":
-            continue
-        for name, tokens in items:
+    for title in ("prototypes", "features", "subcomponents", "connections", "flows"):
+        for name, tokens in classifier.sections.get(title, ()):
             assert name.lower() not in AADL_KEYWORDS, name
             if "refined" not in tokens:
                 assert name.lower() not in names, f"{classifier.name} has two {name}"
             names.add(name.lower())
-            words = [each for each in tokens if each not in {"->"}]
-            if title == "connections":
-                ends = _list_ends(tokens)
-                assert len(ends) == 2, words
-                for end in ends:
-                    assert find_member(packages, package, classifier, end), (classifier.name, end)
-    for _, items in classifier.sections.items():
+    for _, tokens in classifier.sections.get("connections", ()):
+        for end in _list_ends(tokens):
+            assert find_member(packages, package, classifier, end), (classifier.name, end)
+    for items in classifier.sections.values():
         for _, tokens in items:
-            for index, token in enumerate(tokens):
-                if token == "::" and tokens[index + 1] and tokens[index - 1].lower() in units:
-                    unit, word = tokens[index - 1].lower(), tokens[index + 1]
-                    known = units[unit] or {each.name.partition(".")[0] for each in packages[unit].values()}
-                    assert word in known, f"{unit}::{word}"
+            _judge_names(packages, units, tokens)
+
+
+def _judge_names(packages: dict[str, dict[str, Classifier]], units: dict[str, set[str]], tokens: list[str]) -> None:
+    """Check that what is named of another package or property set is there."""
+    for index, word in enumerate(tokens):
+        if word == "::" and tokens[index - 1].lower() in units:
+            unit, named = tokens[index - 1].lower(), tokens[index + 1]
+            known = units[unit] or {each.name.partition(".")[0] for each in packages[unit].values()}
+            assert named in known, f"{unit}::{named}"
 
 
 def _list_ends(tokens: list[str]) -> list[str]:

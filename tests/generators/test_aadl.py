@@ -11,7 +11,7 @@ import pytest
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import select_elements
-from archgen.products.workspace_product import WorkspaceRequest, write_workspace
+from archgen.products.workspace_product import write_workspace
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.views.generation.aadl_view import make_view
@@ -72,8 +72,8 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> CheckedProject:
     return checked_project
 
 
-def write_files(project: CheckedProject, folder: Path, options: OutputOptions = OutputOptions()) -> dict[str, str]:
-    result = write_workspace(project, options, "aadl", folder, WorkspaceRequest())
+def write_files(project: CheckedProject, folder: Path, options: OutputOptions | None = None) -> dict[str, str]:
+    result = write_workspace(project, options or OutputOptions(), "aadl", folder)
     assert result.findings == ()
     return {path: data.decode() for path, data in contents(folder).items() if path.endswith(".aadl")}
 

@@ -127,7 +127,9 @@ def make_item(name: str, text: str, properties: Iterable[AadlProperty] = ()) -> 
 def make_classifier(category: str, name: str, **sections: Any) -> dict[str, Any]:  # noqa: ANN401 - sections differ
     """Return a type or an implementation with its sections, empty where they are not given."""
     empty: dict[str, Any] = {
-        "extends": "", "comment": "", "place": "",
+        "extends": "",
+        "comment": "",
+        "place": "",
         **{key: [] for key in ("features", "subcomponents", "connections", "flows", "properties")},
     }
     return {"category": category, "name": name, **empty, **sections}
