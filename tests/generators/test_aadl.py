@@ -38,7 +38,16 @@ types:
 groups:
   g:
     components:
-      talker: {role: source, inputs: {}, outputs: {chatter: Chat}}
+      talker:
+        role: source
+        inputs: {}
+        outputs: {chatter: Chat}
+        hints:
+          aadl:
+            internal_state: {schema: talker.schema.json}
+            threads: {publisher: {functions: {function: {source_text: [talker.h], source_name: talk}}}}
+            access: {tf: {kind: requires data access, type: "ros::tf"}}
+            source_text: [talker.json]
       listener: {role: sink, inputs: {chatter: {from: [talker.chatter, access.data]}}, outputs: {}}
       access: {inputs: {end: {from: talker.chatter}}, outputs: {data: chat, end_x: Chat}}
       relay: {timing: {trigger: any, wcet: 1 ms}, role: filter, inputs: {in: {from: talker.chatter}}, outputs: {out: Chat}}
@@ -58,7 +67,7 @@ nodes:
     host: pc
 hosts: {pc: {cores: 4, scheduling: edf}, laptop: {}}
 containers: {box: {host: pc, threads: 2}}
-links: {lan: {connects: [pc, laptop], bandwidth: 100 Mbit/s, latency: {best: 100 us, worst: 2 ms}}}
+links: {lan: {hints: {aadl: {category: bus}}, connects: [pc, laptop], bandwidth: 100 Mbit/s, latency: {best: 100 us, worst: 2 ms}}}
 chains: {heard: {through: [talker, listener], deadline: 50 ms}, inside: {through: [talker, relay]}}
 """
 
@@ -160,9 +169,25 @@ def test_computers_containers_and_links(lab: CheckedProject, tmp_path: Path) -> 
     assert "Actual_Connection_Binding => (reference (lan)) applies to talker_chatter_to_listener" in system
 
 
+def test_what_was_imported_from_aadl_goes_back(lab: CheckedProject, tmp_path: Path) -> None:
+    files = write_files(lab, tmp_path)
+    nodes = files["aadl/lab_nodes.aadl"]
+    assert 'Source_Text => ("talker.schema.json") applies to internal_state;' in nodes
+    assert 'Source_Text => ("talker.h") applies to talker.function;' in nodes
+    assert 'Source_Name => "talk" applies to talker.function;' in nodes
+    assert 'Source_Text => ("talker.json");' in nodes
+    assert "talker_tf: data access tf -> talker.tf;" in files["aadl/lab.aadl"]
+
+
 def read_latency(tokens: list[str], name: str) -> Fraction:
     """Return the upper end of a range of durations, in ns."""
-    units = {"sec": 10**9, "ms": 10**6, "us": 10**3, "ns": 1, "ps": Fraction(1, 1000)}
+    units = {
+        "sec": Fraction(10**9),
+        "ms": Fraction(10**6),
+        "us": Fraction(1000),
+        "ns": Fraction(1),
+        "ps": Fraction(1, 1000),
+    }
     start = tokens.index("..", tokens.index(name))
     return Fraction(tokens[start + 1]) * units[tokens[start + 2]]
 
