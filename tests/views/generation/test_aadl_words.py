@@ -31,7 +31,7 @@ from archgen.views.generation.aadl_words import (
         ("end", "end_x"),
         ("Flow", "Flow_x"),
         ("Höhe", "Hoehe"),
-        ("дом", "x_d94f49"),
+        ("дом", "x_f5b3d7"),
     ],
 )
 def test_names(name: str, expected: str) -> None:
