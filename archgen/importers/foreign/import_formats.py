@@ -38,6 +38,12 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
     known.name: known
     for known in (
         ImportFormat(REQIF, "requirements of Doors, Polarion and others (.reqif, .reqifz)", (".reqif", ".reqifz"), ""),
+        ImportFormat(
+            "launch",
+            "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
+            (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
+            "archgen.importers.launch.launch_import:read_launch",
+        ),
     )
 }
 
