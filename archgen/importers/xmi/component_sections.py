@@ -186,7 +186,9 @@ class ComponentSections:
                 inputs[port.input_id] = port_type | _write_sources(sources) | ({} if port.is_output else texts | hints)
             if port.is_output:
                 given = list_inner_references(self._wiring, facts, port)
-                outputs[port.output_id] = (port_type if port.type_name or not given else {}) | _write_sources(given) | texts | hints
+                outputs[port.output_id] = (
+                    (port_type if port.type_name or not given else {}) | _write_sources(given) | texts | hints
+                )
         return _leave_out_empty(inputs=inputs, outputs=outputs)
 
     def _write_instance_ports(self, facts: ClassFacts) -> dict[str, object]:
