@@ -1,0 +1,145 @@
+"""Go through all instances of a root system: programs, topics, hosts, links."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, map_node_ports, name_use_section
+from archgen.importers.aadl.element_hints import keep_sources
+from archgen.importers.aadl.model_roots import ModelRoots
+from archgen.importers.aadl.property_values import Scope, read_text
+from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, drill
+from archgen.importers.aadl.structures import Structure, StructuredPart
+from archgen.model.element_ids import make_id, make_unique_id
+
+MAX_INSTANCES = 50_000
+
+
+class TooManyInstancesError(Exception):
+    """A root has more instances than anybody wants to read."""
+
+
+def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
+    """Find the processes and devices of a root, and the names of their topics."""
+    _find_topics(system, system.structure, system.scope, ())
+    for frame in system.frames:
+        if frame.path:
+            _find_topics(system, frame.structure, frame.scope, frame.path)
+        for part in frame.structure.parts.values():
+            if part.id in frame.bodies:
+                _walk(system, roots, part, frame.scope, (frame.group_id,), frame.path, is_of_type=False)
+
+
+def _walk(
+    system: LaunchedSystem,
+    roots: ModelRoots,
+    part: StructuredPart,
+    scope_around: Scope,
+    ids: tuple[str, ...],
+    path: Path,
+    *,
+    is_of_type: bool,
+) -> None:
+    structure = part.structure
+    if structure is None:
+        return
+    scope = scope_around.go_into(part.part, structure.resolved)
+    ids, path = (*ids, part.id), (*path, part.name)
+    is_of_type = is_of_type or bool(roots.find_type_id(structure))
+    system.instances[path] = Instance(ids, path, structure, scope, is_of_type)
+    if len(system.instances) > MAX_INSTANCES:
+        raise TooManyInstancesError
+    if structure.is_node:
+        return
+    _find_topics(system, structure, scope, path)
+    for inner in structure.parts.values():
+        _walk(system, roots, inner, scope, ids, path, is_of_type=is_of_type)
+
+
+def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, path: Path) -> None:
+    for wire in structure.wires:
+        if not wire.connection.name:
+            continue
+        name = read_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
+        if not name:
+            continue
+        for end in (wire.producer, wire.consumer):
+            for leaf_path, port in drill(end.part, end, (*path, end.part.name)) if end.part else ():
+                topics = system.topics.setdefault((leaf_path, port.is_input, port.id), [])
+                if name not in topics:
+                    topics.append(name)
+
+
+class NodeWriter:
+    """Writes what is known of each program: a node, or `node` at the composed component of its threads."""
+
+    def __init__(self, groups: dict[str, Body], builder: ComponentBuilder) -> None:
+        """Write nodes of components in `groups`."""
+        self.nodes: dict[str, Body] = {}
+        self._groups, self._builder = groups, builder
+
+    def add_nodes(self, system: LaunchedSystem, hosts: dict[Path, str]) -> None:
+        """Write the programs of a root; `hosts` are those of its instances."""
+        fed = _find_fed_ports(system)
+        for instance in system.instances.values():
+            if not instance.structure.is_node:
+                continue
+            body = self._describe_node(system, instance, fed)
+            if host := hosts.get(instance.path):
+                body["host"] = host
+            if instance.structure.parts:
+                self._reach_component(instance.ids)["node"] = {"whole": True, **body}
+                continue
+            wanted = read_text(instance.scope.value((), "archgen::node")) or instance.ids[-1]
+            if wanted in self.nodes:
+                wanted = "_".join(instance.ids)
+            node_id = make_unique_id(make_id(wanted, "node"), self.nodes.keys())
+            self.nodes[node_id] = {"implements": ".".join(instance.ids), **body}
+
+    def _reach_component(self, ids: tuple[str, ...]) -> Body:
+        body = self._groups[ids[0]]
+        for element_id in ids[1:]:
+            body = body.setdefault("components", {}).setdefault(element_id, {})
+        return body
+
+    def _describe_node(
+        self, system: LaunchedSystem, instance: Instance, fed: set[tuple[Path, bool, str]]
+    ) -> Body:
+        scope = instance.scope
+        default_uses = map_node_ports(instance.structure, scope, is_type=False)
+        written_uses = map_node_ports(instance.structure, scope.only_around(), False) if instance.is_of_type else default_uses
+        body: Body = {}
+        for port in instance.structure.ports.ports:
+            section = name_use_section(port.is_input, port.is_call)
+            use = dict(written_uses.get(section, {}).get(port.id, {}))
+            default_name = default_uses.get(section, {}).get(port.id, {}).get("own_name")
+            key = "name" if port.is_call else "topic"
+            use.pop("own_name", None)
+            topics = system.topics.get((instance.path, port.is_input, port.id), [])
+            if topics:
+                use[key] = topics[0] if len(topics) == 1 or port.is_call else topics
+                if default_name and topics != [default_name] and len(topics) == 1:
+                    use["own_name"] = default_name
+            elif default_name and ((instance.path, port.is_input, port.id) in fed and port.is_input):
+                use["own_name"] = default_name
+            elif default_name:
+                use[key] = default_name
+            if use:
+                body.setdefault(section, {})[port.id] = use
+        around = keep_sources(scope.only_around(), ())
+        return {**body, "hints": {"aadl": around}} if around else body
+
+
+def _find_fed_ports(system: LaunchedSystem) -> set[tuple[Path, bool, str]]:
+    """Return the inputs of programs that a wire feeds."""
+    fed: set[tuple[Path, bool, str]] = set()
+    containers: list[tuple[Structure, Path]] = [(system.structure, ())]
+    containers += [(frame.structure, frame.path) for frame in system.frames if frame.path]
+    containers += [(inst.structure, inst.path) for inst in system.instances.values() if not inst.structure.is_node]
+    for structure, path in containers:
+        for wire in structure.wires:
+            end: Any = wire.consumer
+            for leaf_path, port in drill(end.part, end, (*path, end.part.name)) if end.part else ():
+                fed.add((leaf_path, port.is_input, port.id))
+    return fed
