@@ -22,16 +22,36 @@ from archgen.importers.aadl.property_values import Scope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.robot_groups import GroupBuilder
 from archgen.importers.aadl.structures import Structure, StructureFinder
-from archgen.importers.aadl.system_walk import NodeWriter, TooManyInstancesError, find_instances
+from archgen.importers.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
 
 MAX_BYTES = 16_000_000
 _TAKEN_PROPERTIES = frozenset(
-    """dispatch_protocol period deadline dispatch_jitter compute_execution_time priority queue_size source_text source_name
-    actual_processor_binding actual_connection_binding scheduling_protocol latency transmission_time
-    topic_properties::name topic_properties::default_name sei::bandwidthcapacity bus_properties::bandwidth
-    data_model::data_representation data_model::enumerators data_model::element_names data_model::base_type""".split()
+    [
+        "dispatch_protocol",
+        "period",
+        "deadline",
+        "dispatch_jitter",
+        "compute_execution_time",
+        "priority",
+        "queue_size",
+        "source_text",
+        "source_name",
+        "actual_processor_binding",
+        "actual_connection_binding",
+        "scheduling_protocol",
+        "latency",
+        "transmission_time",
+        "topic_properties::name",
+        "topic_properties::default_name",
+        "sei::bandwidthcapacity",
+        "bus_properties::bandwidth",
+        "data_model::data_representation",
+        "data_model::enumerators",
+        "data_model::element_names",
+        "data_model::base_type",
+    ]
 )
 
 
@@ -44,7 +64,9 @@ def read_aadl(files: Sequence[Path]) -> ForeignImport:
         names.add_packages(parsed.packages)
         names.add_property_sets(parsed.property_sets)
     for name, span, first in names.repeated:
-        notes.add_contradiction("duplicate", f"{name} is declared a second time, first in {first}; the first counts", span)
+        notes.add_contradiction(
+            "duplicate", f"{name} is declared a second time, first in {first}; the first counts", span
+        )
     return _ModelImport(names, notes).make_import()
 
 
@@ -53,8 +75,9 @@ def _read_file(file: Path, notes: NoteList) -> ParsedText:
     parsed = parse_text(str(file), text)
     if not parsed.packages and not parsed.property_sets:
         fault = parsed.faults[0] if parsed.faults else None
+        words = "there is no AADL in it: neither a package nor a property set"
         raise ForeignFileError(
-            "there is no AADL in it: neither a package nor a property set",
+            words,
             fault.span if fault else Span.of_file(str(file)),
             "an AADL file begins with `package NAME public`",
         )
@@ -71,17 +94,21 @@ def _decode(file: str, data: bytes, notes: NoteList) -> str:
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
     elif b"\x00" in data:
-        raise ForeignFileError("it is no text", Span.of_file(file), "save it as UTF-8")
+        words = "it is no text"
+        raise ForeignFileError(words, Span.of_file(file), "save it as UTF-8")
     else:
         encoding = "utf-8-sig"
     try:
         return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:
         if encoding == "utf-16":
-            raise ForeignFileError("it is no text in UTF-16", Span.of_file(file), "save it as UTF-8") from None
+            words = "it is no text in UTF-16"
+            raise ForeignFileError(words, Span.of_file(file), "save it as UTF-8") from None
         line = data.count(b"\n", 0, error.start) + 1
         span = Span(file, line, 1, line, 2)
-        notes.add("encoding", "this is no UTF-8; the file is read as windows-1252", span, "save it as UTF-8", fate="noted")
+        notes.add(
+            "encoding", "this is no UTF-8; the file is read as windows-1252", span, "save it as UTF-8", fate="noted"
+        )
         return data.decode("cp1252", "replace").replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -116,9 +143,8 @@ class _ModelImport:
                 chains.add_chains(system)
         except (TooManyPartsError, TooManyInstancesError):
             span = roots.roots[0].resolved.known.classifier.span if roots.roots else Span.of_file("")
-            raise ForeignFileError(
-                "written out, its systems have more than 50,000 parts", span, "import the systems that you need"
-            ) from None
+            words = f"written out, its systems have more than {MAX_INSTANCES:,} parts"
+            raise ForeignFileError(words, span, "import the systems that you need") from None
         for type_id, structure in roots.types.items():
             if base := roots.find_base_id(structure):
                 component_types[type_id] = _subtract_base(component_types[type_id], base, component_types)
@@ -200,8 +226,9 @@ class _ModelImport:
 def _list_associations(known: KnownClassifier) -> list[Property]:
     classifier = known.classifier
     found = list(classifier.properties)
-    for element in (*classifier.features, *classifier.subcomponents, *classifier.connections, *classifier.flows):
-        found += element.properties
+    elements = (classifier.features, classifier.subcomponents, classifier.connections, classifier.flows)
+    for written in elements:
+        found += [association for element in written for association in element.properties]
     return found
 
 
@@ -220,7 +247,9 @@ def _write_whole(body: Body, component_types: Mapping[str, Body]) -> Body:
     base_id = body.get("is")
     if not base_id:
         return body
-    return _add_over(_write_whole(component_types[base_id], component_types), {k: v for k, v in body.items() if k != "is"})
+    return _add_over(
+        _write_whole(component_types[base_id], component_types), {k: v for k, v in body.items() if k != "is"}
+    )
 
 
 def _add_over(base: Body, body: Body) -> Body:

@@ -14,8 +14,10 @@ from archgen.model.port_media import MEDIUM_NAMES
 def name_bus_medium(part: Part) -> str:
     """Return a medium that the name of a bus or of its classifier holds, else the classifier's own name as a word."""
     classifier = part.use.full_name.rpartition("::")[2].partition(".")[0]
-    for name in (classifier, part.written.name):
-        for word in re.findall(r"[a-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()):
+    names: tuple[str, str] = (classifier, part.written.name)
+    for name in names:
+        words: list[str] = re.findall(r"[a-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())
+        for word in words:
             if word in MEDIUM_NAMES and word not in {"ros", "memory", "file"}:
                 return word
     return make_id(classifier or part.written.name, "bus")[:40].strip("_")

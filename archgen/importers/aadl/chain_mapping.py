@@ -40,7 +40,7 @@ class ChainMapper:
             for reference in _name_step(system, structure, ids, step):
                 if not through or through[-1] != reference:
                     through.append(reference)
-        if len(through) < 2:
+        if len(through) <= 1:
             words = f"flow {flow.name} leads through fewer than two components"
             self._notes.add("end to end flow", words, flow.span)
             return

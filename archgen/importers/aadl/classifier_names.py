@@ -9,8 +9,18 @@ from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tree import AadlValue, Classifier, Package, PropertySet
 
 STANDARD_SETS = frozenset(
-    """aadl_project aadl_properties aadl_contribution timing_properties thread_properties communication_properties
-    memory_properties modeling_properties deployment_properties programming_properties""".split()
+    [
+        "aadl_project",
+        "aadl_properties",
+        "aadl_contribution",
+        "timing_properties",
+        "thread_properties",
+        "communication_properties",
+        "memory_properties",
+        "modeling_properties",
+        "deployment_properties",
+        "programming_properties",
+    ]
 )
 """Property sets that every model has: their properties are written with or without them."""
 

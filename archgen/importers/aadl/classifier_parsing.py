@@ -91,36 +91,39 @@ def _parse_sections(cursor: TokenCursor, found: Classifier) -> None:
 
 def _parse_section(cursor: TokenCursor, found: Classifier) -> bool:
     """Parse a section. Return whether one was here; raise AadlSyntaxError for what is none."""
-    if cursor.accept("inverse", "of"):
+    parsers = _list_section_parsers(cursor, found)
+    words = next((words for words in parsers if cursor.accept(*words.split())), "")
+    if words:
+        _parse_list(cursor, parsers[words])
+    elif cursor.accept("inverse", "of"):
         found.inverse_of = cursor.expect_path("a feature group")
-    elif cursor.accept("prototypes"):
-        _parse_list(cursor, lambda: found.prototypes.append(parse_prototype(cursor)))
-    elif cursor.accept("features"):
-        _parse_list(cursor, lambda: found.features.append(parse_feature(cursor)))
-    elif cursor.accept("subcomponents"):
-        _parse_list(cursor, lambda: found.subcomponents.append(parse_subcomponent(cursor)))
-    elif cursor.accept("internal", "features") or cursor.accept("processor", "features"):
-        _parse_list(cursor, cursor.skip_statement)
-    elif cursor.accept("connections"):
-        _parse_list(cursor, lambda: found.connections.append(_parse_connection(cursor)))
-    elif cursor.accept("calls"):
-        _parse_list(cursor, lambda: _parse_call_sequence(cursor, found))
-    elif cursor.accept("flows"):
-        _parse_list(cursor, lambda: _add_flow(cursor, found))
-    elif cursor.accept("requires", "modes") or cursor.accept("modes"):
-        _parse_list(cursor, lambda: _parse_mode(cursor, found))
-    elif cursor.accept("properties"):
-        _parse_list(cursor, lambda: found.properties.append(parse_property(cursor)))
     elif cursor.at("annex"):
         parse_annex(cursor, found.annexes)
     elif at_classifier(cursor) or cursor.at("private") or cursor.at("public"):
         return False
     else:
-        raise cursor.make_error(
+        cursor.fail(
             f"no section of a {found.category} begins with `{cursor.token.text[:40]}`",
             "features, subcomponents, connections, calls, flows, modes, properties and annexes may stand here",
         )
     return True
+
+
+def _list_section_parsers(cursor: TokenCursor, found: Classifier) -> dict[str, Callable[[], None]]:
+    """Return what parses an entry of each section, by the words with which the section begins."""
+    return {
+        "prototypes": lambda: found.prototypes.append(parse_prototype(cursor)),
+        "features": lambda: found.features.append(parse_feature(cursor)),
+        "subcomponents": lambda: found.subcomponents.append(parse_subcomponent(cursor)),
+        "internal features": cursor.skip_statement,
+        "processor features": cursor.skip_statement,
+        "connections": lambda: found.connections.append(_parse_connection(cursor)),
+        "calls": lambda: _parse_call_sequence(cursor, found),
+        "flows": lambda: found.flows.append(_parse_flow(cursor)),
+        "requires modes": lambda: _parse_mode(cursor, found),
+        "modes": lambda: _parse_mode(cursor, found),
+        "properties": lambda: found.properties.append(parse_property(cursor)),
+    }
 
 
 def _parse_list(cursor: TokenCursor, parse_entry: Callable[[], None]) -> None:
@@ -175,7 +178,7 @@ def parse_subcomponent(cursor: TokenCursor) -> Subcomponent:
     refined = cursor.accept("refined", "to")
     category = accept_one_of(cursor, CATEGORIES)
     if not category:
-        raise cursor.make_error("a category is missing here: process, thread, data, device, ...")
+        cursor.fail("a category is missing here: process, thread, data, device, ...")
     found = Subcomponent(name, category, cursor.span_from(start), refined=refined)
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
         # A call may name a processor's subprogram, or one of a data component: `processor.s`.
@@ -210,7 +213,7 @@ def _parse_connection(cursor: TokenCursor) -> Connection:
         refined = cursor.accept("refined", "to")
     kind = accept_one_of(cursor, _CONNECTION_KINDS)
     if not kind:
-        raise cursor.make_error("a kind of connection is missing here: port, data access, feature group, ...")
+        cursor.fail("a kind of connection is missing here: port, data access, feature group, ...")
     found = Connection(name, kind, (), (), cursor.span_from(start), refined=refined)
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
         found.source = parse_contained_path(cursor)
@@ -230,15 +233,13 @@ def _parse_call_sequence(cursor: TokenCursor, found: Classifier) -> None:
         cursor.expect_name("a call sequence")
         cursor.expect(":")
     cursor.expect("{")
-    cursor.parse_entries(lambda: found.calls.append(parse_subcomponent(cursor)), lambda: cursor.at("}") or cursor.at("end"))
+    cursor.parse_entries(
+        lambda: found.calls.append(parse_subcomponent(cursor)), lambda: cursor.at("}") or cursor.at("end")
+    )
     cursor.expect("}")
     parse_property_list(cursor)
     parse_modes(cursor)
     cursor.expect(";")
-
-
-def _add_flow(cursor: TokenCursor, found: Classifier) -> None:
-    found.flows.append(_parse_flow(cursor))
 
 
 def _parse_flow(cursor: TokenCursor) -> Flow:
@@ -251,7 +252,7 @@ def _parse_flow(cursor: TokenCursor) -> Flow:
         cursor.expect("flow")
         kind = accept_one_of(cursor, ("source", "sink", "path"))
         if not kind:
-            raise cursor.make_error("`source`, `sink` or `path` is missing here")
+            cursor.fail("`source`, `sink` or `path` is missing here")
     steps: list[Path] = []
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
         steps.append(parse_contained_path(cursor))
@@ -278,7 +279,7 @@ def _parse_mode(cursor: TokenCursor, found: Classifier) -> None:
     cursor.expect("-[")
     while not cursor.at("]->"):
         if cursor.token.kind == END or cursor.at(";"):
-            raise cursor.make_error("`]->` is missing here")
+            cursor.fail("`]->` is missing here")
         cursor.advance()
     cursor.expect("]->")
     cursor.expect_name("a mode")

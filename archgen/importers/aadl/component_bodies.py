@@ -39,7 +39,7 @@ class ComponentBuilder:
         resolved, ports = structure.resolved, structure.ports
         hints: Body = {"classifier": resolved.known.full_name}
         body: Body = {}
-        inputs, outputs = ports.make_section(True), ports.make_section(False)
+        inputs, outputs = ports.make_section(is_input=True), ports.make_section(is_input=False)
         if structure.parts:
             body["components"] = {part.id: self.build_instance(part, scope) for part in structure.parts.values()}
             hints |= _keep_connection_names(structure, scope)
@@ -149,8 +149,8 @@ def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes
             words = "what a device and programs read alike has no medium of its own"
             notes.add("connection", words, wires[0].connection.span)
             continue
-        words = {find_medium(wire, structure, scope) for wire in wires}
-        reach_port(bodies[part_id], "outputs", port_id)["medium"] = words.pop() if len(words) == 1 else "physical"
+        media = {find_medium(wire, structure, scope) for wire in wires}
+        reach_port(bodies[part_id], "outputs", port_id)["medium"] = media.pop() if len(media) == 1 else "physical"
 
 
 def find_medium(wire: Wire, structure: Structure, scope: Scope) -> str:
@@ -160,7 +160,7 @@ def find_medium(wire: Wire, structure: Structure, scope: Scope) -> str:
     return name_bus_medium(part) if part else "physical"
 
 
-def map_node_ports(structure: Structure, scope: Scope, is_type: bool) -> Body:
+def map_node_ports(structure: Structure, scope: Scope, *, is_type: bool) -> Body:
     """Return what a node calls its topics, and how long its queues are."""
     node: Body = {}
     for port in structure.ports.ports:
@@ -181,7 +181,7 @@ def map_node_ports(structure: Structure, scope: Scope, is_type: bool) -> Body:
     return node
 
 
-def name_use_section(is_input: bool, is_call: bool) -> str:
+def name_use_section(*, is_input: bool, is_call: bool) -> str:
     """Return the key of a node below which a port stands."""
     return _USES[is_input, is_call]
 

@@ -23,6 +23,7 @@ _BASE_TYPES = {
     **{f"unsigned_{size}": f"uint{size}" for size in (8, 16, 32, 64)},
 }
 _SIZELESS_TYPES = {"integer": "int32", "natural": "uint32", "float": "float64"}
+_MAX_ARRAY = 1_000_000
 _BASE_PACKAGES = frozenset({"base_types", "data_model"})
 _KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
 """Data of the library of components: they are hints of who has them, and no types."""
@@ -89,7 +90,10 @@ class DataTypes:
             body = {"message": message, **body}
         self._taken_names.add(name)
         if known.package.name.lower() not in _BASE_PACKAGES:
-            body.setdefault("hints", {"aadl": {}})["aadl"] = {"classifier": known.full_name, **body.get("hints", {}).get("aadl", {})}
+            body.setdefault("hints", {"aadl": {}})["aadl"] = {
+                "classifier": known.full_name,
+                **body.get("hints", {}).get("aadl", {}),
+            }
             self.types[name] = body
         return name
 
@@ -184,7 +188,7 @@ def _write_dimensions(dimensions: tuple[str, ...]) -> str:
     total = 1
     for size in sizes:
         total *= size
-    return f"[{total}]" if 0 < total < 1_000_000 else "[]"
+    return f"[{total}]" if 0 < total < _MAX_ARRAY else "[]"
 
 
 def _fold_field_name(name: str) -> str:

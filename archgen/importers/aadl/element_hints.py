@@ -39,7 +39,8 @@ def _is_library_function(part: Part) -> bool:
 
 def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[str, Any]:
     """Return the hints of what stands in a component beside its parts."""
-    resolved, hints = structure.resolved, {}
+    resolved = structure.resolved
+    hints: dict[str, Any] = {}
     if resolved.annexes:
         hints["annexes"] = list(resolved.annexes)
     if structure.ports.accesses:
@@ -83,7 +84,9 @@ def _keep_data(structure: Structure, scope: Scope, notes: NoteList) -> dict[str,
     for name, part in structure.resolved.parts.items():
         classifier = part.use.full_name
         if part.category == "data" and is_internal_state(part):
-            state = {} if classifier.lower() in {"cnc::internal_state", "internal_state"} else {"classifier": classifier}
+            state = (
+                {} if classifier.lower() in {"cnc::internal_state", "internal_state"} else {"classifier": classifier}
+            )
             association = scope.find((name,), "source_text")
             if association and (texts := read_texts(association.value)):
                 state = {"schema": texts[0], **state}
@@ -109,7 +112,9 @@ def check_schema_file(name: str, association: Property, notes: NoteList) -> None
     try:
         target = (folder / name).resolve()
         if not target.is_relative_to(folder):
-            words = f"the schema `{name}` of the internal state is not beside this file, so nobody looked whether it exists"
+            words = (
+                f"the schema `{name}` of the internal state is not beside this file, so nobody looked whether it exists"
+            )
         elif not target.is_file():
             words = f"there is no schema `{name}` of the internal state"
         else:

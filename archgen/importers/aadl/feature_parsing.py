@@ -70,7 +70,7 @@ def _parse_prototype_category(cursor: TokenCursor) -> str:
         return accept_one_of(cursor, ACCESSES)
     category = accept_one_of(cursor, ("feature group", "feature", *CATEGORIES))
     if not category:
-        raise cursor.make_error("a category is missing here: data, subprogram, thread, ...")
+        cursor.fail("a category is missing here: data, subprogram, thread, ...")
     return category
 
 
@@ -122,9 +122,11 @@ def parse_feature(cursor: TokenCursor) -> Feature:
     if feature.kind == "port group":
         feature.kind = "feature group"
     if not feature.kind:
-        raise cursor.make_error(f"no feature begins so: {' or '.join(f'`{kind}`' for kind in kinds if kind != 'port group')} is missing here")
+        cursor.fail(
+            f"no feature begins so: {' or '.join(f'`{kind}`' for kind in kinds if kind != 'port group')} is missing here"
+        )
     if feature.kind.endswith("port") and not feature.direction:
-        raise cursor.make_error("a port has a direction: `in`, `out` or `in out`", "write it before the kind of the port")
+        cursor.fail("a port has a direction: `in`, `out` or `in out`", "write it before the kind of the port")
     _parse_feature_type(cursor, feature)
     feature.dimensions = parse_dimensions(cursor)
     feature.properties = parse_property_list(cursor)
@@ -153,7 +155,7 @@ def parse_dimensions(cursor: TokenCursor) -> tuple[str, ...]:
         text = ""
         while not cursor.accept("]"):
             if cursor.token.kind not in {"name", "number"} and not cursor.at("::"):
-                raise cursor.make_error("`]` is missing here")
+                cursor.fail("`]` is missing here")
             text += cursor.advance().text
         dimensions.append(text)
     return tuple(dimensions)

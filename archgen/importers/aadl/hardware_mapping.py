@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Mapping
 
-from archgen.importers.aadl.aadl_tree import AadlNumber, AadlRecord, Path
-from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
+from archgen.importers.aadl.aadl_tree import AadlNumber, AadlRange, AadlRecord, AadlValue, Path
+from archgen.importers.aadl.bus_names import name_bus_medium
 from archgen.importers.aadl.component_bodies import Body
 from archgen.importers.aadl.element_hints import keep_sources
+from archgen.importers.aadl.hardware_tree import HardwareFinder, HardwarePart, HardwareTree
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import (
     Scope,
@@ -19,14 +19,12 @@ from archgen.importers.aadl.property_values import (
     read_word,
     write_number,
 )
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.robot_groups import LaunchedSystem, drill
-from archgen.importers.aadl.structures import HARDWARE_CATEGORIES
-from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
+from archgen.importers.aadl.structures import Structure
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.port_media import MEDIUM_NAMES
 
-_PROCESSORS = frozenset({"processor", "virtual processor"})
 _BUSES = frozenset({"bus", "virtual bus"})
 _SCHEDULING = {
     "edf": "edf",
@@ -43,41 +41,6 @@ _SCHEDULING = {
 }
 
 
-@dataclass(slots=True)
-class HardwarePart:
-    """A processor or bus where it stands."""
-
-    part: Part
-    resolved: Resolved | None
-    scope: Scope
-
-
-@dataclass(slots=True)
-class HardwareTree:
-    """All hardware of a root, what is joined by bus accesses, and what is bound to what."""
-
-    parts: dict[Path, HardwarePart] = field(default_factory=dict)
-    joined: dict[Path, Path] = field(default_factory=dict)
-    """A forest: paths of accesses and buses, each with another one that it is joined to."""
-    devices: dict[Path, Path] = field(default_factory=dict)
-    """Accesses of processors and devices, with who has them."""
-    bindings: dict[Path, Path] = field(default_factory=dict)
-    """What is bound to processors, with the processor."""
-    bound_connections: dict[Path, list[tuple[Path, str]]] = field(default_factory=dict)
-    """By bus: the connections bound to it, as where they stand and what they are called."""
-    count: int = 0
-
-    def find_root(self, path: Path) -> Path:
-        """Return what all paths joined to this one have in common."""
-        while self.joined.get(path, path) != path:
-            path = self.joined[path]
-        return path
-
-    def join(self, one: Path, other: Path) -> None:
-        """Join two paths."""
-        self.joined[self.find_root(one)] = self.find_root(other)
-
-
 class HardwareMapper:
     """Makes hosts and links of all roots."""
 
@@ -89,8 +52,9 @@ class HardwareMapper:
 
     def map_system(self, system: LaunchedSystem) -> dict[Path, str]:
         """Add the hosts and links of a root; return the hosts of its programs."""
-        tree = HardwareTree()
-        self._walk(tree, system.structure.resolved, system.scope, ())
+        finder = HardwareFinder(self._resolver, self._notes)
+        finder.walk(system.structure.resolved, system.scope)
+        tree = finder.tree
         host_ids: dict[Path, str] = {}
         for path, hardware in tree.parts.items():
             category = hardware.part.category
@@ -99,58 +63,16 @@ class HardwareMapper:
         hosts = {path: host for path in system.instances if (host := self._find_host(tree, path, host_ids, system))}
         for path, hardware in tree.parts.items():
             if hardware.part.category in _BUSES:
-                self._add_link(tree, path, hardware, system, host_ids, hosts)
+                ends = _list_ends(tree, path, system, host_ids, hosts)
+                self._add_link(hardware, ends, [name for _, name in tree.bound_connections.get(path, [])])
         return hosts
-
-    def _walk(self, tree: HardwareTree, resolved: Resolved, scope: Scope, path: Path) -> None:
-        tree.count += 1
-        if tree.count > MAX_INSTANCES:
-            raise TooManyInstancesError
-        self._add_bindings(tree, resolved, scope, path)
-        for connection in resolved.connections.values():
-            if connection.kind in {"bus access", "virtual bus access"} and connection.source:
-                tree.join(_lower((*path, *connection.source)), _lower((*path, *connection.target)))
-        for name, part in resolved.parts.items():
-            inner = self._resolver.resolve(part.use)
-            inner_path = (*path, name)
-            inner_scope = scope.go_into(part, inner)
-            if part.category in HARDWARE_CATEGORIES and part.category != "memory":
-                tree.parts[inner_path] = HardwarePart(part, inner, inner_scope)
-            if part.category in {"data", "subprogram", "subprogram group", "thread", "memory"} or inner is None:
-                continue
-            if part.category in _PROCESSORS or part.category == "device":
-                for port_name, port in inner.ports.items():
-                    if port.kind in {"bus access", "virtual bus access"}:
-                        tree.devices[(*inner_path, port_name)] = inner_path
-            if len(path) < 40:
-                self._walk(tree, inner, inner_scope, inner_path)
-
-    def _add_bindings(self, tree: HardwareTree, resolved: Resolved, scope: Scope, path: Path) -> None:
-        # What is written farther out was found before, and counts.
-        for (target, name), (association, _) in resolved.properties.items():
-            if name == "actual_processor_binding":
-                scope.used.ids.add(id(association))
-                references = read_references(association.value)
-                if references:
-                    tree.bindings.setdefault((*path, *target), (*path, *references[0]))
-                if len(references) > 1:
-                    words = "of several processors the first is taken"
-                    self._notes.add("Actual_Processor_Binding", words, association.span, fate="noted")
-            elif name == "actual_connection_binding" and target:
-                scope.used.ids.add(id(association))
-                for reference in read_references(association.value)[:1]:
-                    tree.bound_connections.setdefault((*path, *reference), []).append((path, target[-1]))
-        for connection in resolved.connections.values():
-            if connection.properties and (bus := read_bound_path(scope, connection.name)):
-                entry = (path, connection.name.lower())
-                bound = tree.bound_connections.setdefault((*path, *bus), [])
-                if entry not in bound:
-                    bound.append(entry)
 
     def _add_host(self, path: Path, hardware: HardwarePart) -> str:
         name = hardware.part.written.name
         wanted = make_id(name, "host")
-        host_id = make_unique_id(wanted if wanted not in self.hosts else make_id("_".join(path), "host"), self.hosts.keys())
+        host_id = make_unique_id(
+            wanted if wanted not in self.hosts else make_id("_".join(path), "host"), self.hosts.keys()
+        )
         hints: Body = {"name": name} if name != host_id else {}
         if hardware.part.use.name:
             hints["classifier"] = hardware.part.use.full_name
@@ -173,7 +95,9 @@ class HardwareMapper:
     @staticmethod
     def _find_host(tree: HardwareTree, path: Path, host_ids: dict[Path, str], system: LaunchedSystem) -> str:
         """Return the host of an instance: what it, what is around it, or all of its threads are bound to."""
-        bound = next((tree.bindings[path[:size]] for size in range(len(path), -1, -1) if path[:size] in tree.bindings), None)
+        bound = next(
+            (tree.bindings[path[:size]] for size in range(len(path), -1, -1) if path[:size] in tree.bindings), None
+        )
         if bound is None and system.instances[path].structure.is_node:
             inner = {target for source, target in tree.bindings.items() if source[: len(path)] == path}
             bound = inner.pop() if len(inner) == 1 else None
@@ -185,27 +109,10 @@ class HardwareMapper:
             bound = tree.bindings.get(bound) or (below[0] if len(below) == 1 else None)
         return host_ids.get(bound, "") if bound else ""
 
-    def _add_link(
-        self,
-        tree: HardwareTree,
-        path: Path,
-        hardware: HardwarePart,
-        system: LaunchedSystem,
-        host_ids: dict[Path, str],
-        hosts: dict[Path, str],
-    ) -> None:
+    def _add_link(self, hardware: HardwarePart, ends: list[str], connection_names: list[str]) -> None:
         part, scope = hardware.part, hardware.scope
         link_id = make_unique_id(make_id(part.written.name, "link"), self.links.keys())
-        root = tree.find_root(path)
-        ends: dict[str, None] = {}
-        for access, owner in tree.devices.items():
-            if tree.find_root(access) == root:
-                ends |= _name_end(owner, system, host_ids)
-        bound = tree.bound_connections.get(path, [])
-        for place, connection_name in bound if len(ends) < 2 else ():
-            for leaf_path in _list_wired(system, place, connection_name):
-                ends |= {hosts[leaf_path]: None} if leaf_path in hosts else {}
-        body: Body = {"connects": list(ends)} if ends else {}
+        body: Body = {"connects": ends} if ends else {}
         if title := read_text(scope.value((), "archgen::title")):
             body["title"] = title
         medium = name_bus_medium(part)
@@ -218,12 +125,29 @@ class HardwareMapper:
             hints["category"] = part.category
         if carrier := next(iter(read_references(scope.value((), "actual_connection_binding"))), None):
             hints["bound_to"] = ".".join(carrier)
-        if bound:
-            hints["connections"] = [name for _, name in bound]
+        if connection_names:
+            hints["connections"] = connection_names
         self.links[link_id] = {**body, "hints": {"aadl": hints}} if hints else body
 
 
-def _name_end(owner: Path, system: LaunchedSystem, host_ids: dict[Path, str]) -> dict[str, None]:
+def _list_ends(
+    tree: HardwareTree, path: Path, system: LaunchedSystem, host_ids: Mapping[Path, str], hosts: Mapping[Path, str]
+) -> list[str]:
+    """Return the hosts and devices that have access to a bus, or whose connections are bound to it."""
+    ends: dict[str, None] = {}
+    root = tree.find_root(path)
+    for access, owner in tree.devices.items():
+        if tree.find_root(access) == root:
+            ends |= _name_end(owner, system, host_ids)
+    if len(ends) > 1:
+        return list(ends)
+    for place, connection_name in tree.bound_connections.get(path, []):
+        for leaf_path in _list_wired(system, place, connection_name):
+            ends |= {hosts[leaf_path]: None} if leaf_path in hosts else {}
+    return list(ends)
+
+
+def _name_end(owner: Path, system: LaunchedSystem, host_ids: Mapping[Path, str]) -> dict[str, None]:
     if owner in host_ids:
         return {host_ids[owner]: None}
     instance = system.instances.get(owner)
@@ -232,7 +156,7 @@ def _name_end(owner: Path, system: LaunchedSystem, host_ids: dict[Path, str]) ->
 
 def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> list[Path]:
     """Return the processes and devices that a connection joins."""
-    structure: Any = system.structure if not place else None
+    structure: Structure | None = system.structure if not place else None
     if place:
         instance = system.instances.get(place)
         frame = next((frame for frame in system.frames if frame.path == place), None)
@@ -251,7 +175,9 @@ def _read_speed(scope: Scope) -> Body:
     lowest, highest = read_time_range(scope.value((), "latency"))
     if highest:
         body["latency"] = {"best": lowest or highest, "worst": highest}
-    bandwidth = read_bandwidth(scope.value((), "archgen::bandwidth", "sei::bandwidthcapacity", "bus_properties::bandwidth"))
+    bandwidth = read_bandwidth(
+        scope.value((), "archgen::bandwidth", "sei::bandwidthcapacity", "bus_properties::bandwidth")
+    )
     transmission = scope.value((), "transmission_time")
     if bandwidth is None and isinstance(transmission, AadlRecord):
         slowest = next((value for name, value in transmission.fields.items() if name.lower() == "perbyte"), None)
@@ -259,14 +185,10 @@ def _read_speed(scope: Scope) -> Body:
     return {**body, "bandwidth": bandwidth} if bandwidth else body
 
 
-def _read_byte_time(value: Any) -> str | None:
+def _read_byte_time(value: AadlValue | None) -> str | None:
     """Return the bytes a second of the time that a byte takes, the longest of a range."""
-    longest = getattr(value, "high", value)
+    longest = value.high if isinstance(value, AadlRange) else value
     factors = {"ps": 10**12, "ns": 10**9, "us": 10**6, "ms": 10**3, "sec": 1}
     if isinstance(longest, AadlNumber) and longest.value > 0 and longest.unit.lower() in factors:
         return write_number(factors[longest.unit.lower()] / longest.value, "B/s")
     return None
-
-
-def _lower(path: Path) -> Path:
-    return tuple(step.lower() for step in path if step.lower() != "self")

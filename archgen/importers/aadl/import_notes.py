@@ -36,6 +36,8 @@ class NoteList:
         return tuple(
             note
             if count == 1
-            else ImportNote(note.kind, f"{note.message} ({count} places, this is the first)", note.span, note.help_line, note.fate)
+            else ImportNote(
+                note.kind, f"{note.message} ({count} places, this is the first)", note.span, note.help_line, note.fate
+            )
             for note, count in self._notes.values()
         )

@@ -58,25 +58,27 @@ class ModelRoots:
             if known.classifier.category != "system" or not known.classifier.is_implementation:
                 continue
             if known.key not in self._part_keys and known.key not in extended_keys:
-                structure = self._find_structure(known)
-                self.roots.append(structure)
+                self.roots.append(self._find_structure(known))
         for root in self.roots:
             self._count_uses(root)
         for known in known_classifiers:
-            if known.classifier.category not in _TYPE_CATEGORIES:
-                continue
-            is_told_otherwise = known.key in implemented and known.key not in self._part_keys
-            structure = self._find_structure(known)
-            if is_told_otherwise or structure in self.roots or not _has_content(structure):
-                continue
-            if known.key in extended_keys and self._only.get(known.key) is None:
-                self._extended.add(id(structure))
-            if id(structure) not in self._uses:
-                self._uses[id(structure)] = 0
-                self._count_uses(structure)
-                self._used_structures[id(structure)] = structure
+            if known.classifier.category in _TYPE_CATEGORIES:
+                self._add_unused(known, implemented, extended_keys)
         for structure in list(self._used_structures.values()):
             self._name_type(structure)
+
+    def _add_unused(self, known: KnownClassifier, implemented: set[str], extended_keys: set[str]) -> None:
+        """Count what stands in no system: it becomes a component type, too."""
+        structure = self._find_structure(known)
+        is_told_otherwise = known.key in implemented and known.key not in self._part_keys
+        if is_told_otherwise or structure in self.roots or not _has_content(structure):
+            return
+        if known.key in extended_keys and known.key not in self._only:
+            self._extended.add(id(structure))
+        if id(structure) not in self._uses:
+            self._uses[id(structure)] = 0
+            self._count_uses(structure)
+            self._used_structures[id(structure)] = structure
 
     def _find_structure(self, known: KnownClassifier) -> Structure:
         resolved = self._resolver.resolve(Use(known.full_name, known))
@@ -112,7 +114,9 @@ class ModelRoots:
         category = structure.resolved.category
         if category not in _TYPE_CATEGORIES and category != "thread group":
             return
-        wanted = read_text(Scope(self._resolver, UsedProperties(), structure.resolved).value((), "archgen::component_type"))
+        wanted = read_text(
+            Scope(self._resolver, UsedProperties(), structure.resolved).value((), "archgen::component_type")
+        )
         is_reused = self._uses.get(id(structure), 0) != 1 or id(structure) in self._extended
         if not (wanted or is_reused or self._has_reused_base(structure)):
             return

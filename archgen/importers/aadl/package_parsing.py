@@ -41,7 +41,7 @@ def parse_text(file: str, text: str) -> ParsedText:
                 _parse_uses(cursor, Package("", cursor.span_from(cursor.token.offset)))
                 continue
             else:
-                raise cursor.make_error("a package or a property set is missing here")
+                cursor.fail("a package or a property set is missing here")
             is_lost = False
         except AadlSyntaxError as error:
             if not is_lost:
@@ -118,7 +118,7 @@ def _parse_package_entry(cursor: TokenCursor, package: Package) -> None:
     elif at_classifier(cursor):
         package.classifiers.append(parse_classifier(cursor))
     else:
-        raise cursor.make_error(
+        cursor.fail(
             f"nothing in a package begins with `{cursor.token.text[:40]}`",
             "a component type or implementation, a feature group, `with`, `renames`, or `end` may stand here",
         )

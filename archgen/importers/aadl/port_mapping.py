@@ -14,6 +14,7 @@ from archgen.model.element_ids import make_id, make_unique_id
 PORT_KINDS = frozenset({"data port", "event data port", "event port", "feature", "subprogram access"})
 KEPT_ACCESSES = frozenset({"data access", "bus access", "virtual bus access", "subprogram group access"})
 _MAX_GROUP_DEPTH = 10
+_MAX_PORTS = 20_000
 _OPPOSITE = {"in": "out", "out": "in", "requires": "provides", "provides": "requires"}
 
 
@@ -40,7 +41,7 @@ class MappedPorts:
     groups: dict[Path, list[MappedPort]] = field(default_factory=dict)
     """All ports in a feature group, by the group's path."""
 
-    def make_section(self, is_input: bool) -> dict[str, dict[str, Any]]:
+    def make_section(self, *, is_input: bool) -> dict[str, dict[str, Any]]:
         """Return the inputs or the outputs as data of the language."""
         section: dict[str, dict[str, Any]] = {}
         for port in self.ports:
@@ -65,36 +66,40 @@ class PortMapper:
             mapped = MappedPorts()
             used: tuple[set[str], set[str]] = (set(), set())
             for port in resolved.ports.values():
-                self._add_port(mapped, port, (), False, used)
+                self._add_port(mapped, port, (), used, is_inverse=False)
             self._mapped[id(resolved)] = mapped
         return self._mapped[id(resolved)]
 
     def _add_port(
-        self, mapped: MappedPorts, port: Port, prefix: Path, is_inverse: bool, used: tuple[set[str], set[str]]
+        self, mapped: MappedPorts, port: Port, prefix: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
     ) -> list[MappedPort]:
         written = port.written
         path = (*prefix, written.name.lower())
         if port.kind == "feature group":
-            mapped.groups[path] = self._add_group(mapped, port, path, is_inverse != written.inverse, used)
+            mapped.groups[path] = self._add_group(mapped, port, path, used, is_inverse=is_inverse != written.inverse)
             return mapped.groups[path]
         if port.kind in KEPT_ACCESSES:
             access = {"kind": f"{port.direction} {port.kind}"}
             mapped.accesses[".".join(path)] = {**access, **({"type": port.use.full_name} if port.use.name else {})}
             return []
         if port.kind not in PORT_KINDS or not port.direction:
-            words = f"feature {written.name} has no direction" if port.kind in PORT_KINDS else f"{written.name} is no port"
+            words = (
+                f"feature {written.name} has no direction" if port.kind in PORT_KINDS else f"{written.name} is no port"
+            )
             self._notes.add_counted(port.kind, words, written.span)
             return []
         is_call = port.kind == "subprogram access"
-        words = port.direction.split()
+        directions = port.direction.split()
         added = []
-        for word in [_OPPOSITE[word] for word in words] if is_inverse else words:
+        for word in [_OPPOSITE[word] for word in directions] if is_inverse else directions:
             is_input = word in {"in", "requires"}
             wanted = make_id("_".join((*prefix, written.name)), "port")
             port_id = make_unique_id(wanted, used[is_input])
             used[is_input].add(port_id)
             type_name = self._types.name_use(port.use, "srv" if is_call else "msg")
-            added.append(MappedPort(port_id, path, ".".join((*prefix, written.name)), is_input, is_call, port.kind, type_name))
+            added.append(
+                MappedPort(port_id, path, ".".join((*prefix, written.name)), is_input, is_call, port.kind, type_name)
+            )
         if written.dimensions:
             self._notes.add_counted("array of ports", "an array of ports is taken as one", written.span, fate="noted")
         mapped.ports += added
@@ -102,7 +107,7 @@ class PortMapper:
         return added
 
     def _add_group(
-        self, mapped: MappedPorts, port: Port, path: Path, is_inverse: bool, used: tuple[set[str], set[str]]
+        self, mapped: MappedPorts, port: Port, path: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
     ) -> list[MappedPort]:
         resolved = self._resolver.resolve(port.use)
         if resolved is None or len(path) > _MAX_GROUP_DEPTH:
@@ -116,8 +121,12 @@ class PortMapper:
             inner_ports, is_inverse = (inverse.ports if inverse else {}), not is_inverse
         added: list[MappedPort] = []
         for inner in inner_ports.values():
-            if len(mapped.ports) > 20_000:
-                self._notes.add("feature group", "feature groups in one another are more than 20,000 ports", port.written.span)
+            if len(mapped.ports) > _MAX_PORTS:
+                self._notes.add(
+                    "feature group",
+                    f"feature groups in one another are more than {_MAX_PORTS:,} ports",
+                    port.written.span,
+                )
                 break
-            added += self._add_port(mapped, inner, path, is_inverse, used)
+            added += self._add_port(mapped, inner, path, used, is_inverse=is_inverse)
         return added

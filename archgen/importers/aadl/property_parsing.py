@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from archgen.importers.aadl.aadl_tokens import END, Token, read_text
+from archgen.importers.aadl.aadl_tokens import END, read_text
 from archgen.importers.aadl.aadl_tree import (
     AadlLink,
     AadlList,
@@ -21,6 +21,7 @@ from archgen.importers.aadl.aadl_tree import (
 from archgen.importers.aadl.token_cursor import SECTION_WORDS, TokenCursor
 
 _LINK_WORDS = ("reference", "classifier", "compute")
+_VALUE_ENDS = frozenset({",", ";", ")", "]", "}", "applies", "in", "::", ".."})
 _MAX_EXPONENT = 400
 
 
@@ -28,7 +29,9 @@ def parse_property_list(cursor: TokenCursor) -> list[Property]:
     """Parse `{ a => 1; b => 2; }` if it stands here."""
     found: list[Property] = []
     if cursor.accept("{"):
-        cursor.parse_entries(lambda: found.append(parse_property(cursor)), lambda: cursor.at("}") or _at_section(cursor))
+        cursor.parse_entries(
+            lambda: found.append(parse_property(cursor)), lambda: cursor.at("}") or _at_section(cursor)
+        )
         cursor.expect("}")
     return found
 
@@ -82,7 +85,7 @@ def _skip_brackets(cursor: TokenCursor) -> None:
     depth = 1
     while depth:
         if cursor.token.kind == END or cursor.at(";"):
-            raise cursor.make_error("`)` is missing here")
+            cursor.fail("`)` is missing here")
         word = cursor.advance().word
         depth += (word == "(") - (word == ")")
 
@@ -92,14 +95,14 @@ def parse_contained_path(cursor: TokenCursor) -> Path:
     parts: list[str] = []
     while True:
         if cursor.token.kind == "annex" or cursor.at("{"):
-            raise cursor.make_error("elements of annexes are not read")
+            cursor.fail("elements of annexes are not read")
         if cursor.token.kind != "name":
-            raise cursor.make_error(f"`{cursor.token.text}` is no name of an element")
+            cursor.fail(f"`{cursor.token.text}` is no name of an element")
         parts.append(cursor.advance().text)
         while cursor.accept("["):
             while not cursor.accept("]"):
                 if cursor.token.kind not in {"number", "name"} and not cursor.at(".."):
-                    raise cursor.make_error("`]` is missing here")
+                    cursor.fail("`]` is missing here")
                 cursor.advance()
         if not (cursor.accept(".") or cursor.accept("::")):
             return tuple(parts)
@@ -126,17 +129,21 @@ def _parse_single_value(cursor: TokenCursor) -> AadlValue:
         return _parse_list(cursor)
     if cursor.accept("["):
         return _parse_record(cursor)
-    if token.word in _LINK_WORDS and cursor.peek().text == "(":
-        cursor.advance()
-        cursor.expect("(")
-        path = parse_contained_path(cursor) if token.word == "reference" else _parse_classifier_path(cursor)
+    if token.word in _LINK_WORDS and cursor.peek().kind in {"name", "sign"} and cursor.peek().text not in _VALUE_ENDS:
+        return _parse_link(cursor)
+    if token.kind != "name" or token.word in SECTION_WORDS:
+        cursor.fail("a value is missing here")
+    return AadlName(_parse_any_path(cursor))
+
+
+def _parse_link(cursor: TokenCursor) -> AadlLink:
+    """Parse `reference (a.b)`, `classifier (p::c)`, `compute (f)`; AADL's first version has no brackets."""
+    word = cursor.advance().word
+    in_brackets = cursor.accept("(")
+    path = parse_contained_path(cursor) if word == "reference" else _parse_classifier_path(cursor)
+    if in_brackets:
         cursor.expect(")")
-        return AadlLink(token.word, path)
-    if cursor.at("true") or cursor.at("false"):
-        return AadlName(cursor.advance().word)
-    if token.kind == "name" and token.word not in SECTION_WORDS:
-        return AadlName(_parse_any_path(cursor))
-    raise cursor.make_error("a value is missing here")
+    return AadlLink(word, path)
 
 
 def _parse_classifier_path(cursor: TokenCursor) -> Path:
@@ -164,7 +171,7 @@ def _parse_number(cursor: TokenCursor) -> AadlValue:
         # A constant; its sign is not kept, as no property that is taken has one.
         return AadlName(_parse_any_path(cursor))
     if token.kind != "number":
-        raise cursor.make_error("a number is missing here")
+        cursor.fail("a number is missing here")
     value = _read_number(cursor)
     unit = ""
     if cursor.token.kind == "name" and not _is_behind_value(cursor):
@@ -177,28 +184,24 @@ def _is_behind_value(cursor: TokenCursor) -> bool:
 
 
 def _read_number(cursor: TokenCursor) -> Fraction:
-    token = cursor.advance()
-    text = token.text.replace("_", "")
+    number = _make_number(cursor.token.text.replace("_", ""))
+    if number is None:
+        cursor.fail("this is no number that can be read")
+    cursor.advance()
+    return number
+
+
+def _make_number(text: str) -> Fraction | None:
+    """Return the number that a text is, or None where it is none, or larger than anybody needs."""
     base, hash_sign, rest = text.partition("#")
+    digits, _, exponent = rest.partition("#")
     try:
-        if hash_sign:
-            digits, _, exponent = rest.partition("#")
-            power = int(exponent[1:] or 0) if exponent else 0
-            if power > _MAX_EXPONENT:
-                raise ValueError
-            return Fraction(int(digits, int(base)) * int(base) ** power)
-        exponent = text.lower().partition("e")[2]
-        if len(text) > _MAX_EXPONENT or (exponent and abs(int(exponent)) > _MAX_EXPONENT):
-            raise ValueError
-        return Fraction(text)
+        power = int((exponent if hash_sign else text.lower().partition("e")[2]).lstrip("eE") or 0)
+        if abs(power) > _MAX_EXPONENT or len(text) > _MAX_EXPONENT:
+            return None
+        return Fraction(int(digits, int(base)) * int(base) ** power) if hash_sign else Fraction(text)
     except ValueError:
-        raise _make_number_error(cursor, token) from None
-
-
-def _make_number_error(cursor: TokenCursor, token: Token) -> Exception:
-    error = cursor.make_error("this is no number that can be read")
-    error.token = token
-    return error
+        return None
 
 
 def _parse_list(cursor: TokenCursor) -> AadlList:

@@ -35,6 +35,7 @@ _BYTES_A_SECOND = {
     "gbps": "Gbit/s",
 }
 _MAX_CONSTANTS = 20
+_MAX_PLACES = 18
 
 
 @dataclass(slots=True)
@@ -74,7 +75,11 @@ class Scope:
         if part is None:
             connection = resolved.connections.get(path[0]) if len(path) == 1 else None
             port = resolved.ports.get(path[0]) if len(path) == 1 else None
-            flow = (resolved.flows.get((path[0], False)) or resolved.flows.get((path[0], True))) if len(path) == 1 else None
+            flow = (
+                (resolved.flows.get((path[0], False)) or resolved.flows.get((path[0], True)))
+                if len(path) == 1
+                else None
+            )
             written = [*(port.written.properties if port else []), *(connection.properties if connection else [])]
             return self._find_written([*written, *(flow.properties if flow else [])], (), name)
         if found_here := self._find_written(part.written.properties, path[1:], name):
@@ -214,11 +219,11 @@ def read_bandwidth(value: AadlValue | None) -> str | None:
 
 def write_number(number: Fraction, unit: str) -> str | None:
     """Return a number with its unit if the language can write it exactly, else None."""
-    for places in range(19):
+    for places in range(_MAX_PLACES + 1):
         scaled = number * 10**places
         if scaled.denominator == 1:
             whole, rest = divmod(int(scaled), 10**places)
-            if len(str(whole)) > 18:
+            if whole >= 10**_MAX_PLACES:
                 return None
             decimals = f".{rest:0{places}}" if places else ""
             return f"{whole}{decimals} {unit}"

@@ -19,6 +19,9 @@ from archgen.importers.aadl.aadl_tree import (
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 
+_MAX_PARENTS = 150
+"""So many classifiers may extend one another: more than any model has, and less than Python can go down."""
+
 
 @dataclass(frozen=True, slots=True)
 class Use:
@@ -107,7 +110,9 @@ class ClassifierResolver:
             self._resolved[key] = self._write_out(use.known, use.bindings)
         return self._resolved[key]
 
-    def find_use(self, name: str, bindings: Mapping[str, Binding], place: KnownClassifier, env: Mapping[str, Use]) -> Use:
+    def find_use(
+        self, name: str, bindings: Mapping[str, Binding], place: KnownClassifier, env: Mapping[str, Use]
+    ) -> Use:
         """Return what a name means at a place; a prototype's is what it stands for."""
         if name.lower() in env:
             return env[name.lower()]
@@ -126,13 +131,16 @@ class ClassifierResolver:
             words = f"{known.full_name} extends itself in the end; what it extends is left out here"
             self.notes.add_contradiction("extends", words, classifier.span)
             return found
-        # As deep as Python can go is far more than any model is.
-        if len(self._open) > 150:
-            self.notes.add_contradiction("extends", "more than 150 classifiers extend one another", classifier.span)
+        if len(self._open) > _MAX_PARENTS:
+            self.notes.add_contradiction(
+                "extends", f"more than {_MAX_PARENTS} classifiers extend one another", classifier.span
+            )
             return found
         self._open.add(id(classifier))
         env = {
-            prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {}) if prototype.classifier else Use()
+            prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {})
+            if prototype.classifier
+            else Use()
             for prototype in classifier.prototypes
         } | dict(bindings)
         for parent in self._list_parents(known, env):
@@ -172,23 +180,16 @@ class ClassifierResolver:
             if use.name and use.known is None:
                 self.notes.add_unknown_classifier(use.name, written.span)
             found.parts[name] = Part(written, use, written.category, known)
-        for index, connection in enumerate(classifier.connections):
-            name = connection.name.lower() or f"{known.key}#{index}"
-            earlier_connection = found.connections.get(name)
-            if connection.refined and earlier_connection and not connection.source:
-                connection = replace(connection, source=earlier_connection.source, target=earlier_connection.target)
-            found.connections[name] = connection
-        for flow in classifier.flows:
-            flow_key = (flow.name.lower(), classifier.is_implementation and flow.kind != "end to end")
-            earlier_flow = found.flows.get(flow_key)
-            if flow.refined and earlier_flow and not flow.steps:
-                flow = replace(flow, steps=earlier_flow.steps)
-            found.flows[flow_key] = flow
+        _add_connections(found, classifier)
+        _add_flows(found, classifier)
         found.calls += classifier.calls
         found.annexes += [name for name, _ in classifier.annexes if name not in found.annexes]
         for association in classifier.properties:
             for path in association.paths or ((),):
-                key = (tuple(step.lower() for step in path if step.lower() != "self"), fold_property_name(association.name))
+                key = (
+                    tuple(step.lower() for step in path if step.lower() != "self"),
+                    fold_property_name(association.name),
+                )
                 found.properties[key] = (association, known.package)
 
     def _add_feature(self, found: Resolved, feature: Feature, env: Mapping[str, Use]) -> None:
@@ -219,3 +220,21 @@ def _name_bindings(bindings: Mapping[str, Use]) -> str:
     return ",".join(
         f"{name}={use.full_name.lower()}({_name_bindings(use.bindings)})" for name, use in sorted(bindings.items())
     )
+
+
+def _add_connections(found: Resolved, classifier: Classifier) -> None:
+    for index, written in enumerate(classifier.connections):
+        name = written.name.lower() or f"{found.known.key}#{index}"
+        earlier, connection = found.connections.get(name), written
+        if written.refined and earlier and not written.source:
+            connection = replace(written, source=earlier.source, target=earlier.target)
+        found.connections[name] = connection
+
+
+def _add_flows(found: Resolved, classifier: Classifier) -> None:
+    for written in classifier.flows:
+        key = (written.name.lower(), classifier.is_implementation and written.kind != "end to end")
+        earlier, flow = found.flows.get(key), written
+        if written.refined and earlier and not written.steps:
+            flow = replace(written, steps=earlier.steps)
+        found.flows[key] = flow

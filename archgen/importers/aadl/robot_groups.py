@@ -97,7 +97,12 @@ class GroupBuilder:
 
     def _is_group(self, part: StructuredPart) -> bool:
         structure = part.structure
-        return part.part.category == "system" and structure is not None and bool(structure.parts) and self._roots.is_single(structure)
+        return (
+            part.part.category == "system"
+            and structure is not None
+            and bool(structure.parts)
+            and self._roots.is_single(structure)
+        )
 
     def _open_group(self, wanted_id: str, name: str, structure: Structure, scope: Scope) -> str:
         group_id = make_unique_id(wanted_id, self.groups.keys())

@@ -13,8 +13,18 @@ from archgen.model.element_ids import make_id, make_unique_id
 
 COMPONENT_CATEGORIES = frozenset({"system", "process", "device", "abstract", "thread", "thread group"})
 HARDWARE_CATEGORIES = frozenset({"processor", "virtual processor", "memory", "bus", "virtual bus"})
+_MAX_LEVELS = 40
 WIRE_KINDS = frozenset(
-    """port/data port/event port/event data port/feature group/port group/feature/subprogram access""".split("/")
+    [
+        "port",
+        "data port",
+        "event port",
+        "event data port",
+        "feature group",
+        "port group",
+        "feature",
+        "subprogram access",
+    ]
 )
 
 
@@ -95,15 +105,19 @@ class StructureFinder:
             parts = []
         used_ids: set[str] = set()
         for part in parts:
-            if structured := self._build_part(resolved, part, used_ids):
+            if structured := self._build_part(part, used_ids):
                 found.parts[structured.name] = structured
         self._add_wires(found)
         return found
 
-    def _build_part(self, resolved: Resolved, part: Part, used_ids: set[str]) -> StructuredPart | None:
+    def _build_part(self, part: Part, used_ids: set[str]) -> StructuredPart | None:
         inner = self._resolver.resolve(part.use)
-        if inner is not None and (inner in self._open or len(self._open) > 40):
-            words = f"{part.written.name} is within itself in the end" if inner in self._open else "more than 40 levels of parts"
+        if inner is not None and (inner in self._open or len(self._open) > _MAX_LEVELS):
+            words = (
+                f"{part.written.name} is within itself in the end"
+                if inner in self._open
+                else f"more than {_MAX_LEVELS} levels of parts"
+            )
             self._notes.add_contradiction("subcomponent", words, part.written.span)
             return None
         structure = self.find(inner) if inner else None
@@ -185,7 +199,11 @@ def _sends(end: End) -> bool:
 
 def _is_only_hardware(structure: Structure) -> bool:
     parts = structure.resolved.parts.values()
-    return not structure.parts and not structure.ports.ports and any(part.category in HARDWARE_CATEGORIES for part in parts)
+    return (
+        not structure.parts
+        and not structure.ports.ports
+        and any(part.category in HARDWARE_CATEGORIES for part in parts)
+    )
 
 
 def _fold_path(path: Path) -> Path:

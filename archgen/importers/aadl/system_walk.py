@@ -26,35 +26,27 @@ def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
     for frame in system.frames:
         if frame.path:
             _find_topics(system, frame.structure, frame.scope, frame.path)
+        group = Instance((frame.group_id,), frame.path, frame.structure, frame.scope, is_of_type=False)
         for part in frame.structure.parts.values():
             if part.id in frame.bodies:
-                _walk(system, roots, part, frame.scope, (frame.group_id,), frame.path, is_of_type=False)
+                _walk(system, roots, part, group)
 
 
-def _walk(
-    system: LaunchedSystem,
-    roots: ModelRoots,
-    part: StructuredPart,
-    scope_around: Scope,
-    ids: tuple[str, ...],
-    path: Path,
-    *,
-    is_of_type: bool,
-) -> None:
+def _walk(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, around: Instance) -> None:
     structure = part.structure
     if structure is None:
         return
-    scope = scope_around.go_into(part.part, structure.resolved)
-    ids, path = (*ids, part.id), (*path, part.name)
-    is_of_type = is_of_type or bool(roots.find_type_id(structure))
-    system.instances[path] = Instance(ids, path, structure, scope, is_of_type)
+    scope = around.scope.go_into(part.part, structure.resolved)
+    is_of_type = around.is_of_type or bool(roots.find_type_id(structure))
+    instance = Instance((*around.ids, part.id), (*around.path, part.name), structure, scope, is_of_type)
+    system.instances[instance.path] = instance
     if len(system.instances) > MAX_INSTANCES:
         raise TooManyInstancesError
     if structure.is_node:
         return
-    _find_topics(system, structure, scope, path)
+    _find_topics(system, structure, scope, instance.path)
     for inner in structure.parts.values():
-        _walk(system, roots, inner, scope, ids, path, is_of_type=is_of_type)
+        _walk(system, roots, inner, instance)
 
 
 def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, path: Path) -> None:
@@ -103,15 +95,17 @@ class NodeWriter:
             body = body.setdefault("components", {}).setdefault(element_id, {})
         return body
 
-    def _describe_node(
-        self, system: LaunchedSystem, instance: Instance, fed: set[tuple[Path, bool, str]]
-    ) -> Body:
+    def _describe_node(self, system: LaunchedSystem, instance: Instance, fed: set[tuple[Path, bool, str]]) -> Body:
         scope = instance.scope
         default_uses = map_node_ports(instance.structure, scope, is_type=False)
-        written_uses = map_node_ports(instance.structure, scope.only_around(), False) if instance.is_of_type else default_uses
+        written_uses = (
+            map_node_ports(instance.structure, scope.only_around(), is_type=False)
+            if instance.is_of_type
+            else default_uses
+        )
         body: Body = {}
         for port in instance.structure.ports.ports:
-            section = name_use_section(port.is_input, port.is_call)
+            section = name_use_section(is_input=port.is_input, is_call=port.is_call)
             use = dict(written_uses.get(section, {}).get(port.id, {}))
             default_name = default_uses.get(section, {}).get(port.id, {}).get("own_name")
             key = "name" if port.is_call else "topic"

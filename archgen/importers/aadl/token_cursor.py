@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import islice
+from typing import NoReturn
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
@@ -12,15 +13,92 @@ from archgen.importers.aadl.aadl_tokens import END, OPEN_ANNEX, AadlText, Token,
 
 MAX_DEPTH = 60
 """How deep values, bindings and types may stand in one another."""
+_MAX_SHOWN = 40
 SECTION_WORDS = frozenset(
-    "features subcomponents connections calls flows modes properties prototypes annex end private public".split()
+    [
+        "features",
+        "subcomponents",
+        "connections",
+        "calls",
+        "flows",
+        "modes",
+        "properties",
+        "prototypes",
+        "annex",
+        "end",
+        "private",
+        "public",
+    ]
 )
 RESERVED_WORDS = SECTION_WORDS | frozenset(
-    """aadlboolean aadlinteger aadlreal aadlstring abstract access all and applies binding bus calls classifier compute
-    connections constant data delta device enumeration event extends false feature flow group implementation in inherit
-    initial inverse is list memory mode not of or out package parameter path port process processor property provides
-    range record reference refined renames requires self set sink source subprogram system thread to true type units
-    virtual with""".split()
+    [
+        "aadlboolean",
+        "aadlinteger",
+        "aadlreal",
+        "aadlstring",
+        "abstract",
+        "access",
+        "all",
+        "and",
+        "applies",
+        "binding",
+        "bus",
+        "calls",
+        "classifier",
+        "compute",
+        "connections",
+        "constant",
+        "data",
+        "delta",
+        "device",
+        "enumeration",
+        "event",
+        "extends",
+        "false",
+        "feature",
+        "flow",
+        "group",
+        "implementation",
+        "in",
+        "inherit",
+        "initial",
+        "inverse",
+        "is",
+        "list",
+        "memory",
+        "mode",
+        "not",
+        "of",
+        "or",
+        "out",
+        "package",
+        "parameter",
+        "path",
+        "port",
+        "process",
+        "processor",
+        "property",
+        "provides",
+        "range",
+        "record",
+        "reference",
+        "refined",
+        "renames",
+        "requires",
+        "self",
+        "set",
+        "sink",
+        "source",
+        "subprogram",
+        "system",
+        "thread",
+        "to",
+        "true",
+        "type",
+        "units",
+        "virtual",
+        "with",
+    ]
 )
 """Words that name nothing. `internal`, `none` and such are told by their place alone: models use them as names."""
 
@@ -87,7 +165,7 @@ class TokenCursor:
         """Go behind these words or signs. Raise AadlSyntaxError where something else comes."""
         for word in words:
             if not self.at(word):
-                raise self.make_error(f"`{word}` is missing here, before {describe_token(self.token)}")
+                self.fail(f"`{word}` is missing here, before {describe_token(self.token)}")
             last = self.advance()
         return last
 
@@ -97,7 +175,7 @@ class TokenCursor:
             found = describe_token(self.token)
             reserved = self.token.kind == "name"
             words = f"{found} is a word of AADL, and no name of {what}" if reserved else f"{found} is no name of {what}"
-            raise self.make_error(words)
+            self.fail(words)
         return self.advance().text
 
     def expect_path(self, what: str) -> str:
@@ -113,14 +191,18 @@ class TokenCursor:
         self._depth += 1
         try:
             if self._depth > MAX_DEPTH:
-                raise self.make_error(f"this stands more than {MAX_DEPTH} levels deep")
+                self.fail(f"this stands more than {MAX_DEPTH} levels deep")
             yield
         finally:
             self._depth -= 1
 
     def make_error(self, message: str, help_line: str = "") -> AadlSyntaxError:
-        """Return an error at the present token, for the caller to raise."""
+        """Return an error at the present token, for the caller to tell."""
         return AadlSyntaxError(message, self.token, help_line)
+
+    def fail(self, message: str, help_line: str = "") -> NoReturn:
+        """Raise an error at the present token."""
+        raise self.make_error(message, help_line)
 
     def tell(self, error: AadlSyntaxError) -> None:
         """Remember an error."""
@@ -180,5 +262,5 @@ def describe_token(token: Token) -> str:
         return "an annex"
     if token.kind == "stray" and token.text == '"':
         return "a text without an end"
-    text = token.text if len(token.text) <= 40 else f"{token.text[:37]}..."
+    text = token.text if len(token.text) <= _MAX_SHOWN else f"{token.text[: _MAX_SHOWN - 3]}..."
     return f"`{text}`" if text.isprintable() else repr(text)

@@ -38,6 +38,9 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
     known.name: known
     for known in (
         ImportFormat(REQIF, "requirements of Doors, Polarion and others (.reqif, .reqifz)", (".reqif", ".reqifz"), ""),
+        ImportFormat(
+            "aadl", "models in AADL v2, as text (.aadl)", (".aadl",), "archgen.importers.aadl.aadl_import:read_aadl"
+        ),
     )
 }
 
