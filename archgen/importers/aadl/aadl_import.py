@@ -128,7 +128,7 @@ class _ModelImport:
         roots = ModelRoots(self._resolver, self._finder, self._notes)
         builder = ComponentBuilder(self._resolver, self._notes, roots.find_type_id)
         groups = GroupBuilder(self._resolver, roots, builder, self._used, self._notes)
-        nodes = NodeWriter(groups.groups, builder)
+        nodes = NodeWriter()
         hardware = HardwareMapper(self._resolver, self._notes)
         chains = ChainMapper(self._notes)
         component_types: dict[str, Body] = {}
@@ -140,6 +140,9 @@ class _ModelImport:
             for system in groups.systems:
                 find_instances(system, roots)
                 nodes.add_nodes(system, hardware.map_system(system))
+                if system.lone_buses and system.frames:
+                    hints = groups.groups[system.frames[-1].group_id]["hints"]["aadl"]
+                    hints["buses"] = system.lone_buses
                 chains.add_chains(system)
         except (TooManyPartsError, TooManyInstancesError):
             span = roots.roots[0].resolved.known.classifier.span if roots.roots else Span.of_file("")

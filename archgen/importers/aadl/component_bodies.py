@@ -12,7 +12,7 @@ from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_count, read_text
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved
 from archgen.importers.aadl.structures import Structure, StructuredPart, Wire
-from archgen.importers.aadl.thread_timing import add_port_hints, add_trigger, find_role, map_timing
+from archgen.importers.aadl.thread_timing import add_port_hints, add_trigger, find_role, fits_role, map_timing
 
 Body = dict[str, Any]
 MAX_COMPONENTS = 50_000
@@ -105,7 +105,7 @@ class ComponentBuilder:
             thread = resolved
             hints |= keep_thread(scope, (), resolved)
         add_trigger(timing, structure.ports, triggering)
-        if thread and (role := find_role(thread)):
+        if thread and (role := find_role(thread)) and fits_role(role, structure.ports):
             body["role"] = role
         return {**body, "timing": timing} if timing else body
 
@@ -150,7 +150,11 @@ def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes
             notes.add("connection", words, wires[0].connection.span)
             continue
         media = {find_medium(wire, structure, scope) for wire in wires}
-        reach_port(bodies[part_id], "outputs", port_id)["medium"] = media.pop() if len(media) == 1 else "physical"
+        medium = media.pop() if len(media) == 1 else "physical"
+        reach_port(bodies[part_id], "outputs", port_id)["medium"] = medium
+        for consumer in (wire.consumer for wire in wires):
+            if consumer.part and consumer.part.part.category == "device" and consumer.part.id in bodies:
+                reach_port(bodies[consumer.part.id], "inputs", consumer.port.id)["medium"] = medium
 
 
 def find_medium(wire: Wire, structure: Structure, scope: Scope) -> str:

@@ -9,7 +9,7 @@ from archgen.importers.aadl.aadl_tree import AadlLink, AadlList, AadlName
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text, read_texts
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved, Use
+from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, Resolved, Use
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
 _ROS_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
@@ -42,7 +42,7 @@ class DataTypes:
 
     def name_use(self, use: Use, kind: str = "msg") -> str:
         """Return the name of the type of a port; nothing where it has none."""
-        if not use.name:
+        if not use.name or use.category == UNBOUND:
             return ""
         if use.known is None:
             return _name_unknown(use.name, kind)
@@ -100,8 +100,7 @@ class DataTypes:
     def _describe(self, resolved: Resolved, kind: str) -> dict[str, Any]:
         scope = Scope(self._resolver, self._used, resolved)
         body: dict[str, Any] = {}
-        prototypes = [prototype.name for prototype in resolved.known.classifier.prototypes]
-        if prototypes:
+        if prototypes := [use.name for use in resolved.prototypes.values() if use.category == UNBOUND]:
             body["generic"] = prototypes
         if kind == "srv":
             body |= self._describe_call(resolved)
@@ -150,6 +149,8 @@ class DataTypes:
 
     def _name_field(self, use: Use) -> str:
         """Return the type of a field: one of ROS where the model has one of its own base types."""
+        if use.category == UNBOUND:
+            return use.name
         package, _, name = use.full_name.lower().rpartition("::")
         if package == "base_types" or (use.known is None and not package):
             if name in _BASE_TYPES:

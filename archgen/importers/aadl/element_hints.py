@@ -6,6 +6,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Connection, Path, Property
+from archgen.importers.aadl.classifier_names import KnownClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_text, read_texts, read_time_range
 from archgen.importers.aadl.resolved_classifiers import Part, Resolved
@@ -43,9 +44,16 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
     hints: dict[str, Any] = {}
     if resolved.annexes:
         hints["annexes"] = list(resolved.annexes)
-    if structure.ports.accesses:
-        hints["access"] = {key: dict(value) for key, value in structure.ports.accesses.items()}
-    accesses = {
+    library_ports = {name for name, port in resolved.ports.items() if _is_of_library(port.owner)}
+    if accesses := {key: dict(value) for key, value in structure.ports.accesses.items() if key not in library_ports}:
+        hints["access"] = accesses
+    library_names = {
+        connection.name
+        for known in resolved.ancestors
+        if _is_of_library(known)
+        for connection in known.classifier.connections
+    }
+    joined = {
         _name_connection(connection): {
             "from": ".".join(connection.source),
             "to": ".".join(connection.target),
@@ -53,12 +61,19 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
         }
         for connection in structure.access_connections.values()
         if connection.kind != "parameter"
+        and connection.name not in library_names
+        and not _is_of_library(resolved.known)
     }
-    if accesses:
-        hints["access_connections"] = accesses
+    if joined:
+        hints["access_connections"] = joined
     if flows := _keep_flows(structure, scope):
         hints["flows"] = flows
     return hints | _keep_data(structure, scope, notes)
+
+
+def _is_of_library(known: KnownClassifier) -> bool:
+    """Whether a classifier is of the paper's libraries: its name says what it has."""
+    return known.package.name.lower() in {"cnc", "ros"}
 
 
 def _name_connection(connection: Connection) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.importers.aadl.aadl_tree import Binding, Feature, Prototype
 from archgen.importers.aadl.property_parsing import parse_property_list
-from archgen.importers.aadl.token_cursor import TokenCursor
+from archgen.importers.aadl.token_cursor import AadlSyntaxError, TokenCursor
 
 CATEGORIES = (
     "abstract",
@@ -118,6 +118,7 @@ def parse_feature(cursor: TokenCursor) -> Feature:
     if not feature.direction:
         feature.direction = "requires" if cursor.accept("requires") else "provides" if cursor.accept("provides") else ""
     kinds = ACCESSES if feature.direction in {"requires", "provides"} else _PLAIN_KINDS
+    kind_token = cursor.token
     feature.kind = accept_one_of(cursor, kinds) or ("feature" if cursor.at("prototype") else "")
     if feature.kind == "port group":
         feature.kind = "feature group"
@@ -126,7 +127,8 @@ def parse_feature(cursor: TokenCursor) -> Feature:
             f"no feature begins so: {' or '.join(f'`{kind}`' for kind in kinds if kind != 'port group')} is missing here"
         )
     if feature.kind.endswith("port") and not feature.direction:
-        cursor.fail("a port has a direction: `in`, `out` or `in out`", "write it before the kind of the port")
+        words = "a port has a direction: `in`, `out` or `in out`"
+        raise AadlSyntaxError(words, kind_token, "write it before the kind of the port")
     _parse_feature_type(cursor, feature)
     feature.dimensions = parse_dimensions(cursor)
     feature.properties = parse_property_list(cursor)

@@ -64,7 +64,12 @@ class HardwareMapper:
         for path, hardware in tree.parts.items():
             if hardware.part.category in _BUSES:
                 ends = _list_ends(tree, path, system, host_ids, hosts)
-                self._add_link(hardware, ends, [name for _, name in tree.bound_connections.get(path, [])])
+                names = [name for _, name in tree.bound_connections.get(path, [])]
+                if len(ends) > 1:
+                    self._add_link(hardware, ends, names)
+                else:
+                    # A link is between two; what joins less is kept as a hint of the group.
+                    system.lone_buses[hardware.part.written.name] = _keep_bus(hardware, names)
         return hosts
 
     def _add_host(self, path: Path, hardware: HardwarePart) -> str:
@@ -118,16 +123,20 @@ class HardwareMapper:
         medium = name_bus_medium(part)
         body |= {"protocol": medium} if medium in MEDIUM_NAMES else {}
         body |= _read_speed(scope)
-        hints: Body = {"name": part.written.name} if part.written.name != link_id else {}
-        if part.use.name:
-            hints["classifier"] = part.use.full_name
-        if part.category != "bus":
-            hints["category"] = part.category
-        if carrier := next(iter(read_references(scope.value((), "actual_connection_binding"))), None):
-            hints["bound_to"] = ".".join(carrier)
-        if connection_names:
-            hints["connections"] = connection_names
+        names: Body = {"name": part.written.name} if part.written.name != link_id else {}
+        hints = {**names, **_keep_bus(hardware, connection_names)}
         self.links[link_id] = {**body, "hints": {"aadl": hints}} if hints else body
+
+
+def _keep_bus(hardware: HardwarePart, connection_names: list[str]) -> Body:
+    """Return what is kept of a bus beside what a link says."""
+    part = hardware.part
+    kept: Body = {"classifier": part.use.full_name} if part.use.name else {}
+    if part.category != "bus":
+        kept["category"] = part.category
+    if carrier := next(iter(read_references(hardware.scope.value((), "actual_connection_binding"))), None):
+        kept["bound_to"] = ".".join(carrier)
+    return {**kept, "connections": connection_names} if connection_names else kept
 
 
 def _list_ends(

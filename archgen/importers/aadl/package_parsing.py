@@ -32,7 +32,7 @@ def parse_text(file: str, text: str) -> ParsedText:
     while cursor.token.kind != END:
         try:
             if cursor.at("package"):
-                parsed.packages.append(_parse_package(cursor))
+                _parse_package(cursor, parsed)
             elif cursor.at("property", "set"):
                 parsed.property_sets.append(_parse_property_set(cursor))
             elif at_classifier(cursor) and cursor.peek().kind == "name":
@@ -68,29 +68,48 @@ def _skip_to_unit(cursor: TokenCursor) -> None:
         cursor.advance()
 
 
-def _parse_package(cursor: TokenCursor) -> Package:
+def _parse_package(cursor: TokenCursor, parsed: ParsedText) -> None:
     start = cursor.expect("package").offset
     package = Package(_parse_package_name(cursor), cursor.span_from(start))
-    while cursor.token.kind != END and not cursor.at("end"):
+    parsed.packages.append(package)
+    while cursor.token.kind != END:
+        if cursor.at("end"):
+            if _is_package_end(cursor, package):
+                _parse_package_end(cursor, package)
+                return
+            # What it ends could not be read, which was told.
+            cursor.advance()
+            cursor.skip_statement()
+            continue
         try:
             _parse_package_entry(cursor, package)
         except AadlSyntaxError as error:
             cursor.tell(error)
             before = cursor.token
             cursor.skip_statement()
-            if cursor.token is before and not (cursor.at("end") and cursor.peek().kind == "name"):
+            if cursor.token is before and not cursor.at("end"):
                 cursor.advance()
-    if cursor.token.kind == END:
-        words = f"`end {package.name};` is missing before the end of the file"
-        cursor.tell(cursor.make_error(words, f"package {package.name} begins in line {package.span.line}"))
-        return package
+    words = f"`end {package.name};` is missing before the end of the file"
+    cursor.tell(cursor.make_error(words, f"package {package.name} begins in line {package.span.line}"))
+
+
+def _is_package_end(cursor: TokenCursor, package: Package) -> bool:
+    """Whether the `end` that stands here is the package's: by its name, or by what comes behind it."""
+    distance, name = 1, cursor.peek().word
+    while cursor.peek(distance + 1).text in {"::", "."}:
+        name += cursor.peek(distance + 1).text + cursor.peek(distance + 2).word
+        distance += 2
+    following = cursor.peek(distance + 2)
+    return name == package.name.lower() or following.kind == END or following.word in {"package", "property"}
+
+
+def _parse_package_end(cursor: TokenCursor, package: Package) -> None:
     end = cursor.expect("end")
     name = _parse_package_name(cursor)
     if name.lower() != package.name.lower():
         words = f"this ends `{name}`, but what is open is package `{package.name}`"
         cursor.tell(AadlSyntaxError(words, end, f"write `end {package.name};`"))
     cursor.expect(";")
-    return package
 
 
 def _parse_package_name(cursor: TokenCursor) -> str:

@@ -19,6 +19,8 @@ from archgen.importers.aadl.aadl_tree import (
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 
+UNBOUND = "prototype"
+"""The category of a prototype for which nothing stands."""
 _MAX_PARENTS = 150
 """So many classifiers may extend one another: more than any model has, and less than Python can go down."""
 
@@ -56,6 +58,7 @@ class Port:
     use: Use
     kind: str
     direction: str
+    owner: KnownClassifier
 
 
 @dataclass(slots=True, eq=False)
@@ -65,6 +68,8 @@ class Resolved:
     known: KnownClassifier
     ancestors: tuple[KnownClassifier, ...] = ()
     """What it extends and what it implements, the nearest first."""
+    prototypes: dict[str, Use] = field(default_factory=dict)
+    """What its prototypes stand for."""
     ports: dict[str, Port] = field(default_factory=dict)
     parts: dict[str, Part] = field(default_factory=dict)
     connections: dict[str, Connection] = field(default_factory=dict)
@@ -140,13 +145,14 @@ class ClassifierResolver:
         env = {
             prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {})
             if prototype.classifier
-            else Use()
+            else Use(prototype.name, category=UNBOUND)
             for prototype in classifier.prototypes
         } | dict(bindings)
         for parent in self._list_parents(known, env):
             _add_inherited(found, parent)
         self._open.discard(id(classifier))
-        self._add_own(found, classifier, env)
+        found.prototypes |= env
+        self._add_own(found, classifier, found.prototypes)
         return found
 
     def _list_parents(self, known: KnownClassifier, env: Mapping[str, Use]) -> list[Resolved]:
@@ -177,7 +183,7 @@ class ClassifierResolver:
             use = self.find_use(written.classifier, written.bindings, known, env) if written.classifier else Use()
             if earlier and not written.classifier:
                 use = earlier.use
-            if use.name and use.known is None:
+            if use.name and use.known is None and use.category != UNBOUND:
                 self.notes.add_unknown_classifier(use.name, written.span)
             found.parts[name] = Part(written, use, written.category, known)
         _add_connections(found, classifier)
@@ -201,11 +207,12 @@ class ClassifierResolver:
         if earlier and kind == "feature":
             kind = earlier.kind
         direction = feature.direction or (earlier.direction if earlier else "")
-        found.ports[feature.name.lower()] = Port(feature, use, kind, direction)
+        found.ports[feature.name.lower()] = Port(feature, use, kind, direction, found.known)
 
 
 def _add_inherited(found: Resolved, parent: Resolved) -> None:
     found.ancestors = tuple(dict.fromkeys((*found.ancestors, parent.known, *parent.ancestors)))
+    found.prototypes.update(parent.prototypes)
     found.ports.update(parent.ports)
     found.parts.update(parent.parts)
     found.connections.update(parent.connections)

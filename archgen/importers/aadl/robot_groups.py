@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, add_source, reach_port, set_media
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.model_roots import ModelRoots
+from archgen.importers.aadl.port_mapping import MappedPort
 from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.structures import End, Structure, StructuredPart
 from archgen.model.element_ids import make_id, make_unique_id
+
+PortPlace = tuple[Path, bool, str]
+"""A port of a process or device: where that stands, whether it is an input, and the port's id."""
 
 
 @dataclass(slots=True)
@@ -47,7 +50,11 @@ class LaunchedSystem:
     scope: Scope
     frames: list[Frame]
     instances: dict[Path, Instance] = field(default_factory=dict)
-    topics: dict[tuple[Path, bool, str], list[str]] = field(default_factory=dict)
+    topics: dict[PortPlace, list[str]] = field(default_factory=dict)
+    senders: dict[PortPlace, list[PortPlace]] = field(default_factory=dict)
+    """Who sends what an input reads, by connections that name a topic."""
+    lone_buses: dict[str, Body] = field(default_factory=dict)
+    """What is kept of buses that join fewer than two."""
     groups: dict[str, str] = field(default_factory=dict)
     """Groups by the names of the parts of the root that they are."""
 
@@ -185,12 +192,12 @@ def _list_bodies(end: End, frames: dict[str, Frame], root_frame: Frame | None, *
     return found
 
 
-def drill(part: StructuredPart, end: End, path: Path) -> list[tuple[Path, Any]]:
+def drill(part: StructuredPart, end: End, path: Path) -> list[tuple[Path, MappedPort]]:
     """Return the ports of processes and devices that stand behind an end of a wire, with their paths."""
     structure = part.structure
     if structure is None or structure.is_node or not structure.parts:
         return [(path, end.port)]
-    found: list[tuple[Path, Any]] = []
+    found: list[tuple[Path, MappedPort]] = []
     for wire in structure.wires:
         outer, inner = (wire.producer, wire.consumer) if end.port.is_input else (wire.consumer, wire.producer)
         if outer.part is None and outer.port is end.port and inner.part:

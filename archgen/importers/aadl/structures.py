@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import Connection, Path
+from archgen.importers.aadl.aadl_tree import AadlText, Connection, Path
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
@@ -105,12 +105,12 @@ class StructureFinder:
             parts = []
         used_ids: set[str] = set()
         for part in parts:
-            if structured := self._build_part(part, used_ids):
+            if structured := self._build_part(resolved, part, used_ids):
                 found.parts[structured.name] = structured
         self._add_wires(found)
         return found
 
-    def _build_part(self, part: Part, used_ids: set[str]) -> StructuredPart | None:
+    def _build_part(self, around: Resolved, part: Part, used_ids: set[str]) -> StructuredPart | None:
         inner = self._resolver.resolve(part.use)
         if inner is not None and (inner in self._open or len(self._open) > _MAX_LEVELS):
             words = (
@@ -127,7 +127,7 @@ class StructureFinder:
             self._notes.add_counted(
                 "array of subcomponents", "an array of subcomponents is taken as one", part.written.span, fate="noted"
             )
-        part_id = make_unique_id(make_id(part.written.name, "part"), used_ids)
+        part_id = make_unique_id(make_id(_read_own_id(around, part) or part.written.name, "part"), used_ids)
         used_ids.add(part_id)
         return StructuredPart(part_id, part, structure)
 
@@ -175,6 +175,14 @@ class StructureFinder:
         if ".".join(port_path) in ports.accesses:
             return None
         return [((), End(part, port)) for port in ports.by_path.get(port_path, ())]
+
+
+def _read_own_id(around: Resolved, part: Part) -> str:
+    """Return the id that an export of archgen's wrote at a part, or nothing."""
+    found = around.properties.get(((part.written.name.lower(),), "archgen::id"))
+    associations = [association for association in part.written.properties if association.name.lower() == "archgen::id"]
+    values = [found[0].value] if found else [association.value for association in associations]
+    return next((value.text for value in values if isinstance(value, AadlText)), "")
 
 
 def _join_ends(

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from archgen.importers.aadl.aadl_tree import Path
-from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, map_node_ports, name_use_section
+from archgen.importers.aadl.component_bodies import Body, map_node_ports, name_use_section
 from archgen.importers.aadl.element_hints import keep_sources
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.property_values import Scope, read_text
-from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, drill
-from archgen.importers.aadl.structures import Structure, StructuredPart
+from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, drill
+from archgen.importers.aadl.structures import End, Structure, StructuredPart
 from archgen.model.element_ids import make_id, make_unique_id
 
 MAX_INSTANCES = 50_000
@@ -56,20 +54,27 @@ def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, pat
         name = read_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
         if not name:
             continue
-        for end in (wire.producer, wire.consumer):
-            for leaf_path, port in drill(end.part, end, (*path, end.part.name)) if end.part else ():
-                topics = system.topics.setdefault((leaf_path, port.is_input, port.id), [])
-                if name not in topics:
-                    topics.append(name)
+        producers, consumers = _list_leaves(wire.producer, path), _list_leaves(wire.consumer, path)
+        for leaf in (*producers, *consumers):
+            topics = system.topics.setdefault(leaf, [])
+            if name not in topics:
+                topics.append(name)
+        for leaf in consumers:
+            system.senders.setdefault(leaf, []).extend(producers)
+
+
+def _list_leaves(end: End, path: Path) -> list[PortPlace]:
+    """Return the ports of processes and devices behind an end of a wire."""
+    leaves = drill(end.part, end, (*path, end.part.name)) if end.part else []
+    return [(leaf_path, port.is_input, port.id) for leaf_path, port in leaves]
 
 
 class NodeWriter:
-    """Writes what is known of each program: a node, or `node` at the composed component of its threads."""
+    """Writes a node for each process where it stands."""
 
-    def __init__(self, groups: dict[str, Body], builder: ComponentBuilder) -> None:
-        """Write nodes of components in `groups`."""
+    def __init__(self) -> None:
+        """Start without any node."""
         self.nodes: dict[str, Body] = {}
-        self._groups, self._builder = groups, builder
 
     def add_nodes(self, system: LaunchedSystem, hosts: dict[Path, str]) -> None:
         """Write the programs of a root; `hosts` are those of its instances."""
@@ -80,22 +85,13 @@ class NodeWriter:
             body = self._describe_node(system, instance, fed)
             if host := hosts.get(instance.path):
                 body["host"] = host
-            if instance.structure.parts:
-                self._reach_component(instance.ids)["node"] = {"whole": True, **body}
-                continue
             wanted = read_text(instance.scope.value((), "archgen::node")) or instance.ids[-1]
             if wanted in self.nodes:
                 wanted = "_".join(instance.ids)
             node_id = make_unique_id(make_id(wanted, "node"), self.nodes.keys())
             self.nodes[node_id] = {"implements": ".".join(instance.ids), **body}
 
-    def _reach_component(self, ids: tuple[str, ...]) -> Body:
-        body = self._groups[ids[0]]
-        for element_id in ids[1:]:
-            body = body.setdefault("components", {}).setdefault(element_id, {})
-        return body
-
-    def _describe_node(self, system: LaunchedSystem, instance: Instance, fed: set[tuple[Path, bool, str]]) -> Body:
+    def _describe_node(self, system: LaunchedSystem, instance: Instance, fed: set[PortPlace]) -> Body:
         scope = instance.scope
         default_uses = map_node_ports(instance.structure, scope, is_type=False)
         written_uses = (
@@ -110,12 +106,18 @@ class NodeWriter:
             default_name = default_uses.get(section, {}).get(port.id, {}).get("own_name")
             key = "name" if port.is_call else "topic"
             use.pop("own_name", None)
-            topics = system.topics.get((instance.path, port.is_input, port.id), [])
+            place = (instance.path, port.is_input, port.id)
+            topics = system.topics.get(place, [])
+            if place in fed:
+                # A reader's topic is its producer's, unless that has several.
+                senders = system.senders.get(place, [])
+                if not any(len(system.topics.get(sender, [])) > 1 for sender in senders):
+                    topics = []
             if topics:
                 use[key] = topics[0] if len(topics) == 1 or port.is_call else topics
                 if default_name and topics != [default_name] and len(topics) == 1:
                     use["own_name"] = default_name
-            elif default_name and ((instance.path, port.is_input, port.id) in fed and port.is_input):
+            elif default_name and place in fed:
                 use["own_name"] = default_name
             elif default_name:
                 use[key] = default_name
@@ -125,15 +127,13 @@ class NodeWriter:
         return {**body, "hints": {"aadl": around}} if around else body
 
 
-def _find_fed_ports(system: LaunchedSystem) -> set[tuple[Path, bool, str]]:
+def _find_fed_ports(system: LaunchedSystem) -> set[PortPlace]:
     """Return the inputs of programs that a wire feeds."""
-    fed: set[tuple[Path, bool, str]] = set()
+    fed: set[PortPlace] = set()
     containers: list[tuple[Structure, Path]] = [(system.structure, ())]
     containers += [(frame.structure, frame.path) for frame in system.frames if frame.path]
     containers += [(inst.structure, inst.path) for inst in system.instances.values() if not inst.structure.is_node]
     for structure, path in containers:
         for wire in structure.wires:
-            end: Any = wire.consumer
-            for leaf_path, port in drill(end.part, end, (*path, end.part.name)) if end.part else ():
-                fed.add((leaf_path, port.is_input, port.id))
+            fed.update(_list_leaves(wire.consumer, path) if wire.producer.part else ())
     return fed

@@ -19,6 +19,19 @@ def find_role(thread: Resolved) -> str:
     return next((role for name, role in _ROLES.items() if thread.is_made_from(name)), "")
 
 
+def fits_role(role: str, ports: MappedPorts) -> bool:
+    """Whether a component with these ports can have a role: its thread's need not be that of the whole process."""
+    has_input = any(port.is_input and not port.is_call for port in ports.ports)
+    has_output = any(not port.is_input and not port.is_call for port in ports.ports)
+    has_service = any(not port.is_input and port.is_call for port in ports.ports)
+    return {
+        "source": has_output and not has_input,
+        "filter": has_input and has_output,
+        "sink": has_input and not has_output,
+        "reactive": has_service,
+    }[role]
+
+
 def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     """Return what the properties of a thread say: all but its trigger."""
     timing: dict[str, Any] = {}
