@@ -39,6 +39,9 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
     for known in (
         ImportFormat(REQIF, "requirements of Doors, Polarion and others (.reqif, .reqifz)", (".reqif", ".reqifz"), ""),
         ImportFormat(
+            "aadl", "models in AADL v2, as text (.aadl)", (".aadl",), "archgen.importers.aadl.aadl_import:read_aadl"
+        ),
+        ImportFormat(
             "xmi",
             "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
             (".xmi", ".uml", ".mdzip", ".zargo"),
