@@ -44,6 +44,12 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
             "archgen.importers.launch.launch_import:read_launch",
         ),
+        ImportFormat(
+            "package",
+            "packages of ROS: their programs, parameters and messages (package.xml, or a folder)",
+            ("package.xml",),
+            "archgen.importers.ros_package.package_import:read_packages",
+        ),
     )
 }
 
