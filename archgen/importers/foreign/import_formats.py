@@ -50,6 +50,18 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             ("package.xml",),
             "archgen.importers.ros_package.package_import:read_packages",
         ),
+        ImportFormat(
+            "ros2",
+            "a running robot, from what `ros2 node info` and its like print",
+            (),
+            "archgen.importers.running_graph.graph_import:read_ros_2_graph",
+        ),
+        ImportFormat(
+            "ros1",
+            "a running robot, from what `rosnode info` and its like print",
+            (),
+            "archgen.importers.running_graph.graph_import:read_ros_1_graph",
+        ),
     )
 }
 
