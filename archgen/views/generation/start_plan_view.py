@@ -31,15 +31,20 @@ def make_view(context: GenerationContext) -> GeneratedView:
     steps = {step.id: step for step in plan.steps}
     folder = str(context.options.get("folder") or "") or f"/opt/{architecture.project.id}"
     hosts = [_record_host(architecture, host, plan, records, wanted_ids) for host in wanted_hosts]
+    for record in hosts:
+        record["file_name"] = f"{record['name']}.{context.part}" if context.part else record["name"]
     return GeneratedView(
         {
             "project": {"id": architecture.project.id, "title": architecture.project.title},
             "ros": context.ros_generation,
             "is_whole": context.is_whole,
+            "prefix": f"{architecture.project.id}.{context.part}" if context.part else architecture.project.id,
             "folder": folder.rstrip("/"),
             "image": str(context.options.get("image") or ""),
             "phases": [phase for phase, _ in plan.phases],
             "hosts": hosts,
+            # The file of settings is one for all parts.
+            "computers": list(dict.fromkeys(step.host or UNPLACED for step in plan.steps)),
             "jobs": [job for host in hosts for job in host["jobs"]],
             "targets": [
                 {"host": host["name"], "phase": phase, "phase_before": before, "needs": needs}
