@@ -95,11 +95,11 @@ def test_a_program_has_what_cpp_asks_for(tmp_path: Path) -> None:
     assert (user["cpp_namespace"], user["cpp_class"], user["cpp_guard"]) == ("people", "Asker", "RT_G__USER")
     assert user["cpp_headers"] == ["std_srvs/srv/trigger.hpp", "test_msgs/action/fibonacci.hpp"]
     assert programs["cam"]["publishers"][1]["cpp_header"] == "sensor_msgs/msg/point_cloud2.hpp"
-    assert both["callback_groups"] == [{"key": "quick", "kind": "MutuallyExclusive"}]
+    assert both["callback_groups"] == [{"key": "quick", "components": ["g.fast"]}]
     assert [(each["key"], each["callback_group"]) for each in both["timers"]] == [("slow", ""), ("fast", "quick")]
     assert (both["subscriptions"][0]["callback_group"], both["clients"][0]["callback_group"]) == ("", "quick")
-    assert programs["det"]["callback_groups"] == [{"key": "reentrant", "kind": "Reentrant"}]
-    assert {each["callback_group"] for each in programs["det"]["subscriptions"]} == {"reentrant"}
+    assert programs["det"]["callback_groups"] == []
+    assert {each["callback_group"] for each in programs["det"]["subscriptions"]} == {""}
 
 
 def test_the_library_declares_what_it_can(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
-from archgen.views.generation.start_hints import find_wrong_hints, read_hint
+from archgen.views.generation.start_hints import find_unread_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_step_record import UNPLACED, record_step
 from archgen.views.generation.wanted_steps import find_wanted_steps
@@ -56,7 +56,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 start_phrases.describe_dropped(each, steps) for each in plan.dropped if each.wait.waiting in wanted_ids
             ],
         },
-        tuple(find_wrong_hints(architecture)),
+        tuple(find_unread_hints(architecture)),
     )
 
 
