@@ -39,6 +39,15 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
     for known in (
         ImportFormat(REQIF, "requirements of Doors, Polarion and others (.reqif, .reqifz)", (".reqif", ".reqifz"), ""),
         ImportFormat(
+            "aadl", "models in AADL v2, as text (.aadl)", (".aadl",), "archgen.importers.aadl.aadl_import:read_aadl"
+        ),
+        ImportFormat(
+            "xmi",
+            "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
+            (".xmi", ".uml", ".mdzip", ".zargo"),
+            "archgen.importers.xmi:read_xmi",
+        ),
+        ImportFormat(
             "launch",
             "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
             (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
