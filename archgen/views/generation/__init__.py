@@ -66,6 +66,12 @@ def _make_structure(context: GenerationContext) -> GeneratedView:
     return structure_view.make_view(context)
 
 
+def _make_middleware(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import middleware_view
+
+    return middleware_view.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "components": _make_components,
@@ -76,6 +82,7 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
     "simulation": _make_simulation,
+    "middleware": _make_middleware,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
 
