@@ -10,7 +10,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_snake_name
 from archgen.views.generation.name_clashes import find_name_clashes
 
-_IDL_KEYWORDS = frozenset(
+IDL_KEYWORDS = frozenset(
     """
     abstract any attribute boolean case char component const consumes context custom default double emits enum eventtype
     exception factory false finder fixed float getraises home import in inout interface local long module multiple native
@@ -39,7 +39,7 @@ _TAKEN_SPACES = frozenset(("boost", "corba", "omniorb", "player", "posa", "posix
 def name_member(name: str) -> str:
     """Return a name as fields, parameters and arguments have it: `max_speed`."""
     member = make_identifier_in("cpp", make_snake_name(name))
-    return f"{member.rstrip('_')}_" if member in _IDL_KEYWORDS | _MACROS else member
+    return f"{member.rstrip('_')}_" if member in IDL_KEYWORDS | _MACROS else member
 
 
 def name_interface(name: str) -> str:
@@ -56,7 +56,7 @@ def name_inside(name: str, outer_name: str) -> str:
 def name_class(words: str) -> str:
     """Return a name as classes and records have it: `LaserScan`."""
     name = make_camel_name(words)
-    return f"{name}_" if name.casefold() in _IDL_KEYWORDS else name
+    return f"{name}_" if name.casefold() in IDL_KEYWORDS else name
 
 
 def name_space(name: str) -> str:
