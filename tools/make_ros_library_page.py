@@ -1,17 +1,18 @@
-"""Write docs/ros_library.md: the component types that ship with archgen. The data in ros_library/ is the source."""
+"""Write docs/ros_library.md and docs/ros_library_sources.md from ros_library/: the component types that ship, and their sources."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from archgen.link import mapping_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.project.shipped_library import load_shipped_types
+from archgen.project.shipped_sources import ShippedSource, list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "ros_library.md"
+DOCS = Path(__file__).resolve().parent.parent / "docs"
 OPENING = """\
 # The library of ROS packages that ships with archgen
 
@@ -37,23 +38,69 @@ instance with its inputs to be filled. A type that does not fit is changed as an
 `component_types` may add ports and parameters.
 
 An input with `?` is optional. Where distributions differ, a type stands here once for each form.
+
+Each executable, port, operation and parameter was read at a line of a file of the package
+([Where it was read](ros_library_sources.md)); what was not found is not here. How many there are:
+"""
+SOURCES_OPENING = """\
+# Where the library of ROS packages was read
+
+Made by `tools/make_ros_library_page.py` from the data in `ros_library/sources/`.
+
+Each fact about a type of [the library](ros_library.md), which is its executable, a port, an operation or a parameter, has its source
+in `ros_library/sources/DISTRIBUTION.yaml`: the repository's address, the version, the commit with its date, what kind of text it is,
+the file and the line. A test refuses a fact without. Kinds are `source text` (code, build files and configuration of the package),
+`documentation` (what its people wrote about it) and `recording` (of a running node; none so far).
+
+The version is the one that the distribution has released, as of ros/rosdistro 8468e88ccd of 2026-08-22. Where that was not at hand,
+an older one was read, and the released one stands behind it in brackets.
+
 """
 
 
 def format_page() -> str:
-    """Return the page's text."""
+    """Return the text of the page of all types."""
     rows: dict[tuple[str, ...], list[str]] = {}
     for distro in KNOWN_DISTROS:
         for name, entry in load_shipped_types(distro).items():
             rows.setdefault(_format_row(name, mapping_values.get_body(entry)), []).append(distro)
     lines = [
         OPENING,
+        *_list_counts(),
+        "",
         "| type | what it does | inputs | outputs | package | distributions |",
         "|---|---|---|---|---|---|",
     ]
     for row, distros in sorted(rows.items()):
         lines.append(f"| {' | '.join((*row, ', '.join(sorted(distros, key=_ORDER.index))))} |")
     return "\n".join(lines) + "\n"
+
+
+def format_sources_page() -> str:
+    """Return the text of the page of where each type was read."""
+    lines = ["| type | distribution | repository | version | date | kind | facts |", "|---|---|---|---|---|---|---|"]
+    sources = {distro: read_shipped_sources(distro) for distro in _ORDER}
+    for name in sorted({name for types in sources.values() for name in types}):
+        for distro in _ORDER:
+            lines += [_format_source(name, distro, source) for source in sources[distro].get(name, ())]
+    return SOURCES_OPENING + "\n".join(lines) + "\n"
+
+
+def _format_source(name: str, distro: str, source: ShippedSource) -> str:
+    repository = "/".join(source.address.split("/")[-2:])
+    version = source.version if source.version == source.released else f"{source.version} ({source.released})"
+    facts = sum(len(facts) for facts in source.files.values())
+    return f"| `{name}` | {distro} | [{repository}]({source.format_link()}) | {version} | {source.date} | {source.kind} | {facts} |"
+
+
+def _list_counts() -> Iterator[str]:
+    yield "| distribution | types | facts | types read at the released version |"
+    yield "|---|---|---|---|"
+    for distro in _ORDER:
+        types, sources = load_shipped_types(distro), read_shipped_sources(distro)
+        facts = sum(len(list(list_type_facts(mapping_values.get_body(entry)))) for entry in types.values())
+        fresh_types = [name for name in types if all(source.version == source.released for source in sources[name])]
+        yield f"| {distro} | {len(types)} | {facts} | {len(fresh_types)} |"
 
 
 _ORDER = ("noetic", "humble", "jazzy", "kilted", "lyrical", "rolling")
@@ -78,10 +125,17 @@ def _list_ports(body: MappingNode, side: str) -> Iterator[str]:
         yield f"`{name}`{mark} {message}".strip()
 
 
+PAGES: dict[Path, Callable[[], str]] = {
+    DOCS / "ros_library.md": format_page,
+    DOCS / "ros_library_sources.md": format_sources_page,
+}
+
+
 def main() -> int:
-    """Write the page."""
-    PAGE.write_text(format_page(), encoding="utf-8", newline="\n")
-    print(PAGE)
+    """Write the pages."""
+    for page, format_text in PAGES.items():
+        page.write_text(format_text(), encoding="utf-8", newline="\n")
+        print(page)
     return 0
 
 

@@ -1,162 +1,242 @@
-"""`archgen import`: take requirements over from ReqIF, and bring them up to date."""
+"""`archgen import`: take over the models of other tools, and bring them up to date."""
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.importers.foreign.import_formats import IMPORT_FORMATS, REQIF, ImportFormat, guess_format
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.diagnostic import Diagnostic
-    from archgen.edit.requirement_slice import RequirementSlice
-    from archgen.importers.reqif import ImportedRequirements
-    from archgen.importers.reqif.reqif_document import ReqifDocument
-    from archgen.pipeline import CheckedProject
+    from archgen.edit.imported_slices import ImportPlan
+    from archgen.importers.foreign.foreign_import import ForeignImport, ImportNote
 
-DEFAULT_SLICE = "requirements.yaml"
+_NAME_WIDTH = 9
 
 
-@click.command("import")
-@click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
+def _list_formats() -> str:
+    """Return the formats with what they are, as lines for `--help`."""
+    lines = [f"  {known.name:{_NAME_WIDTH}} {known.summary}" for known in IMPORT_FORMATS.values()]
+    return "\b\n" + "\n".join(lines)
+
+
+@click.command("import", epilog=_list_formats())
+@click.argument("words", metavar="[FORMAT] FILE...", nargs=-1, required=True)
 @click.option(
-    "--into",
-    type=click.Path(path_type=Path),
-    help=f"The slice to write or to bring up to date.  [default: {DEFAULT_SLICE} in the project]",
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Where the slices go: a project, a folder in one, or a new one.  [default: the project]",
+)
+@click.option("--merge", is_flag=True, help="Bring slices of the same file up to date; all else in them stays.")
+@click.option(
+    "--into", type=click.Path(path_type=Path), help="The slice of requirements (reqif).  [default: requirements.yaml]"
 )
 @click.option("--dry-run", is_flag=True, help="Say what would be taken, and write nothing.")
+@click.option(
+    "--format", "form", type=click.Choice(["text", "json"]), default="text", help="How to say what was taken."
+)
 @shared_options.project_option
-def command(file: Path, into: Path | None, project: Path | None, *, dry_run: bool) -> None:
-    """Take the requirements of FILE (.reqif, or .reqifz) into the project.
+def command(  # noqa: PLR0913 - one for each option
+    words: tuple[str, ...],
+    output: Path | None,
+    into: Path | None,
+    form: str,
+    project: Path | None,
+    *,
+    merge: bool,
+    dry_run: bool,
+) -> None:
+    """Take over a model of another tool: what it says becomes slices, and what is not taken is listed with its place.
 
-    Each object of the file is accounted for. A requirement that the project knows is brought up to date; what the file
-    does not say of it stays. Nothing is written where the result would bring errors.
+    FORMAT may be left out where the file's name tells it. Nothing that is there is overwritten, nothing of the file is
+    run, and nothing is invented: what it does not say is absent.
     """
-    from archgen.importers.reqif import find_known_requirements, take_requirements
+    import_format, files = _split_words(words)
+    if import_format.name == REQIF:
+        from archgen.cli.requirement_import import import_requirements
 
-    checked_project = command_support.check_or_exit(project)
-    _refuse_single_file(checked_project)
-    document = _read_file(file)
-    known = find_known_requirements(checked_project.architecture.requirements.values())
-    imported = take_requirements(document, known)
-    for line in _summarise_objects(file, imported):
-        click.echo(make_visible(line))
-    if not imported.requirements:
-        click.echo("Nothing was written: there is no requirement in the file.", err=True)
-        raise click.exceptions.Exit(1)
-    requirement_slice = _make_slice(checked_project, imported, into)
-    for line in _summarise_slice(requirement_slice):
-        click.echo(make_visible(line))
-    if not dry_run:
-        _write_slice(checked_project, requirement_slice, into)
+        _refuse_options(import_format, {"--output": output, "--merge": merge, "--format": form != "text"})
+        if len(files) != 1:
+            msg = "one file of requirements is taken at a time"
+            raise click.UsageError(msg)
+        import_requirements(files[0], into, project, dry_run=dry_run)
+        return
+    _refuse_options(import_format, {"--into": into})
+    _import_slices(import_format, files, _find_target(output, project), form, merge=merge, dry_run=dry_run)
 
 
-def _refuse_single_file(checked_project: CheckedProject) -> None:
-    from archgen.project import PROJECT_FILE
+def _split_words(words: Sequence[str]) -> tuple[ImportFormat, list[Path]]:
+    """Return the format, named or guessed, and the files."""
+    named = IMPORT_FORMATS.get(words[0])
+    if named and len(words) > 1:
+        return named, _find_files(words[1:])
+    if len(words) > 1 and not Path(words[0]).exists():
+        _refuse_format(words[0])
+    files = _find_files(words)
+    formats = {known.name: known for file in files if (known := guess_format(file))}
+    if len(formats) == 1:
+        return next(iter(formats.values())), files
+    reason = "they are of several formats" if formats else f"its name does not tell the format of {files[0]}"
+    msg = f"{reason}: name it first, one of {', '.join(IMPORT_FORMATS)}"
+    raise click.UsageError(make_visible(msg))
 
-    if checked_project.loaded_project.first_file != PROJECT_FILE:
-        msg = "a project of a single file reads no slices: put it into a folder as archgen.yaml first"
+
+def _refuse_format(word: str) -> None:
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    guess = did_you_mean(word, IMPORT_FORMATS)
+    msg = f"there is no file and no format `{word}`; {guess or 'formats are ' + ', '.join(IMPORT_FORMATS)}"
+    raise click.UsageError(make_visible(msg))
+
+
+def _find_files(words: Sequence[str]) -> list[Path]:
+    for word in words:
+        if not Path(word).exists():
+            msg = f"there is no file {word}"
+            raise click.UsageError(make_visible(msg))
+    return [Path(word) for word in words]
+
+
+def _refuse_options(import_format: ImportFormat, given: dict[str, object]) -> None:
+    for option, value in given.items():
+        if value:
+            msg = f"{option} does not go with {import_format.name}"
+            raise click.UsageError(msg)
+
+
+def _find_target(output: Path | None, project: Path | None) -> Path:
+    from archgen.project import PROJECT_FILE, ProjectNotFoundError
+    from archgen.project.project_search import find_project
+
+    if output is not None:
+        return project / output if project is not None and not output.is_absolute() else output
+    try:
+        root, first_file = find_project(project)
+    except ProjectNotFoundError:
+        msg = "there is no project here: `-o FOLDER` makes a new one of the model"
+        raise click.UsageError(msg) from None
+    if first_file != PROJECT_FILE:
+        msg = "a project of a single file reads no slices: put it into a folder as archgen.yaml first, or name another by `-o`"
         raise click.UsageError(msg)
+    return root
 
 
-def _read_file(file: Path) -> ReqifDocument:
-    from archgen.diagnostics.diagnostic import Diagnostic, Severity
-    from archgen.importers.reqif import read_reqif_file
-    from archgen.importers.reqif.reqif_parsing import ReqifError
+def _import_slices(  # noqa: PLR0913 - what, where and how
+    import_format: ImportFormat, files: list[Path], target: Path, form: str, *, merge: bool, dry_run: bool
+) -> None:
+    from archgen.edit.imported_slices import ImportOrigin, ImportRefusedError, plan_import
 
-    try:
-        return read_reqif_file(file)
-    except ReqifError as error:
-        finding = Diagnostic("syntax-error", error.message, error.span, Severity.ERROR, help=error.help_line)
-        _print_error(finding)
-    except OSError as error:
-        msg = f"{file} cannot be read: {error.strerror}"
-        raise click.ClickException(make_visible(msg)) from None
-    raise click.exceptions.Exit(1)
-
-
-def _print_error(finding: Diagnostic) -> None:
-    click.echo(make_visible(f"error: {finding.span}: {finding.message}"), err=True)
-    click.echo(make_visible(f"  = help: {finding.help}"), err=True)
-    click.echo("Nothing was written.", err=True)
-
-
-def _summarise_objects(file: Path, imported: ImportedRequirements) -> Iterator[str]:
-    """Yield the account of the file: how many objects were taken, and each that was not, with the reason."""
-    fates = [account.fate for account in imported.accounts]
-    counts = ", ".join(f"{fates.count(fate)} {fate}" for fate in ("taken", "left out", "not taken") if fate in fates)
-    yield f"{file.name}: {len(fates)} object{'s' * (len(fates) != 1)}{': ' if counts else ''}{counts}"
-    for account in imported.accounts:
-        if account.fate != "taken":
-            yield f"  {account.fate}: {account.place} `{account.name[:80]}`: {account.reason}"
-        elif account.reason and account.id:
-            yield f"  taken as `{account.id}`: {account.place}: {account.reason}"
-    for name, count in sorted(imported.unread_attributes.items()):
-        yield f"  attribute not taken: `{name}` of {count} object{'s' * (count != 1)}"
-    for name, count in sorted(imported.unread_relations.items()):
-        yield f"  relations not taken: {count} of the type `{name}`"
-    for name, parent in imported.closing_relations:
-        yield f"  relation not taken: `{name}` is a part of `{parent}`, which would be a part of itself"
-
-
-def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements, into: Path | None) -> RequirementSlice:
-    from archgen.edit.requirement_slice import make_requirement_slice
-
-    target = _find_target(checked_project, into)
-    root = checked_project.root.resolve()
-    if not target.is_relative_to(root):
-        msg = f"{into} does not lie in the project's folder"
-        raise click.UsageError(make_visible(msg))
-    sections = {"use_cases": imported.use_cases, "requirements": imported.requirements}
-    requirement_slice = make_requirement_slice(checked_project, sections, target.relative_to(root).as_posix())
-    if requirement_slice.errors:
-        command_support.print_findings(_settle(requirement_slice.errors), checked_project, sys.stderr)
-        click.echo("Nothing was written: these errors stand in the slice, or would come with it.", err=True)
+    imported = _read_model(import_format, files)
+    if not imported.slices:
+        _print_account(imported, None, form)
+        click.echo("Nothing was written: there is nothing in it that archgen takes.", err=True)
         raise click.exceptions.Exit(1)
-    return requirement_slice
-
-
-def _settle(errors: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-    from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
-
-    return settle_diagnostics(errors, index_rules(ALL_RULES), {})
-
-
-def _find_target(checked_project: CheckedProject, into: Path | None) -> Path:
-    return (into if into is not None else checked_project.root / DEFAULT_SLICE).resolve()
-
-
-def _summarise_slice(requirement_slice: RequirementSlice) -> Iterator[str]:
-    counts = (
-        (len(requirement_slice.added), "new"),
-        (len(requirement_slice.changed), "changed"),
-        (len(requirement_slice.unchanged), "as before"),
-    )
-    yield f"{requirement_slice.file}: {', '.join(f'{count} {word}' for count, word in counts)}"
-    yield from (f"  no longer in the file, kept: {name}" for name in requirement_slice.missing)
-    yield from (f"  said otherwise in another file, kept: {key}" for key in requirement_slice.written_elsewhere)
-    if requirement_slice.is_rewritten:
-        yield "  written anew: comments could not stay in their places, and stand at the beginning"
-
-
-def _write_slice(checked_project: CheckedProject, requirement_slice: RequirementSlice, into: Path | None) -> None:
-    from archgen.emit.file_tree import OutputError, write_file
-
-    target = _find_target(checked_project, into)
+    origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files))
     try:
-        write_file(target, requirement_slice.text.encode())
-    except OutputError as error:
-        msg = f"{error.message}; nothing was changed; name another file behind --into"
-        raise click.ClickException(make_visible(msg)) from None
-    command_support.print_written(target)
-    if not requirement_slice.is_read:
-        command_support.print_warning(
-            f"the project does not read it yet: add `{requirement_slice.file}` to `sources` in archgen.yaml"
-        )
+        plan = plan_import(imported, origin, target, merge=merge)
+    except ImportRefusedError as refusal:
+        for diagnostic in refusal.diagnostics:
+            _print_problem(str(diagnostic.span), diagnostic.message, diagnostic.help or "")
+        raise click.ClickException(make_visible(refusal.message)) from None
+    _print_account(imported, plan, form)
+    if not dry_run:
+        _write_plan(plan, quiet=form == "json")
+    _print_outcome(plan)
+    if plan.errors:
+        raise click.exceptions.Exit(1)
+
+
+def _read_model(import_format: ImportFormat, files: list[Path]) -> ForeignImport:
+    from archgen.importers.foreign.foreign_import import ForeignFileError
+
+    try:
+        return import_format.load_reader()(files)
+    except ForeignFileError as error:
+        _print_problem(str(error.span), error.message, error.help_line)
+        click.echo("Nothing was written.", err=True)
+        raise click.exceptions.Exit(1) from None
+
+
+def _print_problem(place: str, message: str, help_line: str) -> None:
+    click.echo(make_visible(f"error: {place}: {message}"), err=True)
+    if help_line:
+        click.echo(make_visible(f"  = help: {help_line}"), err=True)
+
+
+def _print_account(imported: ForeignImport, plan: ImportPlan | None, form: str) -> None:
+    """Print what was taken, and each construct that was not, with its place."""
+    if form == "json":
+        click.echo(json.dumps(_make_record(imported, plan), indent=2, ensure_ascii=True))
+        return
+    taken = ", ".join(f"{count} {kind}" for kind, count in sorted(imported.taken.items()))
+    click.echo(make_visible(f"taken: {taken or 'nothing'}"))
+    for note in imported.notes:
+        click.echo(make_visible(f"  {note.fate}: {note.span}: {note.kind}: {note.message}"))
+        if note.help_line:
+            click.echo(make_visible(f"    = help: {note.help_line}"))
+    for line in _summarise_slices(plan) if plan else ():
+        click.echo(make_visible(line))
+
+
+def _make_record(imported: ForeignImport, plan: ImportPlan | None) -> dict[str, Any]:
+    return {
+        "taken": dict(sorted(imported.taken.items())),
+        "notes": [_make_note_record(note) for note in imported.notes],
+        "files": [
+            {"file": planned.file, "new": planned.is_new, "changed": planned.is_changed, "kept": planned.kept}
+            for planned in (plan.slices if plan else ())
+        ],
+    }
+
+
+def _make_note_record(note: ImportNote) -> dict[str, Any]:
+    return {
+        "fate": note.fate,
+        "kind": note.kind,
+        "message": note.message,
+        "help": note.help_line,
+        "file": note.span.file,
+        "line": note.span.line,
+        "column": note.span.column,
+    }
+
+
+def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
+    for planned in plan.slices:
+        if not planned.is_new:
+            yield f"{planned.file}: {'brought up to date' if planned.is_changed else 'as before'}"
+            yield from (f"  not in the model, kept: {path}" for path in planned.kept)
+        if planned.is_rewritten:
+            yield "  written anew: comments could not stay in their places, and stand at the beginning"
+
+
+def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:
+    from archgen.emit import new_files
+    from archgen.emit.file_tree import replace_file
+
+    new = {plan.root / planned.file: planned.text.encode() for planned in plan.slices if planned.is_new}
+    changed = [planned for planned in plan.slices if not planned.is_new and planned.is_changed]
+    with command_support.explain_write_errors():
+        new_files.write_new_files(new, plan.root)
+        for planned in changed:
+            replace_file(plan.root / planned.file, planned.text.encode())
+    for path in () if quiet else (*new, *(plan.root / planned.file for planned in changed)):
+        command_support.print_written(path)
+
+
+def _print_outcome(plan: ImportPlan) -> None:
+    """Print errors that came with the import, and what is left to do."""
+    if plan.errors:
+        command_support.print_findings(plan.errors, plan.checked_project, sys.stderr)
+        command_support.print_warning("these errors are in what the model says: mend them there, or in the slices")
+    for file in plan.unread_files:
+        command_support.print_warning(f"the project does not read {file} yet: add it to `sources` in archgen.yaml")

@@ -11,15 +11,14 @@ from typing import Any
 
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.edit import slice_update
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.link import mapping_values
-from archgen.merge.slice_merge import SliceVersions, merge_slices
 from archgen.pipeline import CheckedProject
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.project_files import read_text_file
-from archgen.syntax.yaml_parser import list_comments
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
-from archgen.syntax.yaml_writer import PlainText, write_yaml
+from archgen.syntax.yaml_tree import MappingNode
+from archgen.syntax.yaml_writer import write_yaml
 
 _HEADER = "# Requirements from another tool: `archgen import` brings them up to date, and keeps what that tool does not say.\n"
 _SECTIONS = ("use_cases", "requirements")
@@ -75,28 +74,20 @@ def make_requirement_slice(
 
 
 def _update_text(old_text: str, base: str, new: str, result: RequirementSlice) -> str:
-    """Return the slice with what is new in it; what people wrote around it stays, comments in particular."""
+    """Return the slice with what is new in it."""
     if not old_text.strip():
         return _HEADER + new
-    if base == new:
-        return old_text
-    merged = merge_slices(SliceVersions(base, ours=old_text, theirs=new))
-    if isinstance(merged, str):
-        return merged
-    result.is_rewritten = True
-    return "".join(f"{comment}\n" for comment in list_comments(old_text)) + new
+    updated = slice_update.update_slice_text(old_text, base, new)
+    result.is_rewritten = updated.is_rewritten
+    return updated.text
 
 
 def _read_slice(file: str, text: str) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
     """Return what the slice holds in normal form, and why it cannot be read."""
-    if not text.strip():
-        return {}, ()
-    parsed_slice = parse_slice(file, text)
-    document = parsed_slice.document
-    diagnostics = (*parsed_slice.diagnostics, *parsed_slice.validate_once().diagnostics)
-    if document is None or any(each.severity in {None, Severity.ERROR} for each in diagnostics):
-        return {}, diagnostics
-    foreign = next((entry for entry in document.root if entry.key not in _SECTIONS), None)
+    content = slice_update.read_slice_content(file, text)
+    if content.diagnostics:
+        return {}, content.diagnostics
+    foreign = next((entry for entry in content.entries if entry.key not in _SECTIONS), None)
     if foreign:
         message = (
             f"`{foreign.key}` stands in this file, and only requirements and use cases can be brought up to date here"
@@ -105,18 +96,7 @@ def _read_slice(file: str, text: str) -> tuple[dict[str, Any], tuple[Diagnostic,
             "wrong-value", message, foreign.key_span, Severity.ERROR, help="name a file of its own behind `--into`"
         )
         return {}, (refusal,)
-    return {entry.key: _to_texts(entry.value) for entry in document.root}, ()
-
-
-def _to_texts(node: YamlNode) -> Any:  # noqa: ANN401 - any value of the language
-    """Return a value as it is written: all of requirements is text, and `1.10` is not 1.1."""
-    if isinstance(node, MappingNode):
-        return {entry.key: _to_texts(entry.value) for entry in node}
-    if isinstance(node, SequenceNode):
-        return [_to_texts(item) for item in node.items]
-    if not isinstance(node, ScalarNode) or node.value is None:
-        return None
-    return node.text if isinstance(node.value, str) else PlainText(node.text)
+    return content.data, ()
 
 
 def _read_others(checked_project: CheckedProject, file: str, old_text: str) -> MappingNode:
@@ -146,7 +126,7 @@ def _merge_section(
             if key == "hints":
                 _lay_hints(new_body, value, mapping_values.get_mapping(other_body, key))
             elif key in other_body.entries and key not in new_body:
-                if _to_texts(other_body.entries[key].value) != value:
+                if slice_update.to_texts(other_body.entries[key].value) != value:
                     result.written_elsewhere.append(f"{key} of {name}")
             else:
                 new_body[key] = value

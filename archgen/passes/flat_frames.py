@@ -69,9 +69,9 @@ class FlatFrames:
         leaves = [each for each in self._architecture.leaves_of(frame.by) if each in self._flat_ids]
         if frame.by not in self._outline.shells or not leaves:
             return self._flat_ids.get(frame.by, frame.by)
-        nodes = {node.id for node in self._architecture.nodes.values() if not set(leaves).isdisjoint(node.implements)}
+        nodes = [node.id for node in self._architecture.nodes.values() if not set(leaves).isdisjoint(node.implements)]
         is_one_node = len(nodes) == 1 and len(leaves) > 1
-        return next(iter(nodes)) if is_one_node else self._flat_ids[leaves[0]]
+        return nodes[0] if is_one_node else self._flat_ids[leaves[0]]
 
 
 def _write_text(key: str, text: str, source: MappingEntry) -> MappingEntry:

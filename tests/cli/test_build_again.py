@@ -235,10 +235,10 @@ def test_only_some_are_made_and_the_others_are_not_taken_for_fresh(run: Run, bui
     [
         (("--only", "reprot"), "there is no output `reprot`; did you mean `report`?"),
         (("--only", "site,wikki"), "there is no output `wikki`; did you mean `wiki`?"),
-        (("--only", "zzz"), "there is no output `zzz`; there are report, site, diagrams, packed, wiki"),
+        (("--only", "zzz"), "there is no output `zzz`; there are report, site, diagrams, packed, csv, wiki"),
         (("--only", ","), "--only takes the names of outputs, separated by commas"),
         (("--only", ""), "--only takes the names of outputs, separated by commas"),
-        (("--backend", "report"), "there is no text backend `report`; there are wiki"),
+        (("--backend", "report"), "there is no text backend `report`; there are csv, wiki"),
     ],
 )
 def test_a_name_that_is_no_output(run: Run, build: Builds, words: tuple[str, ...], error: str) -> None:

@@ -101,7 +101,7 @@ def test_each_type_says_what_it_is_and_where_what_it_sends_goes(distro: str) -> 
 def test_the_table_of_distributions_names_what_there_is() -> None:
     table = shipped_library.read_distribution_table()
     files = {path.name for path in resources.resource_path("ros_library").iterdir()}
-    assert files == {*table.files, "distributions.yaml"}
+    assert files == {*table.files, "distributions.yaml", "sources"}
     packages = {
         mapping_values.get_text(mapping_values.get_mapping(mapping_values.get_body(entry), "node"), "package")
         for file in table.files
@@ -287,7 +287,7 @@ def test_a_type_of_the_project_is_made_from_one_that_ships(tmp_path: Path) -> No
     assert [finding for finding in check(tmp_path, text) if not finding.startswith("missing-detail")] == []
 
 
-def test_the_page_of_the_library_is_fresh() -> None:
+def test_the_pages_of_the_library_are_fresh() -> None:
     import importlib.util
 
     path = ROOT / "tools" / "make_ros_library_page.py"
@@ -296,7 +296,8 @@ def test_the_page_of_the_library_is_fresh() -> None:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    assert module.PAGE.read_text(encoding="utf-8") == module.format_page(), "run tools/make_ros_library_page.py"
+    for page, format_page in module.PAGES.items():
+        assert page.read_text(encoding="utf-8") == format_page(), "run tools/make_ros_library_page.py"
 
 
 def test_it_may_have_any_name_and_more_than_one(tmp_path: Path) -> None:

@@ -2,38 +2,26 @@
 
 from __future__ import annotations
 
-import lzma
-import struct
 import zipfile
-import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers.foreign.bounded_files import ARCHIVE_DAMAGE, ZIP_BEGINNING
 from archgen.importers.reqif.reqif_document import ReqifDocument
 from archgen.importers.reqif.reqif_parsing import ReqifError, parse_reqif
 
 MAX_BYTES = 500_000_000
 """So much is read of one file, or of all in a zip file together."""
 _CHUNK = 1 << 18
-_DAMAGE = (
-    zipfile.BadZipFile,
-    zlib.error,
-    lzma.LZMAError,
-    RuntimeError,
-    EOFError,
-    ValueError,
-    struct.error,
-    NotImplementedError,
-)
 
 
 def read_reqif_file(path: Path) -> ReqifDocument:
     """Read a .reqif or .reqifz file. Raise ReqifError for what is none, and OSError."""
     document = ReqifDocument()
     with path.open("rb") as stream:
-        is_zip = stream.read(4) == b"PK\x03\x04"
+        is_zip = stream.read(4) == ZIP_BEGINNING
         stream.seek(0)
         if is_zip:
             _read_archive(path.name, stream, document)
@@ -54,7 +42,7 @@ def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None
             for member in members:
                 with archive.open(member) as part:
                     parse_reqif(f"{name} [{member.filename}]", limit.read_chunks(part), document)
-    except _DAMAGE as error:
+    except ARCHIVE_DAMAGE as error:
         words = f"the zip file is damaged ({error})"
         raise ReqifError(words, Span.of_file(name), "export it again") from None
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from xml.parsers import expat
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers import xml_errors
 from archgen.importers.reqif.reqif_document import HierarchyEntry, ReqifDocument, ReqifObject, ReqifRelation
 from archgen.importers.reqif.xhtml_text import XhtmlText
 
@@ -19,16 +20,7 @@ _NAMED_ELEMENTS = frozenset(
         for sort in ("XHTML", "STRING", "ENUMERATION", "INTEGER", "REAL", "BOOLEAN", "DATE")
     }
 )
-_ENCODING_HELP = "save it as UTF-8, and let its first line say so"
-_WRONG_ENCODINGS = frozenset({expat.errors.XML_ERROR_UNKNOWN_ENCODING, expat.errors.XML_ERROR_INCORRECT_ENCODING})
-_UNENDED = frozenset(
-    {
-        expat.errors.XML_ERROR_NO_ELEMENTS,
-        expat.errors.XML_ERROR_UNCLOSED_TOKEN,
-        expat.errors.XML_ERROR_PARTIAL_CHAR,
-        expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION,
-    }
-)
+_MALFORMED_HELP = "a ReqIF file is XML in UTF-8; export it again"
 
 
 class ReqifError(Exception):
@@ -76,23 +68,12 @@ class _ReqifParser:
                 self._parser.Parse(chunk, False)  # noqa: FBT003 - expat's signature
             self._parser.Parse(b"", True)  # noqa: FBT003
         except expat.ExpatError as error:
-            raise self._explain(error) from None
+            problem = xml_errors.explain_syntax(error, is_root_seen=self._is_root_seen, malformed_help=_MALFORMED_HELP)
+            span = self._span(None if problem.is_at_end else error)
+            raise ReqifError(problem.message, span, problem.help_line) from None
         except (LookupError, ValueError) as error:
-            # What expat asks Python for: an encoding of the file's first line.
-            words = f"its encoding cannot be read ({error})"
-            raise ReqifError(words, self._span(), _ENCODING_HELP) from None
-
-    def _explain(self, error: expat.ExpatError) -> ReqifError:
-        message = expat.ErrorString(error.code)
-        if message in _UNENDED:
-            words = "only the first part of a file is there: it ends before its elements do"
-            words = words if self._is_root_seen else "it is empty, or no XML: there is no element in it"
-            return ReqifError(words, self._span(), "export it again, or copy it again as a whole")
-        if message in _WRONG_ENCODINGS:
-            words = f"its encoding cannot be read ({message})"
-            return ReqifError(words, self._span(), _ENCODING_HELP)
-        words = f"this is not XML as it should be ({message})"
-        return ReqifError(words, self._span(error), "a ReqIF file is XML in UTF-8; export it again")
+            problem = xml_errors.explain_encoding(error)
+            raise ReqifError(problem.message, self._span(), problem.help_line) from None
 
     def _span(self, error: expat.ExpatError | None = None) -> Span:
         line = error.lineno if error else self._parser.CurrentLineNumber

@@ -132,11 +132,13 @@ class ArchitectureView:
             if element.kind == "type":
                 self.type_keys[element.type_name] = element.key
         self._add(element)
+        self._mark_around(element)
         self._resolve_sources(element.key)
         self.references.forget_names()
 
     def remove_element(self, key: str) -> None:
         """Forget a component that was taken out of the tree, with all that stood in it."""
+        self._mark_around(self.elements[key])
         for inner in [each for each in self.elements if each == key or each.startswith(f"{key}.")]:
             element = self.elements[inner]
             self._mark_stale(inner)
@@ -259,6 +261,13 @@ class ArchitectureView:
         if element and element.kind == "type" and element.type_name in self._users:
             for user in self._users.pop(element.type_name):
                 self._mark_stale(user)
+
+    def _mark_around(self, element: ViewElement) -> None:
+        """Work out anew what holds a component that came or went: each has all that stands in it."""
+        parent = element.parent
+        while parent is not None and parent in self.elements:
+            self._mark_stale(parent)
+            parent = self.elements[parent].parent
 
     def _read_types(self) -> dict[str, dict[str, ViewValue]]:
         if self._types is None:

@@ -72,6 +72,12 @@ def _make_middleware(context: GenerationContext) -> GeneratedView:
     return middleware_view.make_view(context)
 
 
+def _make_aadl(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import aadl_view
+
+    return aadl_view.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "components": _make_components,
@@ -83,6 +89,7 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "ros2_launch": _make_ros2_launch,
     "simulation": _make_simulation,
     "middleware": _make_middleware,
+    "aadl": _make_aadl,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""
 

@@ -64,7 +64,9 @@ def _list_rows(branch: Mapping[str, Any], depth: int) -> Iterator[dict[str, Any]
 def _find_odd_structs(names: set[str]) -> set[str]:
     """Return the groups whose struct another group beside them has: `a1_b` and `a1b` both give `A1B`."""
     groups = {name.rsplit(".", depth)[0] for name in names for depth in range(1, name.count(".") + 1)}
-    structs = {group: (group.rpartition(".")[0], group.rpartition(".")[2].title().replace("_", "")) for group in groups}
+    structs = {
+        group: (group.rpartition(".")[0], group.rpartition(".")[2].title().replace("_", "")) for group in sorted(groups)
+    }
     counts = Counter(structs.values())
     return {group for group, struct in structs.items() if counts[struct] > 1}
 

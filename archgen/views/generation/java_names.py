@@ -25,7 +25,7 @@ def choose_java_spellings(names: Mapping[str, str], package: str, own_names: Ite
     A class that is named by its last word is imported, unless it stands in the same package. `own_names` mean something
     else in the file.
     """
-    counts = Counter(_get_last_word(each) for each in set(names.values()))
+    counts = Counter(_get_last_word(each) for each in dict.fromkeys(names.values()))
     taken = JAVA_CLASS_NAMES.union(own_names)
     spellings: dict[str, str] = {}
     for key, full_name in names.items():

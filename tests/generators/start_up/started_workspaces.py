@@ -67,9 +67,20 @@ def hold_ports(count: int) -> Iterator[list[int]]:
 class Stage:
     """A folder in which stand-ins play the programs of a robot."""
 
-    def __init__(self, folder: Path, programs: Mapping[str, str], **settings: Any) -> None:  # noqa: ANN401 - any data
-        """Put stand-ins for programs on a path of their own: `programs` are the names of nodes by program."""
+    def __init__(
+        self,
+        folder: Path,
+        programs: Mapping[str, str],
+        *,
+        patience: int = _PATIENCE,
+        **settings: Any,  # noqa: ANN401 - any data
+    ) -> None:
+        """Put stand-ins for programs on a path of their own: `programs` are the names of nodes by program.
+
+        `patience` is how many seconds a script waits for the end of what it told to end, before it insists.
+        """
         self.folder = folder
+        self.patience = patience
         (folder / "bin").mkdir(parents=True)
         defaults: dict[str, Any] = {
             key: {} for key in ("needs", "ports", "says", "manners", "ends", "topics", "services")
@@ -92,7 +103,12 @@ class Stage:
     def environment(self) -> dict[str, str]:
         """The environment of a run."""
         path = f"{self.folder / 'bin'}{os.pathsep}{os.environ['PATH']}"
-        return {**os.environ, "PATH": path, "START_PATIENCE": "3", "START_LOGS": str(self.folder / "logs")}
+        return {
+            **os.environ,
+            "PATH": path,
+            "START_PATIENCE": str(self.patience),
+            "START_LOGS": str(self.folder / "logs"),
+        }
 
     @property
     def journal(self) -> list[str]:
@@ -165,6 +181,10 @@ class Run:
         while list_marked(self.logs):
             assert time.monotonic() < until, list_marked(self.logs)
             time.sleep(0.1)
+
+    def is_missed(self, step: str) -> bool:
+        """Whether the script has said what a step still lacks."""
+        return any(file.read_text(encoding="utf-8") for file in self.logs.glob(f"*/{step}.missing"))
 
     @property
     def log_folder(self) -> Path:

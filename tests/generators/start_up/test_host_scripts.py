@@ -80,7 +80,7 @@ def test_a_signal_in_the_middle_stops_what_was_started(
 ) -> None:
     run, stage = start(script, tmp_path, port, ports={})
     run.wait_for("starting  world")
-    run.wait_until(lambda: "start world" in stage.journal)
+    run.wait_until(lambda: "start world" in stage.journal and run.is_missed("world"))
     run.send(number)
     assert run.wait_for_end() == 128 + number
     assert stage.journal == ["start clock", "end clock", "start world", "stop world"]
@@ -116,13 +116,20 @@ def test_a_step_that_runs_once_and_fails_ends_the_start(script: Path, port: int,
 
 
 def test_what_does_not_listen_is_killed_with_all_that_it_started(script: Path, port: int, tmp_path: Path) -> None:
-    run, stage = start(script, tmp_path, port, manners={"world": "deaf", "a": "stubborn", "b": "parent"})
+    run, _ = start(script, tmp_path, port, manners={"world": "deaf", "b": "parent"}, patience=1)
     run.wait_for("up        all: 4 steps")
     run.send(signal.SIGTERM)
     assert run.wait_for_end() == 0
     assert "killing   world: it does not end by itself" in run.output
-    assert "killing   a" not in run.output
-    assert "stop a" in stage.journal
+
+
+def test_what_does_not_end_by_an_interrupt_is_terminated(script: Path, port: int, tmp_path: Path) -> None:
+    run, stage = start(script, tmp_path, port, manners={"a": "stubborn"}, patience=8)
+    run.wait_for("up        all: 4 steps")
+    run.send(signal.SIGTERM)
+    assert run.wait_for_end() == 0
+    assert "killing" not in run.output
+    assert stage.journal[-3:] == ["stop b", "stop a", "stop world"]
 
 
 def test_when_the_script_itself_is_killed_nothing_is_left(script: Path, port: int, tmp_path: Path) -> None:

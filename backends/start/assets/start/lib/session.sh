@@ -14,10 +14,20 @@ say_end() {
   for id in "${ids[@]}"; do
     case ${state[$id]} in
       planned) [[ ${kind[$id]} == elsewhere ]] || say 'not up' "$id" "$(describe_open_waits "$id")" ;;
-      starting) [[ ${kind[$id]} == elsewhere ]] || say 'not up' "$id" "$(cat -- "$run/$id.missing" 2>/dev/null)" ;;
+      starting) [[ ${kind[$id]} == elsewhere ]] || say 'not up' "$id" "$(describe_missing "$id")" ;;
       failed) say 'not up' "$id" "${reason[$id]}" ;;
     esac
   done
+}
+
+describe_missing() { # ID
+  local missing
+  missing=$(cat -- "$run/$1.missing" 2>/dev/null)
+  if [[ ${kind[$1]} == once ]]; then
+    printf 'it has not come to its end'
+  else
+    printf '%s' "${missing:-nobody has looked at it yet}"
+  fi
 }
 
 describe_open_waits() { # ID
@@ -81,7 +91,10 @@ guard_run() {
       mapfile -t pids < <(grep -lszFx "${marks[@]}" /proc/[0-9]*/environ | tr -cd '0-9\n')
       ((${#pids[@]})) || exit
       kill -s "$signal" -- "${pids[@]}"
-      sleep "$patience"
+      for ((tenths = 0; tenths < 10 * patience; tenths++)); do
+        sleep 0.1
+        grep -qszFx "${marks[@]}" /proc/[0-9]*/environ || exit
+      done
     done
   ) </dev/null >/dev/null 2>&1 &
   set +m

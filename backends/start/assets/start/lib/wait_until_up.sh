@@ -12,7 +12,7 @@
 # The status is 0 if all was seen, 1 if not, and 2 if it never will be.
 set -u
 
-only_look=no patience=30 missing_file='' address=localhost output='' older_bytes=0
+only_look=no patience=30 missing_file='' missed='' address=localhost output='' older_bytes=0
 signs=() changes=() loads=()
 while (($#)); do
   case $1 in
@@ -34,7 +34,11 @@ while (($#)); do
 done
 load_words=("$@")
 
-miss() { [[ -z $missing_file ]] || printf '%s\n' "$1" >"$missing_file"; }
+# Written only when it is another text: whoever reads the file while it is written finds nothing.
+miss() {
+  [[ -z $missing_file || $1 == "$missed" ]] || printf '%s\n' "$1" >"$missing_file"
+  missed=$1
+}
 
 has_line() { [[ $'\n'$1$'\n' == *$'\n'"$2"$'\n'* ]]; }
 

@@ -1,0 +1,152 @@
+"""`archgen import` of ReqIF: take requirements over, and bring them up to date."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support
+from archgen.diagnostics.safe_text import make_visible
+
+if TYPE_CHECKING:
+    from archgen.diagnostics.diagnostic import Diagnostic
+    from archgen.edit.requirement_slice import RequirementSlice
+    from archgen.importers.reqif import ImportedRequirements
+    from archgen.importers.reqif.reqif_document import ReqifDocument
+    from archgen.pipeline import CheckedProject
+
+DEFAULT_SLICE = "requirements.yaml"
+
+
+def import_requirements(file: Path, into: Path | None, project: Path | None, *, dry_run: bool) -> None:
+    """Take the requirements of a file into the project, and print what became of each object.
+
+    Nothing is written where the result would bring errors.
+    """
+    from archgen.importers.reqif import find_known_requirements, take_requirements
+
+    checked_project = command_support.check_or_exit(project)
+    _refuse_single_file(checked_project)
+    document = _read_file(file)
+    known = find_known_requirements(checked_project.architecture.requirements.values())
+    imported = take_requirements(document, known)
+    for line in _summarise_objects(file, imported):
+        click.echo(make_visible(line))
+    if not imported.requirements:
+        click.echo("Nothing was written: there is no requirement in the file.", err=True)
+        raise click.exceptions.Exit(1)
+    requirement_slice = _make_slice(checked_project, imported, into)
+    for line in _summarise_slice(requirement_slice):
+        click.echo(make_visible(line))
+    if not dry_run:
+        _write_slice(checked_project, requirement_slice, into)
+
+
+def _refuse_single_file(checked_project: CheckedProject) -> None:
+    from archgen.project import PROJECT_FILE
+
+    if checked_project.loaded_project.first_file != PROJECT_FILE:
+        msg = "a project of a single file reads no slices: put it into a folder as archgen.yaml first"
+        raise click.UsageError(msg)
+
+
+def _read_file(file: Path) -> ReqifDocument:
+    from archgen.diagnostics.diagnostic import Diagnostic, Severity
+    from archgen.importers.reqif import read_reqif_file
+    from archgen.importers.reqif.reqif_parsing import ReqifError
+
+    try:
+        return read_reqif_file(file)
+    except ReqifError as error:
+        finding = Diagnostic("syntax-error", error.message, error.span, Severity.ERROR, help=error.help_line)
+        _print_error(finding)
+    except OSError as error:
+        msg = f"{file} cannot be read: {error.strerror}"
+        raise click.ClickException(make_visible(msg)) from None
+    raise click.exceptions.Exit(1)
+
+
+def _print_error(finding: Diagnostic) -> None:
+    click.echo(make_visible(f"error: {finding.span}: {finding.message}"), err=True)
+    click.echo(make_visible(f"  = help: {finding.help}"), err=True)
+    click.echo("Nothing was written.", err=True)
+
+
+def _summarise_objects(file: Path, imported: ImportedRequirements) -> Iterator[str]:
+    """Yield the account of the file: how many objects were taken, and each that was not, with the reason."""
+    fates = [account.fate for account in imported.accounts]
+    counts = ", ".join(f"{fates.count(fate)} {fate}" for fate in ("taken", "left out", "not taken") if fate in fates)
+    yield f"{file.name}: {len(fates)} object{'s' * (len(fates) != 1)}{': ' if counts else ''}{counts}"
+    for account in imported.accounts:
+        if account.fate != "taken":
+            yield f"  {account.fate}: {account.place} `{account.name[:80]}`: {account.reason}"
+        elif account.reason and account.id:
+            yield f"  taken as `{account.id}`: {account.place}: {account.reason}"
+    for name, count in sorted(imported.unread_attributes.items()):
+        yield f"  attribute not taken: `{name}` of {count} object{'s' * (count != 1)}"
+    for name, count in sorted(imported.unread_relations.items()):
+        yield f"  relations not taken: {count} of the type `{name}`"
+    for name, parent in imported.closing_relations:
+        yield f"  relation not taken: `{name}` is a part of `{parent}`, which would be a part of itself"
+
+
+def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements, into: Path | None) -> RequirementSlice:
+    from archgen.edit.requirement_slice import make_requirement_slice
+
+    target = _find_target(checked_project, into)
+    root = checked_project.root.resolve()
+    if not target.is_relative_to(root):
+        msg = f"{into} does not lie in the project's folder"
+        raise click.UsageError(make_visible(msg))
+    sections = {"use_cases": imported.use_cases, "requirements": imported.requirements}
+    requirement_slice = make_requirement_slice(checked_project, sections, target.relative_to(root).as_posix())
+    if requirement_slice.errors:
+        command_support.print_findings(_settle(requirement_slice.errors), checked_project, sys.stderr)
+        click.echo("Nothing was written: these errors stand in the slice, or would come with it.", err=True)
+        raise click.exceptions.Exit(1)
+    return requirement_slice
+
+
+def _settle(errors: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+    from archgen.diagnostics.diagnostic import settle_diagnostics
+    from archgen.findings.rule_table import index_rules
+    from archgen.pipeline import ALL_RULES
+
+    return settle_diagnostics(errors, index_rules(ALL_RULES), {})
+
+
+def _find_target(checked_project: CheckedProject, into: Path | None) -> Path:
+    return (into if into is not None else checked_project.root / DEFAULT_SLICE).resolve()
+
+
+def _summarise_slice(requirement_slice: RequirementSlice) -> Iterator[str]:
+    counts = (
+        (len(requirement_slice.added), "new"),
+        (len(requirement_slice.changed), "changed"),
+        (len(requirement_slice.unchanged), "as before"),
+    )
+    yield f"{requirement_slice.file}: {', '.join(f'{count} {word}' for count, word in counts)}"
+    yield from (f"  no longer in the file, kept: {name}" for name in requirement_slice.missing)
+    yield from (f"  said otherwise in another file, kept: {key}" for key in requirement_slice.written_elsewhere)
+    if requirement_slice.is_rewritten:
+        yield "  written anew: comments could not stay in their places, and stand at the beginning"
+
+
+def _write_slice(checked_project: CheckedProject, requirement_slice: RequirementSlice, into: Path | None) -> None:
+    from archgen.emit.file_tree import OutputError, write_file
+
+    target = _find_target(checked_project, into)
+    try:
+        write_file(target, requirement_slice.text.encode())
+    except OutputError as error:
+        msg = f"{error.message}; nothing was changed; name another file behind --into"
+        raise click.ClickException(make_visible(msg)) from None
+    command_support.print_written(target)
+    if not requirement_slice.is_read:
+        command_support.print_warning(
+            f"the project does not read it yet: add `{requirement_slice.file}` to `sources` in archgen.yaml"
+        )

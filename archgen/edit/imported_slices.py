@@ -1,0 +1,193 @@
+"""The slices that a model of another tool becomes, in a folder: new files, or those of an earlier import updated.
+
+An update puts what the model says into what stands there. All else stays: what people added, and their comments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from archgen import pipeline
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.edit import slice_update
+from archgen.edit.edit_proof import list_new_errors
+from archgen.importers.foreign.foreign_import import ForeignImport
+from archgen.model import element_ids
+from archgen.pipeline import CheckedProject
+from archgen.project import PROJECT_FILE
+from archgen.project.project_loading import load_from_files
+from archgen.syntax import file_patterns
+from archgen.syntax.folder_files import FolderFiles
+from archgen.syntax.overlaid_files import OverlaidFiles
+from archgen.syntax.project_files import read_text_file
+from archgen.syntax.yaml_writer import write_yaml
+
+_HOLDERS = frozenset(
+    {"groups", "components", "component_types", "nodes", "types", "hosts", "inputs", "outputs", "links"}
+)
+"""Keys below which elements stand by their ids."""
+
+
+@dataclass(slots=True)
+class PlannedSlice:
+    """A file to write, and what changes in it. `file` is its path below the project's folder."""
+
+    file: str
+    text: str
+    is_new: bool = True
+    is_changed: bool = True
+    kept: list[str] = field(default_factory=list)
+    """Elements that stand in the file and that the model does not name (any more): they stay."""
+    is_rewritten: bool = False
+
+
+@dataclass(slots=True)
+class ImportPlan:
+    """What an import would write below a project's folder, and how the project is judged then."""
+
+    root: Path
+    slices: list[PlannedSlice]
+    is_new_project: bool
+    checked_project: CheckedProject
+    errors: tuple[Diagnostic, ...]
+    """Errors that the project has only with what is imported."""
+
+    @property
+    def unread_files(self) -> list[str]:
+        """Return the slices that the project does not read, by its `sources`."""
+        read = frozenset(self.checked_project.loaded_project.sources.file_names())
+        return [planned.file for planned in self.slices if planned.file not in read]
+
+
+class ImportRefusedError(Exception):
+    """The import cannot be written as it was asked for. The message says why and what to do."""
+
+    def __init__(self, message: str, diagnostics: tuple[Diagnostic, ...] = ()) -> None:
+        super().__init__(message)
+        self.message, self.diagnostics = message, diagnostics
+
+
+@dataclass(frozen=True, slots=True)
+class ImportOrigin:
+    """Where slices come from: the format, and the names of the files, as the first line of each slice says."""
+
+    format_name: str
+    file_names: tuple[str, ...]
+
+    @property
+    def header(self) -> str:
+        """Return the first line of each slice."""
+        names = " ".join(" ".join(name.split()) for name in self.file_names)
+        return f"# From {names} by `archgen import {self.format_name}`; with --merge it is brought up to date.\n"
+
+
+def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, merge: bool) -> ImportPlan:
+    """Plan the slices of an import in a folder, which may be new. Raise ImportRefusedError."""
+    target = folder.resolve()
+    root = find_root(target)
+    is_new_project = root is None
+    root = root or target
+    prefix = "" if target == root else f"{target.relative_to(root).as_posix()}/"
+    files = FolderFiles(root) if root.is_dir() else None
+    slices = [
+        _plan_slice(f"{prefix}{name}", data, imported.comments.get(name, {}), origin, files, merge=merge)
+        for name, data in imported.slices.items()
+    ]
+    if is_new_project:
+        slices.insert(0, PlannedSlice(PROJECT_FILE, write_yaml(_make_project_data(imported, root, slices))))
+    overlay = {planned.file: planned.text.encode() for planned in slices}
+    judged = pipeline.judge_project(load_from_files(OverlaidFiles(root, overlay, files), PROJECT_FILE))
+    errors = [finding for finding in judged.findings if finding.severity is Severity.ERROR]
+    if not is_new_project and files is not None:
+        before = pipeline.judge_project(load_from_files(files, PROJECT_FILE))
+        errors = list(list_new_errors(before, judged))
+    return ImportPlan(root, slices, is_new_project, judged, tuple(errors))
+
+
+def find_root(folder: Path) -> Path | None:
+    """Return the folder of the project that a folder is, or lies in; None where there is none."""
+    return next((each for each in (folder, *folder.parents) if (each / PROJECT_FILE).is_file()), None)
+
+
+def _make_project_data(imported: ForeignImport, root: Path, slices: list[PlannedSlice]) -> dict[str, Any]:
+    title = " ".join(imported.title.split()) or root.name
+    data: dict[str, Any] = {"project": {"id": element_ids.make_id(title, "project"), "title": title}}
+    if imported.distro:
+        data["ros"] = {"distro": imported.distro}
+    # Without `sources` a project is all YAML below it: what else lies there is none of its files.
+    has_others = root.is_dir() and bool(file_patterns.expand_pattern(FolderFiles(root), "**/*.yaml"))
+    return {**data, "sources": [planned.file for planned in slices]} if has_others else data
+
+
+def _plan_slice(  # noqa: PLR0913 - what, where and how
+    file: str,
+    data: Mapping[str, Any],
+    comments: Mapping[tuple[str | int, ...], str],
+    origin: ImportOrigin,
+    files: FolderFiles | None,
+    *,
+    merge: bool,
+) -> PlannedSlice:
+    new_text = origin.header + write_yaml(data, comments)
+    if files is None or not files.has_path(file):
+        return PlannedSlice(file, new_text)
+    if not merge:
+        msg = f"{file} is there already; nothing was written; `--merge` brings it up to date, `-o` names another folder"
+        raise ImportRefusedError(msg)
+    old_file = read_text_file(files, file)
+    if old_file.problem:
+        msg = f"{file} cannot be brought up to date"
+        raise ImportRefusedError(msg, (old_file.problem,))
+    if not old_file.text.startswith(origin.header.rstrip("\n")):
+        msg = (
+            f"{file} does not come from this file: nothing was written; its first line would be "
+            f"`{origin.header.strip()}`; `-o` names another folder"
+        )
+        raise ImportRefusedError(msg)
+    return _update_slice(file, old_file.text, new_text)
+
+
+def _update_slice(file: str, old_text: str, new_text: str) -> PlannedSlice:
+    old_content = slice_update.read_slice_content(file, old_text)
+    if old_content.diagnostics:
+        msg = f"{file} cannot be brought up to date; nothing was written"
+        raise ImportRefusedError(msg, old_content.diagnostics)
+    # Read back, so that both sides are in the same normal form.
+    new_content = slice_update.read_slice_content(file, new_text)
+    merged = _lay_over(old_content.data, new_content.data)
+    updated = slice_update.update_slice_text(old_text, write_yaml(old_content.data), write_yaml(merged))
+    return PlannedSlice(
+        file,
+        updated.text,
+        is_new=False,
+        is_changed=updated.text != old_text,
+        kept=list(_list_kept(old_content.data, new_content.data)),
+        is_rewritten=updated.is_rewritten,
+    )
+
+
+def _lay_over(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the old values with the new ones over them, mapping by mapping; other values are replaced."""
+    merged = dict(old)
+    for key, value in new.items():
+        old_value = old.get(key)
+        if isinstance(value, Mapping) and isinstance(old_value, Mapping):
+            merged[key] = _lay_over(old_value, value)
+        else:
+            merged[key] = value
+    return merged
+
+
+def _list_kept(old: Mapping[str, Any], new: Mapping[str, Any], path: str = "", *, holds: bool = False) -> Iterator[str]:
+    """Yield the elements of the old mapping that the new one does not have, by their paths without section names."""
+    for key, value in old.items():
+        inner_path = f"{path}.{key}" if path and holds else key if holds else path
+        if holds and key not in new:
+            yield inner_path
+        elif isinstance(value, Mapping):
+            inner = new.get(key)
+            inner = inner if isinstance(inner, Mapping) else {}
+            yield from _list_kept(value, inner, inner_path, holds=not holds and key in _HOLDERS)

@@ -1,0 +1,63 @@
+"""The table of formats that `archgen import` reads: each one's reader is imported when it is asked for."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from archgen.frozen import dataclass
+from archgen.importers.foreign.foreign_import import ForeignImport
+
+ForeignReader = Callable[[Sequence[Path]], ForeignImport]
+
+
+@dataclass(frozen=True, slots=True)
+class ImportFormat:
+    """A format: what it is, how its files end, and who reads it."""
+
+    name: str
+    summary: str
+    """What it is, for `archgen import --help`."""
+    endings: tuple[str, ...]
+    """Endings of files that are of this format and of no other, in lower case."""
+    reader: str
+    """`module:function`; the function takes the files and returns a ForeignImport, or raises ForeignFileError."""
+
+    def load_reader(self) -> ForeignReader:
+        """Return the function that reads files of this format."""
+        module, _, function = self.reader.partition(":")
+        reader: ForeignReader = getattr(importlib.import_module(module), function)
+        return reader
+
+
+REQIF = "reqif"
+"""Requirements go into a slice of a project that is there, so this format has a command of its own behind the verb."""
+
+IMPORT_FORMATS: dict[str, ImportFormat] = {
+    known.name: known
+    for known in (
+        ImportFormat(REQIF, "requirements of Doors, Polarion and others (.reqif, .reqifz)", (".reqif", ".reqifz"), ""),
+        ImportFormat(
+            "aadl", "models in AADL v2, as text (.aadl)", (".aadl",), "archgen.importers.aadl.aadl_import:read_aadl"
+        ),
+        ImportFormat(
+            "xmi",
+            "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
+            (".xmi", ".uml", ".mdzip", ".zargo"),
+            "archgen.importers.xmi:read_xmi",
+        ),
+        ImportFormat(
+            "launch",
+            "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
+            (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
+            "archgen.importers.launch.launch_import:read_launch",
+        ),
+    )
+}
+
+
+def guess_format(file: Path) -> ImportFormat | None:
+    """Return the format whose files end as this one does, or None."""
+    name = file.name.lower()
+    return next((known for known in IMPORT_FORMATS.values() if name.endswith(known.endings)), None)

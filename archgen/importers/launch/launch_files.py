@@ -1,0 +1,143 @@
+"""Find what launch files name: packages below the folders that were given, and files in these packages. Nothing else is read."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from archgen.importers.foreign.bounded_files import read_bounded
+from archgen.importers.foreign.foreign_import import ForeignFileError
+
+LAUNCH_ENDINGS = (".launch", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch.py")
+MAX_LAUNCH_BYTES = 4_000_000
+_MAX_FOLDERS = 20_000
+_MAX_DEPTH = 8
+_PARENTS_TRIED = 4
+_SKIPPED = frozenset({"build", "install", "log", "node_modules", "devel"})
+_PACKAGE_FILE = re.compile(r"\$\((?:find|find-pkg-share)\s+([A-Za-z0-9_.\-]+)\)(?:/share/\1)?(?:/(.*))?\Z", re.DOTALL)
+_NAME_IN_MANIFEST = re.compile(r"<name[^>]*>\s*([A-Za-z0-9_.\-]+)\s*</name>")
+
+
+def is_launch_file(name: str) -> bool:
+    """Whether a file is called as launch files are."""
+    lower_name = name.lower()
+    return lower_name.endswith(LAUNCH_ENDINGS) or lower_name.endswith(("_launch.py", "_launch.xml", "_launch.yaml"))
+
+
+class LaunchFiles:
+    """The packages of the folders in which the given files lie."""
+
+    def __init__(self, paths: Sequence[Path]) -> None:
+        self.roots = list(dict.fromkeys(_find_root(path) for path in paths))
+        self._packages: dict[str, Path] | None = None
+        self._folders = 0
+
+    def list_launch_files(self) -> list[Path]:
+        """Return the launch files of all packages and folders, by path."""
+        found = [
+            path / name
+            for root in self.roots
+            for path, names in self._walk(root)
+            for name in names
+            if is_launch_file(name)
+        ]
+        return sorted(dict.fromkeys(found))
+
+    def name_file(self, path: Path) -> str:
+        """Return how launch files name a file of a package: `$(find-pkg-share NAME)/launch/x.launch.py`, else its path."""
+        for parent in list(path.parents)[:_PARENTS_TRIED]:
+            if (parent / "package.xml").is_file():
+                name = _read_package_name(parent)
+                return f"$(find-pkg-share {name})/{path.relative_to(parent).as_posix()}"
+            if parent in self.roots:
+                break
+        return path.as_posix()
+
+    def show_path(self, path: Path) -> str:
+        """Return a file's path as messages name it: from the folder that was given."""
+        for root in self.roots:
+            if path.is_relative_to(root):
+                return path.relative_to(root).as_posix()
+        return path.as_posix()
+
+    def find_file(self, text: str) -> Path | None:
+        """Return the file that a text with `$(find-pkg-share ...)`, or a path, means, if it lies below a root."""
+        match = _PACKAGE_FILE.match(text)
+        if match:
+            folder = self._find_package(match[1])
+            return self._find_in_package(folder, match[2] or "") if folder else None
+        if "$(" in text or not text.strip() or "\0" in text:
+            return None
+        return self._check(Path(posixpath.normpath(text)))
+
+    def _find_in_package(self, folder: Path, inner_path: str) -> Path | None:
+        inner = posixpath.normpath(inner_path)
+        if inner.startswith(("/", "..")) or "$(" in inner or "\0" in inner:
+            return None
+        found = self._check(folder / inner)
+        if found is not None:
+            return found
+        # What a package installs need not lie so in its sources: `launch/x.py` may come from `bringup/launch/x.py`.
+        name = posixpath.basename(inner)
+        others = [path / name for path, names in self._walk(folder) if name in names]
+        return self._check(others[0]) if len(others) == 1 else None
+
+    def _check(self, path: Path) -> Path | None:
+        """Return a path of a file below a root, to which no link leads outside."""
+        try:
+            real_path = path.resolve()
+            if path.is_file() and any(real_path.is_relative_to(root) for root in self.roots):
+                return real_path
+        except (OSError, ValueError, RuntimeError):
+            return None
+        return None
+
+    def _find_package(self, name: str) -> Path | None:
+        if self._packages is None:
+            self._packages = {}
+            for root in self.roots:
+                for path, names in self._walk(root):
+                    if "package.xml" in names:
+                        self._packages.setdefault(_read_package_name(path), path)
+        return self._packages.get(name)
+
+    def _walk(self, root: Path) -> list[tuple[Path, list[str]]]:
+        found: list[tuple[Path, list[str]]] = []
+        for folder, folders, names in os.walk(root):
+            path = Path(folder)
+            folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in _SKIPPED)
+            if len(path.relative_to(root).parts) >= _MAX_DEPTH or len(found) >= _MAX_FOLDERS:
+                folders.clear()
+            found.append((path, sorted(names)))
+        return found
+
+
+def _find_root(path: Path) -> Path:
+    """Return the folder below which files are looked for: a folder as given, else the package of a file and those beside it."""
+    resolved = path.resolve()
+    if resolved.is_dir():
+        return resolved
+    for parent in list(resolved.parents)[:_PARENTS_TRIED]:
+        if (parent / "package.xml").is_file():
+            # Packages of one repository stand beside one another; a folder of all packages of a workspace is too much.
+            return parent.parent if (parent.parent / ".git").exists() or _holds_packages(parent.parent) else parent
+    return resolved.parent
+
+
+def _holds_packages(folder: Path) -> bool:
+    try:
+        return sum((inner / "package.xml").is_file() for inner in list(folder.iterdir())[:500]) > 1
+    except OSError:
+        return False
+
+
+def _read_package_name(folder: Path) -> str:
+    try:
+        text = read_bounded(folder / "package.xml", 1_000_000).decode("utf-8", "replace")
+    except ForeignFileError:
+        return folder.name
+    match = _NAME_IN_MANIFEST.search(text)
+    return match[1] if match else folder.name

@@ -1,0 +1,99 @@
+"""`archgen import launch`: nodes that exist, as launch files of ROS 1 and ROS 2 start them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from archgen.diagnostics.source_span import Span
+from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.launch.launch_files import LaunchFiles
+from archgen.importers.launch.launch_loading import load_actions, load_included
+from archgen.importers.launch.launch_run import LaunchRun
+from archgen.importers.launch.launch_slices import SliceMaker
+from archgen.importers.launch.launched_nodes import LaunchedNode
+from archgen.importers.launch.server_parameters import give_server_parameters
+from archgen.model.element_ids import make_id, make_unique_id
+from archgen.model.path_resolver import title_from_id
+
+_ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
+
+
+def read_launch(files: Sequence[Path]) -> ForeignImport:
+    """Read launch files, or all that lie in folders and that no other one includes. Raise ForeignFileError."""
+    launch_files = LaunchFiles(files)
+    run = LaunchRun(launch_files, load_included)
+    given = [path.resolve() for path in files if not path.is_dir()]
+    entries = given or launch_files.list_launch_files()
+    if not entries:
+        words = "there is no launch file in it"
+        raise ForeignFileError(
+            words, Span.of_file(str(files[0]) if files else "."), "name a launch file, or a folder with some"
+        )
+    for path in given:
+        # What is given by name must be readable; what lies in a folder or is included is only noted.
+        load_actions(path, LaunchRun(launch_files, load_included))
+    found: dict[Path, tuple[list[LaunchedNode], Counter[str]]] = {}
+    for path in dict.fromkeys(entries):
+        run.nodes, run.taken = [], Counter()
+        run.run_file(path)
+        found[path] = (run.nodes, run.taken)
+    if not given:
+        found = {path: each for path, each in found.items() if path not in run.included} or found
+    return _make_import(run, found)
+
+
+def _make_import(run: LaunchRun, found: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]) -> ForeignImport:
+    kept = _drop_twins(run, [node for nodes, _ in found.values() for node in nodes])
+    for_all = give_server_parameters(run, [node for nodes in found.values() for node in nodes[0] if id(node) in kept])
+    maker = SliceMaker(run)
+    slices: dict[str, Mapping[str, Any]] = {}
+    comments: dict[str, Mapping[tuple[str | int, ...], str]] = {}
+    names: set[str] = set()
+    for path, (nodes, _) in found.items():
+        name = make_unique_id(
+            f"{make_id(_find_stem(path), 'launch')}_launch".replace("_launch_launch", "_launch"), names
+        )
+        names.add(name)
+        sections = maker.make_sections([node for node in nodes if id(node) in kept])
+        if for_all:
+            sections = {"ros": {"parameters": for_all}, **sections}
+            for_all = {}
+        if sections:
+            slices[f"{name}.yaml"] = sections
+            comments[f"{name}.yaml"] = maker.comments
+    taken = sum((counts for _, counts in found.values()), Counter[str]())
+    title = title_from_id(make_id(_find_stem(next(iter(found))), "robot"))
+    return ForeignImport(slices, dict(sorted((+taken).items())), tuple(run.notes), title, comments=comments)
+
+
+def _find_stem(path: Path) -> str:
+    name = path.name
+    return next((name[: -len(ending)] for ending in _ENDINGS if name.lower().endswith(ending)), path.stem) or "robot"
+
+
+def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
+    """Return which nodes are taken, by identity: of those with one full name the one that runs by the defaults."""
+    kept: dict[str, LaunchedNode] = {}
+    free = [node for node in nodes if not node.full_name]
+    for node in nodes:
+        if not node.full_name:
+            continue
+        other = kept.get(node.full_name)
+        if other is None:
+            kept[node.full_name] = node
+            continue
+        winner, loser = (node, other) if node.is_on and not other.is_on else (other, node)
+        kept[node.full_name] = winner
+        is_same = (winner.package, winner.executable, winner.plugin) == (loser.package, loser.executable, loser.plugin)
+        if not is_same or winner.form != loser.form:
+            words = f" (only {' and '.join(dict.fromkeys(loser.conditions))})" if loser.conditions else ""
+            message = f"another action starts `{loser.full_name}`, too: this one{words} is left out"
+            run.add_note(loser.word, message, loser.span)
+    for node in nodes:
+        # What a container that is left out would load is loaded by the one of its name.
+        if node.container is not None:
+            node.container = kept.get(node.container.full_name, node.container)
+    return {id(node) for node in [*free, *kept.values()]}

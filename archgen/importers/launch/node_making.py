@@ -1,0 +1,284 @@
+"""Make what an action starts: a node, a container or a program, with everything filled in that the file says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from archgen.importers.launch.command_words import split_words
+from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
+from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
+from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter
+from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
+
+if TYPE_CHECKING:
+    from archgen.importers.launch.launch_run import LaunchRun
+
+
+CONTAINER_PACKAGE = "rclcpp_components"
+
+
+class NodeMaker:
+    """Makes nodes for a run, whose context says what is set."""
+
+    def __init__(self, run: LaunchRun) -> None:
+        self._run = run
+
+    def make_node(self, action: LaunchAction, form: str) -> LaunchedNode:
+        """Return the node, container or loaded node of an action."""
+        node = self._begin(action, form)
+        for key in ("package", "executable", "plugin", "name"):
+            setattr(node, key, self._resolve_key(node, action, key))
+        if form == "node" and node.package == CONTAINER_PACKAGE and node.executable.startswith("component_container"):
+            # Nav2 starts its container as a node.
+            node.form = "container"
+        node.is_lifecycle = bool(action.get("is_lifecycle"))
+        self._set_namespace(node, action)
+        self._set_remaps(node, action)
+        if form != "loaded":
+            self._set_process(node, action)
+            self._set_arguments(node, action)
+        self._set_parameters(node, action)
+        self._finish(node)
+        return node
+
+    def make_process(self, action: LaunchAction) -> LaunchedNode | None:
+        """Return the program that an action starts; None where its words are computed."""
+        node = self._begin(action, "program")
+        words: list[str] = []
+        for value in list_items(action.get("command")):
+            text = self._run.context.resolve(value)
+            if isinstance(text, UnknownValue):
+                self._run.tell_computed(action.word, "a word of the command", text, action.span)
+                return None
+            words += split_words(text) if action.get("splits_words") else [text]
+        if not words:
+            self._run.add_note(action.word, "it has no command", action.span)
+            return None
+        node.command, node.name = words, self._resolve_key(node, action, "name")
+        self._set_process(node, action)
+        self._finish(node)
+        return node
+
+    def _begin(self, action: LaunchAction, form: str) -> LaunchedNode:
+        self._run.context.used = {}
+        scope = self._run.context.scope
+        node = LaunchedNode(form, action.word, action.span, action.span.file)
+        node.conditions = [words for words, _ in scope.conditions]
+        node.is_on = all(verdict is not False for _, verdict in scope.conditions)
+        return node
+
+    def _finish(self, node: LaunchedNode) -> None:
+        node.launch_arguments = dict(self._run.context.used)
+
+    def _resolve_key(self, node: LaunchedNode, action: LaunchAction, key: str) -> str:
+        """Return a text of a node; empty where it is absent or cannot be told."""
+        value = action.get(key)
+        if value is None:
+            return ""
+        text = self._run.context.resolve(value)
+        if isinstance(text, UnknownValue):
+            self._run.tell_computed(action.word, f"its {key}", text, action.span)
+            return ""
+        if OPEN in text:
+            self._run.add_note(
+                action.word, f"its {key} is known at the launch only: `{text}`", action.span, fate="noted"
+            )
+            node.written[key] = text
+            return ""
+        self._keep_written(node, key, value)
+        return text
+
+    def _keep_written(self, node: LaunchedNode, key: str, value: LaunchValue) -> None:
+        """Remember what stood where a launch argument was filled in."""
+        if isinstance(value, Substitution | list | tuple):
+            shown = describe_value(value)
+            if "$(var " in shown and len(shown) <= 500:  # noqa: PLR2004 - a hint, not a file
+                node.written[key] = shown
+
+    def _set_namespace(self, node: LaunchedNode, action: LaunchAction) -> None:
+        outer = self._run.context.scope.namespace
+        value = action.get("namespace")
+        inner = self._run.context.resolve("" if value is None else value)
+        for part in (outer, inner):
+            if isinstance(part, UnknownValue):
+                self._run.tell_computed(action.word, "its namespace", part, action.span)
+                return
+        joined = join_names(str(outer), str(inner))
+        if OPEN in joined:
+            message = f"its namespace is known at the launch only: `{joined}`"
+            self._run.add_note(action.word, message, action.span, fate="noted")
+            node.written["namespace"] = joined
+            return
+        if value is not None:
+            self._keep_written(node, "namespace", value)
+        node.namespace = joined
+
+    def _set_remaps(self, node: LaunchedNode, action: LaunchAction) -> None:
+        # The first rule for a name counts, and those of the scope come first.
+        pairs: list[Any] = [*self._run.context.scope.remaps, *list_items(action.get("remaps"))]
+        for pair in pairs:
+            if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
+                unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_value(pair))
+                self._run.tell_computed(action.word, "a remap", unknown, action.span)
+                continue
+            self._add_remap(node, action, pair)
+
+    def _add_remap(self, node: LaunchedNode, action: LaunchAction, pair: Sequence[LaunchValue]) -> None:
+        own_name, name = (self._run.context.resolve(part) for part in pair)
+        unknown = next((each for each in (own_name, name) if isinstance(each, UnknownValue)), None)
+        if unknown is not None:
+            self._run.tell_computed(action.word, "a remap", unknown, action.span)
+            return
+        assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
+        assert isinstance(name, str)  # noqa: S101 - as above
+        self._keep_written(node, f"remaps.{own_name}", pair[1])
+        node.remaps.setdefault(own_name, name)
+
+    def _set_process(self, node: LaunchedNode, action: LaunchAction) -> None:
+        context = self._run.context
+        node.respawn = action.get("respawn") is not None and context.judge(action.get("respawn")) is True
+        delay = action.get("respawn_delay")
+        delay_text = context.resolve(delay) if delay is not None else ""
+        node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
+        for name, value in context.scope.environment:
+            node.environment[name] = value
+        pairs = action.get("environment")
+        for name, value in pairs.items() if isinstance(pairs, Mapping) else _list_pairs(pairs):
+            texts = context.resolve(name), context.resolve(value)
+            if isinstance(texts[0], str) and isinstance(texts[1], str):
+                node.environment[texts[0]] = texts[1]
+        directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
+        node.directory = directory if isinstance(directory, str) else ""
+        prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
+        rest = prefix.reason if isinstance(prefix, UnknownValue) else _read_prefix(node, prefix)
+        if rest:
+            self._run.add_note(action.word, f"what runs it is left out: `{rest}`", action.span)
+        host = context.resolve(action.get("host")) if action.get("host") is not None else ""
+        node.host = host if isinstance(host, str) else ""
+
+    def _set_arguments(self, node: LaunchedNode, action: LaunchAction) -> None:
+        words: list[str] = []
+        for key in ("arguments", "ros_arguments"):
+            given: list[str] = []
+            for value in list_items(action.get(key)):
+                text = self._run.context.resolve(value)
+                if isinstance(text, UnknownValue):
+                    self._run.tell_computed(action.word, "an argument of the program", text, action.span)
+                    continue
+                self._keep_written(node, "arguments", value)
+                given += split_words(text) if action.get("splits_words") else [text]
+            words += ["--ros-args", *given] if key == "ros_arguments" and given else given
+        node.arguments = words
+        if not self._run.context.is_ros_1:
+            read_ros_arguments(node, lambda path: self._add_file(node, path, "", {}))
+        elif action.get("keeps_arguments") is not True:
+            read_nodelet(node)
+
+    def _set_parameters(self, node: LaunchedNode, action: LaunchAction) -> None:
+        scope = self._run.context.scope
+        for path in scope.parameter_files:
+            self._add_file_value(node, action, Substitution(FILE_KIND, (path, "", {})))
+        entries = [*({name: value} for name, value in scope.parameters if isinstance(name, str))]
+        entries += list_items(action.get("parameters"))
+        for entry in entries:
+            if isinstance(entry, Mapping):
+                for raw_name, value in entry.items():
+                    name = self._run.context.resolve(raw_name)
+                    if isinstance(name, str):
+                        self._set_parameter(node, action, name, value)
+            else:
+                self._add_file_value(node, action, entry)
+
+    def _set_parameter(self, node: LaunchedNode, action: LaunchAction, name: str, value: LaunchValue) -> None:
+        found = evaluate_parameter(value, self._run.context)
+        if isinstance(found, UnknownValue):
+            self._run.tell_computed(action.word, f"the parameter `{name}`", found, action.span)
+        elif isinstance(found, CommandWords):
+            if found:
+                node.parameter_commands[name] = list(found)
+                node.parameters.pop(name, None)
+        else:
+            self._keep_written(node, f"parameters.{name}", value)
+            node.parameters[name] = found
+            node.parameter_commands.pop(name, None)
+
+    def _add_file_value(self, node: LaunchedNode, action: LaunchAction, entry: LaunchValue) -> None:
+        if isinstance(entry, Substitution) and entry.kind == "typed":
+            entry = entry.parts[0]
+        is_file = isinstance(entry, Substitution) and entry.kind == FILE_KIND
+        value, namespace, rewrites = entry.parts if is_file else (entry, "", {})
+        text = self._run.context.resolve(value)
+        if isinstance(text, UnknownValue):
+            self._run.tell_computed(action.word, "a parameter file", text, action.span)
+            return
+        self._keep_written(node, "parameter_files", value)
+        changes = evaluate_parameter(rewrites, self._run.context) if isinstance(rewrites, Mapping) else {}
+        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, dict) else {})
+
+    def _resolve_text(self, value: LaunchValue) -> str:
+        text = self._run.context.resolve("" if value is None else value)
+        return text if isinstance(text, str) else ""
+
+    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: dict[str, Any]) -> None:
+        """Add a parameter file: its name, and what it says to the node where it can be read."""
+        if not text:
+            return
+        path = self._run.files.find_file(text)
+        if self._run.context.is_ros_1:
+            self._add_ros_1_file(node, text, path, root_name)
+            return
+        # A file below a namespace is for the nodes of that namespace.
+        full_name = node.full_name.removeprefix(join_names("", root_name)) if root_name else node.full_name
+        values = None if path is None else self._run.parameter_reader.read_for_node(path, full_name or node.executable)
+        if path is not None:
+            text = self._run.files.name_file(path)
+        if text not in node.parameter_files and text.startswith("$("):
+            node.parameter_files.append(text)
+        if values is None:
+            words = "it is not read" if path is None else "it is no file of parameters of ROS 2"
+            self._run.add_note(FILE_KIND, f"`{text}`: {words}", node.span, fate="noted")
+            return
+        for name, value in values.items():
+            # What is written over a file by its last name, as Nav2's RewrittenYaml has it.
+            changed = changes.get(name, changes.get(name.rpartition(".")[2]))
+            node.parameters[name] = value if changed is None else changed
+
+    def _add_ros_1_file(self, node: LaunchedNode, text: str, path: Path | None, inner_name: str) -> None:
+        """Add a file that ROS 1 loads below a node's name, or deeper."""
+        values = None if path is None else self._run.parameter_reader.read_whole(path)
+        if values is None:
+            self._run.add_note(FILE_KIND, f"`{text}`: it is not read", node.span, fate="noted")
+            if not inner_name and text not in node.parameter_files:
+                node.parameter_files.append(text)
+            return
+        for part in reversed(inner_name.split("/") if inner_name else []):
+            values = {part: values}
+        merge_values(node.parameters, values)
+
+
+def list_items(value: LaunchValue) -> list[LaunchValue]:
+    """Return a list of values; of one value alone a list of it."""
+    if value is None:
+        return []
+    return list(value) if isinstance(value, list | tuple) else [value]
+
+
+def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
+    return [(each[0], each[1]) for each in list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004
+
+
+def _read_prefix(node: LaunchedNode, prefix: str) -> str:
+    """Set the user and the folder that a prefix such as `sudo -u robot -- env -C /opt` says; return what is left of it."""
+    words = split_words(prefix)
+    if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
+        place = words.index("-u")
+        node.user = words[place + 1]
+        words = words[place + 2 :]
+        words = words[1:] if words[:1] == ["--"] else words
+    if words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
+        node.directory, words = words[2], []
+    return " ".join(words)

@@ -1,0 +1,92 @@
+"""Parameters as launch files give them: values with their types, commands whose output is the value, and files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from archgen.importers.launch.command_words import split_words
+from archgen.importers.launch.launch_context import LaunchContext
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue
+from archgen.syntax.plain_scalars import resolve_scalar
+from archgen.syntax.yaml_parser import parse_yaml
+from archgen.syntax.yaml_tree import node_to_data
+
+_MAX_DEPTH = 20
+_PARAMETER_TYPES = {
+    "str": "text",
+    "string": "text",
+    "yaml": "yaml",
+    "int": "plain",
+    "integer": "plain",
+    "double": "float",
+}
+
+
+class CommandWords(list[str]):
+    """The words of a command whose output is the value."""
+
+
+def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 0) -> Any:  # noqa: ANN401
+    """Return the value of a parameter as data; CommandWords or an UnknownValue where it is no plain value."""
+    if depth > _MAX_DEPTH:
+        return UnknownValue("values nested very deep")
+    if isinstance(value, UnknownValue) or value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, Mapping):
+        return {
+            key: inner
+            for raw_key, raw in value.items()
+            if isinstance(key := context.resolve(raw_key), str)
+            and not isinstance(inner := evaluate_parameter(raw, context, depth + 1), UnknownValue | CommandWords)
+        }
+    if isinstance(value, list | tuple):
+        if any(isinstance(item, Substitution) for item in value) and not any(
+            isinstance(item, bool | int | float) for item in value
+        ):
+            # As launch_ros has it: texts and substitutions in one list are one text.
+            return evaluate_parameter(Substitution("join", tuple(value)), context, depth + 1)
+        items = [
+            context.resolve(item) if isinstance(item, list | tuple) else evaluate_parameter(item, context, depth + 1)
+            for item in value
+        ]
+        return next((item for item in items if isinstance(item, UnknownValue)), items)
+    return _evaluate_substitution(value, context)
+
+
+def _evaluate_substitution(value: Substitution, context: LaunchContext) -> Any:  # noqa: ANN401
+    if value.kind == "command":
+        return _split_command(value, context)
+    if value.kind == "typed":
+        inner, kind = value.parts[0], _PARAMETER_TYPES.get(str(value.parts[1]), "yaml")
+        command = inner[0] if isinstance(inner, list | tuple) and len(inner) == 1 else inner
+        if isinstance(command, Substitution) and command.kind == "command":
+            return _split_command(command, context)
+        text = context.resolve(inner)
+        return text if isinstance(text, UnknownValue) or kind == "text" else _convert_text(text, kind)
+    text = context.resolve(value)
+    return text if isinstance(text, UnknownValue) else read_value_text(text)
+
+
+def _convert_text(text: str, kind: str) -> Any:  # noqa: ANN401
+    found = read_value_text(text)
+    return float(found) if kind == "float" and isinstance(found, int) and not isinstance(found, bool) else found
+
+
+def read_value_text(text: str) -> Any:  # noqa: ANN401
+    """Return what a text is as YAML: `true`, `0.5` and `[1, 2]` are no texts."""
+    stripped = text.strip()
+    if not stripped or OPEN in stripped:
+        return text
+    if stripped[0] in "[{" and "\n" not in stripped:
+        document, problems = parse_yaml("value", f"value: {stripped}")
+        node = document.root.get("value") if document and not problems else None
+        return text if node is None else node_to_data(node)
+    found = resolve_scalar(stripped)
+    return text if isinstance(found, str) or found is None else found
+
+
+def _split_command(value: Substitution, context: LaunchContext) -> Any:  # noqa: ANN401
+    """Return the words of a command, with `$(...)` in one piece."""
+    text = context.resolve(value.parts[0])
+    return text if isinstance(text, UnknownValue) else CommandWords(split_words(text))

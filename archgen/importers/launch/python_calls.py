@@ -1,0 +1,248 @@
+"""What calls in launch files in Python make: actions and substitutions of ROS, paths, and plain functions of Python."""
+
+from __future__ import annotations
+
+import ast
+import posixpath
+from collections.abc import Callable, Mapping
+
+from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
+from archgen.importers.launch.parameter_files import FILE_KIND
+from archgen.importers.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
+from archgen.importers.launch.python_methods import MethodReader
+from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
+
+_SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "LaunchConfiguration": ("var", ("variable_name", "default")),
+    "LaunchConfigAsBool": ("var", ("name",)),
+    "FindPackageShare": ("share", ("package",)),
+    "FindPackagePrefix": ("prefix", ("package",)),
+    "FindPackage": ("prefix", ("package",)),
+    "get_package_share_directory": ("share", ("package_name",)),
+    "get_package_share_path": ("share", ("package_name",)),
+    "get_package_prefix": ("prefix", ("package_name",)),
+    "EnvironmentVariable": ("env", ("name", "default_value")),
+    "Command": ("command", ("command",)),
+    "PythonExpression": ("eval", ("expression",)),
+    "EqualsSubstitution": ("equals", ("left", "right")),
+    "NotEqualsSubstitution": ("differs", ("left", "right")),
+    "NotSubstitution": ("not", ("value",)),
+    "AndSubstitution": ("and", ("left", "right")),
+    "OrSubstitution": ("or", ("left", "right")),
+    "AnonName": ("anon", ("name",)),
+    "FileContent": ("file-content", ("path",)),
+}
+_FIRST_ARGUMENT = {
+    "FindExecutable": "name",
+    "TextSubstitution": "text",
+    "ParameterFile": "param_file",
+    "Path": "path",
+    "PurePath": "path",
+    "abspath": "path",
+    "realpath": "path",
+    "expanduser": "path",
+    "deepcopy": "x",
+    "normalize_to_list_of_substitutions": "subs",
+    "perform_substitutions": "subs",
+}
+"""Calls that stand for what is given to them."""
+_BUILTINS = frozenset({"range", "list", "dict", "enumerate", "zip", "len", "int", "float", "open", "str"})
+_MODULES = {
+    "get": "os.environ",
+    "getenv": "os",
+    "join": "path",
+    "dirname": "path",
+    "process": "xacro",
+    "process_file": "xacro",
+}
+
+
+class CallReader(MethodReader):
+    """Reads calls. `own_folder` and `own_name` are the file's as launch files name them."""
+
+    def __init__(self, file: str, own_name: str, lines: list[str]) -> None:
+        super().__init__(file, lines)
+        self.own_name = own_name
+
+    def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        """Return what a call gives."""
+        if isinstance(function, FunctionValue):
+            return self.call_function(function, arguments, node)
+        if isinstance(function, BoundMethod):
+            return self.call_method(function, arguments, node)
+        if isinstance(function, ImportedName):
+            return self._call_imported(function, arguments, node)
+        return self.quote(node)
+
+    def _call_imported(  # noqa: PLR0911 - a kind of name each
+        self, function: ImportedName, arguments: CallArguments, node: ast.Call
+    ) -> LaunchValue:
+        name = function.last
+        if name in _SUBSTITUTIONS:
+            return self._make_substitution(name, arguments, node)
+        if name in CONDITIONS:
+            return make_condition(name, arguments)
+        reader: Callable[[CallArguments, ast.Call], LaunchValue] | None = getattr(self, f"_call_{name.lower()}", None)
+        if reader is not None and _is_meant(function):
+            return reader(arguments, node)
+        if name in _FIRST_ARGUMENT and (arguments.positional or arguments.named):
+            return arguments.get(0, _FIRST_ARGUMENT[name], *arguments.named)
+        action = make_action(self, name, arguments, node)
+        if action is not None:
+            return action
+        if function.name.partition(".")[0] in LAUNCH_MODULES and ".actions" in function.name:
+            return self._finish_action(LaunchAction("unread", name, self.place(node)))
+        return self.quote(node)
+
+    def _finish_action(self, action: LaunchAction) -> LaunchAction:
+        action.conditions += self.conditions
+        return action
+
+    def _make_substitution(self, name: str, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        kind, names = _SUBSTITUTIONS[name]
+        parts = [arguments.get(position, each) for position, each in enumerate(names)]
+        while parts and parts[-1] is None:
+            parts.pop()
+        if not parts:
+            return self.quote(node)
+        made = copy_value(Substitution(kind, tuple(parts)))
+        return made if not isinstance(made, UnknownValue) else self.quote(node)
+
+    def _call_launchdescription(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        action = LaunchAction("description", "LaunchDescription", self.place(node))
+        self.add_children(action, arguments.get(0, "initial_entities"))
+        return action
+
+    def _call_pathjoinsubstitution(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        parts = arguments.get(0, "substitutions")
+        return Substitution("path", tuple(parts)) if isinstance(parts, list | tuple) else self.quote(node)
+
+    def _call_join(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        parts = arguments.positional
+        if any(isinstance(part, UnknownValue) for part in parts) or not parts:
+            return self.quote(node)
+        if all(isinstance(part, str) for part in parts):
+            return posixpath.join(*parts)
+        return Substitution("path", tuple(parts))
+
+    def _call_joinpath(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._call_join(arguments, node)
+
+    def _call_dirname(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path = arguments.get(0)
+        if isinstance(path, Substitution) and path.kind == "path" and len(path.parts) > 1:
+            return Substitution("path", path.parts[:-1])
+        return posixpath.dirname(path) if isinstance(path, str) else self.quote(node)
+
+    def _call_thislaunchfiledir(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        return posixpath.dirname(self.own_name)
+
+    def _call_thislaunchfile(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        return self.own_name
+
+    def _call_parametervalue(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        kind = arguments.get(1, "value_type")
+        word = kind.last if isinstance(kind, ImportedName) else "yaml"
+        return Substitution("typed", (arguments.get(0, "value"), {"float": "double"}.get(word, word)))
+
+    def _call_rewrittenyaml(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        rewrites = arguments.get(1, "param_rewrites")
+        changes = copy_value(rewrites) if isinstance(rewrites, Mapping) else {}
+        root = arguments.get(2, "root_key")
+        self.tell_noted(
+            "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
+        )
+        return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "" if root is None else root, changes))
+
+    def _call_replacestring(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        return arguments.get(0, "source_file")
+
+    def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        return Substitution("env", tuple(arguments.positional[:2]))
+
+    def _call_get(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        return Substitution("env", tuple(arguments.positional[:2]))
+
+    def _call_process_file(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path, mappings = arguments.get(0), arguments.get(None, "mappings")
+        if isinstance(path, UnknownValue) or path is None or not (mappings is None or isinstance(mappings, Mapping)):
+            return self.quote(node)
+        words: list[LaunchValue] = ["xacro ", path]
+        for name, value in (mappings or {}).items():
+            words += [f" {name}:=", value]
+        return Substitution("command", (words,))
+
+    def _call_process(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._call_process_file(arguments, node)
+
+    def _call_range(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        ends = [self.force(each) for each in arguments.positional]
+        if not ends or not all(isinstance(end, int) and abs(end) <= 1000 for end in ends):  # noqa: PLR2004 - robots in a row
+            return self.quote(node)
+        try:
+            return list(range(*ends))
+        except (ValueError, TypeError):
+            return self.quote(node)
+
+    def _call_list(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        value = arguments.get(0)
+        if value is None:
+            return []
+        return list(value) if isinstance(value, list | tuple | Mapping) else self.quote(node)
+
+    def _call_open(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path = arguments.get(0, "file")
+        return Substitution("open file", (path,)) if isinstance(path, str | Substitution) else self.quote(node)
+
+    def _call_str(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+        value = arguments.get(0)
+        return "" if value is None else str(value) if isinstance(value, bool | int | float) else value
+
+    def _call_dict(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        value = arguments.get(0)
+        if value is None:
+            return dict(arguments.named)
+        if isinstance(value, list | tuple):
+            pairs = [
+                pair
+                for pair in value
+                if isinstance(pair, list | tuple) and len(pair) == 2 and isinstance(pair[0], str)  # noqa: PLR2004 - a name and a value
+            ]
+            return {pair[0]: pair[1] for pair in pairs} if len(pairs) == len(value) else self.quote(node)
+        return {**value, **arguments.named} if isinstance(value, Mapping) else self.quote(node)
+
+    def _call_enumerate(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        value = arguments.get(0)
+        return [list(pair) for pair in enumerate(value)] if isinstance(value, list | tuple) else self.quote(node)
+
+    def _call_zip(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        if not all(isinstance(each, list | tuple) for each in arguments.positional):
+            return self.quote(node)
+        return [list(each) for each in zip(*arguments.positional, strict=False)]
+
+    def _call_len(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        value = arguments.get(0)
+        return len(value) if isinstance(value, list | tuple | str | Mapping) else self.quote(node)
+
+    def _call_int(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._convert(int, arguments, node)
+
+    def _call_float(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._convert(float, arguments, node)
+
+    def _convert(self, kind: type[int | float], arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        value = self.force(arguments.get(0))
+        is_short = isinstance(value, str) and len(value) < 30  # noqa: PLR2004 - no number is longer
+        try:
+            return kind(value) if is_short or isinstance(value, int | float) else self.quote(node)
+        except (ValueError, OverflowError):
+            return self.quote(node)
+
+
+def _is_meant(function: ImportedName) -> bool:
+    """Whether a function of this name is the one that archgen knows: others may be called so, too."""
+    module, _, name = function.name.rpartition(".")
+    if name in _BUILTINS:
+        return not module
+    return _MODULES.get(name, "") in module or not module

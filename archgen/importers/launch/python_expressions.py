@@ -1,0 +1,303 @@
+"""Work out expressions of launch files in Python from their syntax tree, as far as their text alone says what they are."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_context import LaunchContext
+from archgen.importers.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue, join_values
+from archgen.importers.launch.python_operators import MAX_ITEMS, combine_values, compare_values
+from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName, NameScope
+
+MAX_STEPS = 300_000
+MAX_DEPTH = 60
+_MAX_QUOTED = 80
+_NUMBERS = (int, float)
+
+
+class ExpressionReader:
+    """Reads expressions. `context` is there while a function is read that is called at the launch."""
+
+    def __init__(self, file: str, lines: list[str]) -> None:
+        self.file = file
+        self.context: LaunchContext | None = None
+        self._lines = lines
+        self._steps = 0
+        self._depth = 0
+
+    def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        """Return what a call gives; made by the reader of calls."""
+        raise NotImplementedError
+
+    def quote(self, node: ast.AST) -> UnknownValue:
+        """Return an expression that only running it would tell, as it is written."""
+        line_number = getattr(node, "lineno", 0)
+        if not 0 < line_number <= len(self._lines):
+            return UnknownValue(type(node).__name__, line_number)
+        line = self._lines[line_number - 1].encode("utf-8", "replace")
+        is_one_line = getattr(node, "end_lineno", line_number) == line_number
+        end = getattr(node, "end_col_offset", len(line)) if is_one_line else len(line)
+        text = line[getattr(node, "col_offset", 0) : end].decode("utf-8", "replace").strip()
+        shown = text if len(text) <= _MAX_QUOTED else f"{text[:_MAX_QUOTED]}..."
+        return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number)
+
+    def count_step(self) -> bool:
+        """Whether one more step may be taken."""
+        self._steps += 1
+        return self._steps <= MAX_STEPS
+
+    def evaluate(self, node: ast.expr, scope: NameScope) -> LaunchValue:
+        """Return what an expression stands for."""
+        reader: Callable[[Any, NameScope], LaunchValue] | None = getattr(
+            self, f"_read_{type(node).__name__.lower()}", None
+        )
+        if reader is None or self._depth >= MAX_DEPTH or not self.count_step():
+            return self.quote(node)
+        self._depth += 1
+        try:
+            return reader(node, scope)
+        finally:
+            self._depth -= 1
+
+    def force(self, value: LaunchValue) -> LaunchValue:
+        """Return a value with its substitutions filled in, where that is possible here."""
+        if isinstance(value, Substitution) and self.context is not None:
+            return self.context.resolve(value)
+        return value
+
+    def judge(self, value: LaunchValue) -> bool | None:
+        """Return whether Python takes a value for true; None where that is not known."""
+        found = self.force(value)
+        if found is None or isinstance(found, bool | int | float | str | list | tuple | dict):
+            return None if isinstance(found, str) and "$(" in found else bool(found)
+        return True if isinstance(found, LaunchAction | FunctionValue | ImportedName) else None
+
+    def _read_constant(self, node: ast.Constant, _scope: NameScope) -> LaunchValue:
+        is_plain = node.value is None or isinstance(node.value, bool | int | float | str)
+        return node.value if is_plain else self.quote(node)
+
+    def _read_name(self, node: ast.Name, scope: NameScope) -> LaunchValue:
+        is_known, value = scope.find(node.id)
+        return value if is_known else ImportedName(node.id)
+
+    def _read_attribute(self, node: ast.Attribute, scope: NameScope) -> LaunchValue:
+        owner = self.evaluate(node.value, scope)
+        if isinstance(owner, ImportedName):
+            return ImportedName(f"{owner.name}.{node.attr}")
+        if isinstance(owner, UnknownValue):
+            return self.quote(node)
+        if node.attr in {"parent", "name"} and isinstance(owner, str | Substitution):
+            return self._read_path_part(node, owner)
+        return BoundMethod(owner, node.attr)
+
+    def _read_path_part(self, node: ast.Attribute, owner: str | Substitution) -> LaunchValue:
+        if isinstance(owner, str):
+            head, _, tail = owner.rstrip("/").rpartition("/")
+            return head if node.attr == "parent" else tail
+        if owner.kind == "path" and len(owner.parts) > 1:
+            return Substitution("path", owner.parts[:-1]) if node.attr == "parent" else owner.parts[-1]
+        return self.quote(node)
+
+    def _read_list(self, node: ast.List, scope: NameScope) -> LaunchValue:
+        return list(self._read_items(node.elts, scope))
+
+    def _read_tuple(self, node: ast.Tuple, scope: NameScope) -> LaunchValue:
+        return tuple(self._read_items(node.elts, scope))
+
+    def _read_set(self, node: ast.Set, scope: NameScope) -> LaunchValue:
+        return list(self._read_items(node.elts, scope))
+
+    def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> Iterator[LaunchValue]:
+        for node in nodes:
+            if isinstance(node, ast.Starred):
+                value = self.evaluate(node.value, scope)
+                yield from value if isinstance(value, list | tuple) else (self.quote(node),)
+            else:
+                yield self.evaluate(node, scope)
+
+    def _read_dict(self, node: ast.Dict, scope: NameScope) -> LaunchValue:
+        found: dict[LaunchValue, LaunchValue] = {}
+        for key_node, value_node in zip(node.keys, node.values, strict=True):
+            value = self.evaluate(value_node, scope)
+            if key_node is None:
+                if not isinstance(value, Mapping):
+                    return self.quote(node)
+                found |= value
+                continue
+            key = self.evaluate(key_node, scope)
+            if isinstance(key, UnknownValue | list | dict):
+                return self.quote(node)
+            try:
+                found[key] = value
+            except TypeError:
+                return self.quote(node)
+        return found
+
+    def _read_joinedstr(self, node: ast.JoinedStr, scope: NameScope) -> LaunchValue:
+        parts: list[LaunchValue] = []
+        for part in node.values:
+            value = (
+                self.evaluate(part.value, scope) if isinstance(part, ast.FormattedValue) else self.evaluate(part, scope)
+            )
+            is_formatted = isinstance(part, ast.FormattedValue) and part.format_spec is not None
+            if is_formatted or not isinstance(value, str | int | float | bool | Substitution):
+                return self.quote(node)
+            # In a text Python writes `True`, not `true`.
+            parts.append(str(value) if isinstance(value, bool) else value)
+        return join_values(parts) if parts else ""
+
+    def _read_binop(self, node: ast.BinOp, scope: NameScope) -> LaunchValue:
+        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        return self.combine(node.op, left, right, node)
+
+    def combine(self, sign: ast.operator, left: LaunchValue, right: LaunchValue, node: ast.AST) -> LaunchValue:
+        """Return what an operator makes of two values."""
+        made = combine_values(sign, left, right)
+        return self.quote(node) if made is None else made
+
+    def _read_unaryop(self, node: ast.UnaryOp, scope: NameScope) -> LaunchValue:
+        value = self.evaluate(node.operand, scope)
+        if isinstance(node.op, ast.Not):
+            verdict = self.judge(value)
+            return self.quote(node) if verdict is None else not verdict
+        is_number = isinstance(value, _NUMBERS) and not isinstance(value, bool)
+        if is_number and isinstance(node.op, ast.USub | ast.UAdd):
+            return -value if isinstance(node.op, ast.USub) else value
+        return self.quote(node)
+
+    def _read_boolop(self, node: ast.BoolOp, scope: NameScope) -> LaunchValue:
+        is_or = isinstance(node.op, ast.Or)
+        value: LaunchValue = None
+        for part in node.values:
+            value = self.evaluate(part, scope)
+            verdict = self.judge(value)
+            if verdict is None:
+                return self.quote(node)
+            if verdict == is_or:
+                return value
+        return value
+
+    def _read_compare(self, node: ast.Compare, scope: NameScope) -> LaunchValue:
+        values = [self.force(self.evaluate(each, scope)) for each in (node.left, *node.comparators)]
+        for sign, left, right in zip(node.ops, values, values[1:], strict=False):
+            verdict = compare_values(sign, left, right)
+            if verdict is None:
+                return self.quote(node)
+            if not verdict:
+                return False
+        return True
+
+    def _read_ifexp(self, node: ast.IfExp, scope: NameScope) -> LaunchValue:
+        verdict = self.judge(self.evaluate(node.test, scope))
+        if verdict is None:
+            return self.quote(node)
+        return self.evaluate(node.body if verdict else node.orelse, scope)
+
+    def _read_subscript(self, node: ast.Subscript, scope: NameScope) -> LaunchValue:
+        owner = self.evaluate(node.value, scope)
+        if isinstance(node.slice, ast.Slice):
+            return self._read_slice(node, owner, node.slice, scope)
+        key = self.evaluate(node.slice, scope)
+        if isinstance(owner, ImportedName) and owner.name == "os.environ":
+            return Substitution("env", (key,))
+        if isinstance(owner, BoundMethod) and owner.name == "launch_configurations":
+            return Substitution("var", (key,))
+        if isinstance(owner, Mapping | list | tuple | str) and isinstance(key, str | int):
+            try:
+                return owner[key]  # type: ignore[index]
+            except (KeyError, IndexError, TypeError):
+                return self.quote(node)
+        return self.quote(node)
+
+    def _read_slice(self, node: ast.Subscript, owner: LaunchValue, span: ast.Slice, scope: NameScope) -> LaunchValue:
+        ends = [None if each is None else self.evaluate(each, scope) for each in (span.lower, span.upper, span.step)]
+        if not isinstance(owner, str | list | tuple) or any(
+            end is not None and not isinstance(end, int) for end in ends
+        ):
+            return self.quote(node)
+        try:
+            return owner[slice(*ends)]
+        except ValueError:
+            return self.quote(node)
+
+    def _read_lambda(self, node: ast.Lambda, scope: NameScope) -> LaunchValue:
+        return FunctionValue(node, scope)
+
+    def _read_namedexpr(self, node: ast.NamedExpr, scope: NameScope) -> LaunchValue:
+        scope.values[node.target.id] = value = self.evaluate(node.value, scope)
+        return value
+
+    def _read_listcomp(self, node: ast.ListComp, scope: NameScope) -> LaunchValue:
+        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
+        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
+
+    def _read_generatorexp(self, node: ast.GeneratorExp, scope: NameScope) -> LaunchValue:
+        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
+        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
+
+    def _read_dictcomp(self, node: ast.DictComp, scope: NameScope) -> LaunchValue:
+        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
+        if scopes is None:
+            return self.quote(node)
+        pairs = [(self.evaluate(node.key, each), self.evaluate(node.value, each)) for each in scopes]
+        return dict(pairs) if all(isinstance(key, str | int) for key, _ in pairs) else self.quote(node)
+
+    def _walk_generators(
+        self, generators: list[ast.comprehension], scope: NameScope, depth: int
+    ) -> list[NameScope] | None:
+        """Return a scope for each round of a comprehension; None where that is not known."""
+        if depth == len(generators):
+            return [scope]
+        generator = generators[depth]
+        items = list_items(self.evaluate(generator.iter, scope))
+        if items is None:
+            return None
+        found: list[NameScope] = []
+        for item in items:
+            inner = NameScope(scope)
+            self.assign(generator.target, item, inner)
+            verdicts = [self.judge(self.evaluate(test, inner)) for test in generator.ifs]
+            if None in verdicts:
+                return None
+            if all(verdicts):
+                inner_scopes = self._walk_generators(generators, inner, depth + 1)
+                if inner_scopes is None or len(found) + len(inner_scopes) > MAX_ITEMS or not self.count_step():
+                    return None
+                found += inner_scopes
+        return found
+
+    def assign(self, target: ast.expr, value: LaunchValue, scope: NameScope) -> None:
+        """Give a value to a name, to several names, or to a place in a list or dict."""
+        if isinstance(target, ast.Name):
+            scope.values[target.id] = value
+        elif isinstance(target, ast.Tuple | ast.List):
+            items = list_items(value) if not isinstance(value, Mapping) else None
+            fits = items is not None and len(items) == len(target.elts)
+            for number, each in enumerate(target.elts):
+                self.assign(each, items[number] if fits and items else self.quote(target), scope)
+        elif isinstance(target, ast.Subscript):
+            owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
+            if isinstance(owner, dict) and isinstance(key, str | int):
+                owner[key] = value
+
+    def _read_call(self, node: ast.Call, scope: NameScope) -> LaunchValue:
+        function = self.evaluate(node.func, scope)
+        positional = list(self._read_items(node.args, scope))
+        named: dict[str, LaunchValue] = {}
+        for keyword in node.keywords:
+            value = self.evaluate(keyword.value, scope)
+            if keyword.arg is not None:
+                named[keyword.arg] = value
+            elif isinstance(value, Mapping):
+                named |= {str(key): inner for key, inner in value.items()}
+        return self.call(function, CallArguments(positional, named), node)
+
+
+def list_items(value: LaunchValue) -> list[LaunchValue] | None:
+    """Return what a loop over a value takes one after the other; None where that is not known."""
+    if isinstance(value, list | tuple | Mapping):
+        return list(value)[:MAX_ITEMS] if len(value) <= MAX_ITEMS else None
+    return list(value) if isinstance(value, str) and len(value) <= MAX_TEXT else None

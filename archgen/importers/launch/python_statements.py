@@ -1,0 +1,220 @@
+"""Follow the statements of launch files in Python: names that are given values, conditions, loops, functions."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from typing import Any, Literal
+
+from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
+from archgen.importers.launch.python_expressions import MAX_DEPTH, ExpressionReader, list_items
+from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, NameScope
+
+Ending = Literal["", "return", "break", "continue"]
+"""How a block ended."""
+_MAX_FUNCTIONS = 20
+
+
+class StatementReader(ExpressionReader):
+    """Follows statements. What a function may return stands in its scope."""
+
+    def __init__(self, file: str, lines: list[str]) -> None:
+        super().__init__(file, lines)
+        self.conditions: list[LaunchCondition] = []
+        """The conditions around that are not known: what is made there counts only if they hold."""
+        self._functions = 0
+
+    def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
+        """Note what is taken otherwise than it is written; by the reader of the whole file."""
+        raise NotImplementedError
+
+    def run_block(self, statements: list[ast.stmt], scope: NameScope) -> Ending:
+        """Follow statements in their order."""
+        for statement in statements:
+            ending = self._run_statement(statement, scope)
+            if ending:
+                return ending
+        return ""
+
+    def _run_statement(self, statement: ast.stmt, scope: NameScope) -> Ending:
+        runner: Callable[[Any, NameScope], Ending] | None = getattr(
+            self, f"_run_{type(statement).__name__.lower()}", None
+        )
+        if runner is None or self._depth >= MAX_DEPTH or not self.count_step():
+            return ""
+        self._depth += 1
+        try:
+            return runner(statement, scope)
+        finally:
+            self._depth -= 1
+
+    def _run_assign(self, statement: ast.Assign, scope: NameScope) -> Ending:
+        value = self.evaluate(statement.value, scope)
+        for target in statement.targets:
+            self.assign(target, value, scope)
+        return ""
+
+    def _run_annassign(self, statement: ast.AnnAssign, scope: NameScope) -> Ending:
+        if statement.value is not None:
+            self.assign(statement.target, self.evaluate(statement.value, scope), scope)
+        return ""
+
+    def _run_augassign(self, statement: ast.AugAssign, scope: NameScope) -> Ending:
+        if not isinstance(statement.target, ast.Name):
+            return ""
+        old, new = scope.find(statement.target.id)[1], self.evaluate(statement.value, scope)
+        if isinstance(old, list) and isinstance(statement.op, ast.Add):
+            old += new if isinstance(new, list | tuple) else [new]
+        else:
+            scope.values[statement.target.id] = self.combine(statement.op, old, new, statement)
+        return ""
+
+    def _run_expr(self, statement: ast.Expr, scope: NameScope) -> Ending:
+        self.evaluate(statement.value, scope)
+        return ""
+
+    def _run_import(self, statement: ast.Import, scope: NameScope) -> Ending:
+        for alias in statement.names:
+            name = alias.name if alias.asname else alias.name.partition(".")[0]
+            scope.values[alias.asname or name] = ImportedName(name)
+        return ""
+
+    def _run_importfrom(self, statement: ast.ImportFrom, scope: NameScope) -> Ending:
+        for alias in statement.names:
+            if alias.name != "*":
+                scope.values[alias.asname or alias.name] = ImportedName(f"{statement.module or ''}.{alias.name}")
+        return ""
+
+    def _run_functiondef(self, statement: ast.FunctionDef, scope: NameScope) -> Ending:
+        scope.values[statement.name] = FunctionValue(statement, scope)
+        return ""
+
+    def _run_return(self, statement: ast.Return, scope: NameScope) -> Ending:
+        scope.returned.append(self.evaluate(statement.value, scope) if statement.value is not None else None)
+        return "return"
+
+    def _run_break(self, _statement: ast.Break, _scope: NameScope) -> Ending:
+        return "break"
+
+    def _run_continue(self, _statement: ast.Continue, _scope: NameScope) -> Ending:
+        return "continue"
+
+    def _run_with(self, statement: ast.With, scope: NameScope) -> Ending:
+        for item in statement.items:
+            value = self.evaluate(item.context_expr, scope)
+            if item.optional_vars is not None:
+                self.assign(item.optional_vars, value, scope)
+        return self.run_block(statement.body, scope)
+
+    def _run_try(self, statement: ast.Try, scope: NameScope) -> Ending:
+        return self.run_block([*statement.body, *statement.orelse, *statement.finalbody], scope)
+
+    def _run_if(self, statement: ast.If, scope: NameScope) -> Ending:
+        test = self.evaluate(statement.test, scope)
+        verdict = self.judge(test)
+        if verdict is None:
+            return self._run_both(statement, scope)
+        if self.context is not None and not _is_plain_name_test(statement.test):
+            words = "holds" if verdict else "does not hold"
+            message = f"`{self.quote(statement.test).reason}` {words} by the defaults: the other way is not read"
+            self.tell_noted("if", message, statement.test)
+        return self.run_block(statement.body if verdict else statement.orelse, scope)
+
+    def _run_both(self, statement: ast.If, scope: NameScope) -> Ending:
+        """Follow both ways of a condition that is not known; names that differ behind it are not known either."""
+        before = dict(scope.values)
+        outcomes: list[dict[str, LaunchValue]] = []
+        endings: list[Ending] = []
+        test = self.quote(statement.test)
+        for block, is_negated in ((statement.body, False), (statement.orelse, True)):
+            scope.values = dict(before)
+            self.conditions.append(LaunchCondition(test, is_negated))
+            endings.append(self.run_block(block, scope))
+            self.conditions.pop()
+            outcomes.append(scope.values)
+        first, second = outcomes
+        if endings[0] and not endings[1]:
+            scope.values = second
+        elif endings[1] and not endings[0]:
+            scope.values = first
+        else:
+            scope.values = {name: _merge_values(first.get(name), second.get(name), test) for name in (first | second)}
+        return endings[0] if endings[0] == endings[1] else ""
+
+    def _run_for(self, statement: ast.For, scope: NameScope) -> Ending:
+        items = list_items(self.evaluate(statement.iter, scope))
+        if items is None:
+            repeated = self.quote(statement.iter)
+            self.tell_noted("for", f"how often is computed: `{repeated.reason}`; what is in it is read once", statement)
+            items = [repeated]
+        for item in items:
+            if not self.count_step():
+                break
+            self.assign(statement.target, item, scope)
+            ending = self.run_block(statement.body, scope)
+            if ending == "break":
+                return ""
+            if ending == "return":
+                return ending
+        return self.run_block(statement.orelse, scope)
+
+    def _run_while(self, statement: ast.While, scope: NameScope) -> Ending:
+        self.tell_noted("while", "how often is computed; what is in it is read once", statement)
+        ending = self.run_block(statement.body, scope)
+        return ending if ending == "return" else ""
+
+    def call_function(self, function: FunctionValue, arguments: CallArguments, node: ast.AST) -> LaunchValue:
+        """Return what a function of the file gives."""
+        if self._functions >= _MAX_FUNCTIONS or not self.count_step():
+            return self.quote(node)
+        scope = NameScope(function.scope)
+        self._bind_arguments(function, arguments, scope)
+        self._functions += 1
+        try:
+            if isinstance(function.definition, ast.Lambda):
+                return self.evaluate(function.definition.body, scope)
+            self.run_block(function.definition.body, scope)
+        finally:
+            self._functions -= 1
+        returned = scope.returned
+        if len(returned) > 1:
+            # Several conditions that are not known led to several ends: what they start is taken together.
+            return [item for value in returned for item in (value if isinstance(value, list | tuple) else [value])]
+        return returned[0] if returned else None
+
+    def _bind_arguments(self, function: FunctionValue, arguments: CallArguments, scope: NameScope) -> None:
+        declared = function.definition.args
+        names = [each.arg for each in (*declared.posonlyargs, *declared.args)]
+        for name, default in zip(reversed(names), reversed(declared.defaults), strict=False):
+            scope.values[name] = self.evaluate(default, function.scope)
+        for each, keyword_default in zip(declared.kwonlyargs, declared.kw_defaults, strict=True):
+            if keyword_default is not None:
+                scope.values[each.arg] = self.evaluate(keyword_default, function.scope)
+        scope.values |= dict(zip(names, arguments.positional, strict=False))
+        known_names = {*names, *(each.arg for each in declared.kwonlyargs)}
+        scope.values |= {name: value for name, value in arguments.named.items() if name in known_names}
+        if declared.vararg:
+            scope.values[declared.vararg.arg] = list(arguments.positional[len(names) :])
+        if declared.kwarg:
+            rest = {name: value for name, value in arguments.named.items() if name not in known_names}
+            scope.values[declared.kwarg.arg] = rest
+        for name in known_names - scope.values.keys():
+            scope.values[name] = UnknownValue(name, function.definition.lineno)
+
+
+def _is_plain_name_test(test: ast.expr) -> bool:
+    """Whether a condition is `__name__ == "__main__"`."""
+    return isinstance(test, ast.Compare) and isinstance(test.left, ast.Name) and test.left.id == "__name__"
+
+
+def _merge_values(first: LaunchValue, second: LaunchValue, test: UnknownValue) -> LaunchValue:
+    if first is second:
+        return first
+    if isinstance(first, list) and isinstance(second, list):
+        seen = {id(item) for item in first}
+        return [*first, *(item for item in second if id(item) not in seen)]
+    if isinstance(first, LaunchAction | UnknownValue) and second is None:
+        return first
+    is_plain = isinstance(first, str | int | float | bool) and type(first) is type(second)
+    return first if is_plain and first == second else UnknownValue(f"either way of `if {test.reason}`", test.line)

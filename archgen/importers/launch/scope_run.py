@@ -1,0 +1,113 @@
+"""What actions of launch files set for those behind them: arguments, namespaces, remaps, parameters, the environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from archgen.diagnostics.source_span import Span
+from archgen.importers.foreign.foreign_import import ImportNote
+from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_context import LaunchContext
+from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launched_nodes import join_names
+
+
+class ScopeRun:
+    """Walks through what sets something. Notes are kept here, each one once for a place."""
+
+    def __init__(self) -> None:
+        self.context = LaunchContext()
+        self.notes: list[ImportNote] = []
+        self.hosts: dict[str, str] = {}
+        """The machines of ROS 1, with their addresses."""
+        self._seen_notes: set[tuple[str, str, int, str]] = set()
+
+    def _run_argument(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        if isinstance(name, UnknownValue):
+            self._tell_computed(action, "its name", name)
+            return
+        default = action.get("default")
+        if name not in self.context.scope.configurations and default is not None:
+            value = self.context.resolve(default)
+            if isinstance(value, UnknownValue):
+                self.add_note(
+                    action.word, f"the default of `{name}` is computed: `{value.reason}`", action.span, fate="noted"
+                )
+            self.context.scope.configurations[name] = value
+        if default is None and name not in self.context.scope.configurations:
+            message = f"the argument `{name}` has no default: what it gives stays `{describe_value(Substitution('var', (name,)))}`"
+            self.add_note(action.word, message, action.span, fate="noted")
+
+    def _run_configure(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        if isinstance(name, str):
+            self.context.scope.configurations[name] = self.context.resolve(action.get("value"))
+
+    def _run_namespace(self, action: LaunchAction) -> None:
+        self.push_namespace(action, action.get("namespace"))
+
+    def push_namespace(self, action: LaunchAction, value: LaunchValue) -> None:
+        """Go into a namespace."""
+        text = self.context.resolve(value)
+        scope = self.context.scope
+        if isinstance(text, UnknownValue):
+            self._tell_computed(action, "the namespace", text)
+            scope.namespace = text
+        elif isinstance(scope.namespace, str):
+            scope.namespace = join_names(scope.namespace, text)
+
+    def _run_parameter(self, action: LaunchAction) -> None:
+        self.context.scope.parameters = (*self.context.scope.parameters, (action.get("name"), action.get("value")))
+
+    def _run_parameter_file(self, action: LaunchAction) -> None:
+        self.context.scope.parameter_files = (*self.context.scope.parameter_files, action.get("file"))
+
+    def _run_remap(self, action: LaunchAction) -> None:
+        pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
+        own_name, name = pair
+        if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
+            self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
+        else:
+            self.context.scope.remaps = (*self.context.scope.remaps, (own_name, name))
+
+    def _run_environment(self, action: LaunchAction) -> None:
+        name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
+        if isinstance(name, str) and isinstance(value, str):
+            self.context.scope.environment = (*self.context.scope.environment, (name, value))
+        else:
+            self._tell_computed(
+                action, "the value", value if isinstance(value, UnknownValue) else UnknownValue(str(name))
+            )
+
+    def _run_host(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        address = self.context.resolve(action.get("address", ""))
+        if isinstance(name, str):
+            self.hosts[name] = address if isinstance(address, str) else ""
+
+    def resolve_pairs(self, pairs: LaunchValue) -> list[tuple[str, LaunchValue]]:
+        """Return pairs of a name and a value, filled in."""
+        items = pairs.items() if isinstance(pairs, Mapping) else pairs if isinstance(pairs, list | tuple) else ()
+        resolved = []
+        for pair in items:
+            if isinstance(pair, list | tuple) and len(pair) == 2:  # noqa: PLR2004 - a name and a value
+                name, value = self.context.resolve(pair[0]), self.context.resolve(pair[1])
+                if isinstance(name, str):
+                    resolved.append((name, value))
+        return resolved
+
+    def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
+        """Add a note, once for each place."""
+        key = (span.file, kind, span.line, message)
+        if key not in self._seen_notes:
+            self._seen_notes.add(key)
+            self.notes.append(ImportNote(kind, message, span, help_line, fate))
+
+    def _tell_computed(self, action: LaunchAction, what: str, value: UnknownValue) -> None:
+        self.tell_computed(action.word, what, value, action.span)
+
+    def tell_computed(self, word: str, what: str, value: UnknownValue, span: Span) -> None:
+        """Note what only running the file would tell."""
+        place = span._replace(line=value.line, column=1, end_line=value.line, end_column=2) if value.line else span
+        self.add_note(word, f"{what} is computed: `{value.reason}`", place)

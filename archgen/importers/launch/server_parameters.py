@@ -1,0 +1,75 @@
+"""Parameters of ROS 1 that stand outside of nodes: those below a node's name are the node's, the rest belongs to nobody."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_values import Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launched_nodes import LaunchedNode
+from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
+from archgen.importers.launch.parameter_values import evaluate_parameter
+
+if TYPE_CHECKING:
+    from archgen.importers.launch.launch_run import LaunchRun
+
+SIMULATED_TIME = "use_sim_time"
+
+
+def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[str, Any]:
+    """Give nodes what stands below their names; return what is for all nodes, and note the rest."""
+    names = {node.full_name: node for node in nodes if node.full_name}
+    for_all: dict[str, Any] = {}
+    for full_name, value, span in run.server_parameters:
+        if full_name == f"/{SIMULATED_TIME}":
+            for_all[SIMULATED_TIME] = value
+            continue
+        parts = full_name.strip("/").split("/")
+        owner = next(
+            (names[name] for end in range(len(parts), 0, -1) if (name := "/" + "/".join(parts[:end])) in names), None
+        )
+        if owner is None:
+            message = f"`{full_name}` stands on the parameter server and below no node of the files"
+            run.add_note("param", message, span, "give it to the nodes that read it")
+            continue
+        inner = parts[len(owner.full_name.strip("/").split("/")) :]
+        for part in reversed(inner):
+            value = {part: value}  # noqa: PLW2901 - wrapped from the inside
+        given = value if isinstance(value, dict) else {}
+        # What the node itself says counts more.
+        own = dict(owner.parameters)
+        owner.parameters.clear()
+        merge_values(owner.parameters, given)
+        merge_values(owner.parameters, own)
+    return for_all
+
+
+def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, Any]:
+    """Return parameters of ROS 1 that stand outside of nodes, by their names."""
+    found: dict[str, Any] = {}
+    for entry in action.values["entries"]:
+        if isinstance(entry, Substitution) and entry.kind == FILE_KIND:
+            _read_server_file(run, action, entry, found)
+        elif isinstance(entry, Mapping):
+            for raw_name, raw_value in entry.items():
+                name, value = run.context.resolve(raw_name), evaluate_parameter(raw_value, run.context)
+                if isinstance(value, UnknownValue) or not isinstance(name, str):
+                    unknown = value if isinstance(value, UnknownValue) else UnknownValue(str(name))
+                    run.tell_computed(action.word, f"the parameter `{describe_value(raw_name)}`", unknown, action.span)
+                else:
+                    found[name] = value
+    return found
+
+
+def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution, found: dict[str, Any]) -> None:
+    text = run.context.resolve(entry.parts[0])
+    path = run.files.find_file(text) if isinstance(text, str) else None
+    values = None if path is None else run.parameter_reader.read_whole(path)
+    if values is None:
+        shown = text if isinstance(text, str) else text.reason
+        run.add_note(FILE_KIND, f"`{shown}`: it is not read", action.span)
+        return
+    for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
+        values = {part: values}
+    merge_values(found, values)

@@ -1,0 +1,208 @@
+"""Which classes are components, which component types and which data, and what each is made from."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field
+
+from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
+from archgen.importers.xmi.uml_catalogue import UmlCatalogue
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_children
+
+_TYPE_PREFIX = f"{OWN_PREFIX}component_type."
+_COMPONENT_PREFIX = f"{OWN_PREFIX}component."
+_DATA_PREFIX = f"{OWN_PREFIX}type."
+
+
+@dataclass(slots=True, eq=False)
+class ClassFacts:
+    """A class or component. `element` is a property where it is a part: a place for a component of a type."""
+
+    element: XmlElement
+    sort: str
+    """`component`, `component_type` or `data`."""
+    id: str = ""
+    owner: ClassFacts | None = None
+    """What it stands in, as a component inside."""
+    base: ClassFacts | None = None
+    """The component type that it is made from."""
+    ports: list[PortFacts] = field(default_factory=list)
+    inside: list[ClassFacts] = field(default_factory=list)
+    device: bool = False
+    path: tuple[str, ...] = ()
+    """Group and ids down to a component; the type's id and ids down to what stands in a type."""
+
+    @property
+    def root(self) -> ClassFacts:
+        """The outermost one around it: a component of a group, or a component type."""
+        return self.owner.root if self.owner else self
+
+    def list_bases(self) -> list[ClassFacts]:
+        """Return the types that it is made from, the nearest first."""
+        bases: dict[int, ClassFacts] = {}
+        base = self.base
+        while base is not None and id(base) not in bases:
+            bases[id(base)] = base
+            base = base.base
+        return list(bases.values())
+
+
+class ClassSorting:
+    """Sorts the classes of a model, and finds what each is made from."""
+
+    def __init__(self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, uses: InterfaceUses) -> None:
+        self._index, self._ledger, self._uses = index, ledger, uses
+        self._catalogue = catalogue
+        self._generals = self._find_generals()
+        self._realizers = self._find_realizers()
+        self._with_ports = {each for each in catalogue.classes if self._has_ports(each)}
+        self.facts: dict[XmlElement, ClassFacts] = {}
+        self.parts: dict[XmlElement, ClassFacts] = {}
+        self._sort_classes()
+
+    def _has_ports(self, element: XmlElement) -> bool:
+        return get_kind(element) == "Component" or bool(list_children(element, "Port"))
+
+    def _find_generals(self) -> dict[XmlElement, XmlElement]:
+        """Return the class that each is made from; the first of several, and none that closes a circle."""
+        generals: dict[XmlElement, XmlElement] = {}
+        known = frozenset(self._catalogue.classes)
+        for element in self._catalogue.classes:
+            for generalization in list_children(element, "Generalization"):
+                reference = self._index.find_reference(generalization, "general")
+                general = reference.element if reference else None
+                if general is None or general not in known:
+                    words = f"{call(element)} is made from a class that is not among the classes of these files"
+                    self._ledger.leave(generalization, words)
+                elif element in generals:
+                    words = (
+                        f"{call(element)} is made from `{get_name(general)}`, too: a component type is made from one"
+                    )
+                    self._ledger.leave(generalization, words)
+                elif self._closes_circle(generals, element, general):
+                    words = f"{call(element)} would be made from itself: the generalizations go round in a circle"
+                    self._ledger.leave(generalization, words, "take out one of them")
+                else:
+                    generals[element] = general
+                    self._ledger.take(generalization)
+        return generals
+
+    @staticmethod
+    def _closes_circle(generals: dict[XmlElement, XmlElement], element: XmlElement, general: XmlElement) -> bool:
+        current: XmlElement | None = general
+        while current is not None:
+            if current is element:
+                return True
+            current = generals.get(current)
+        return False
+
+    def _find_realizers(self) -> dict[XmlElement, XmlElement]:
+        """Return the class that realizes each component; the first of several."""
+        realizers: dict[XmlElement, XmlElement] = {}
+        classes = frozenset(self._catalogue.classes)
+        for realization in self._catalogue.realizations:
+            if realization in self._uses.used_elements:
+                continue
+            kind, parent = get_kind(realization), self._index.get_parent(realization)
+            components = self._index.list_named(realization, "abstraction", "supplier")
+            if not components and parent is not None and kind == "ComponentRealization":
+                components = [parent]
+            realizing = self._index.list_named(realization, "realizingClassifier", "client")
+            realizing = [each for each in realizing if each in classes and each not in components]
+            components = [each for each in components if get_kind(each) == "Component"]
+            for component in components:
+                for each in realizing[:1]:
+                    if component in realizers:
+                        words = f"{call(component)} is realized by `{get_name(each)}`, too: a component is made from one type"
+                        self._ledger.leave(realization, words)
+                    else:
+                        realizers[component] = each
+                        self._ledger.take(realization)
+            if len(realizing) > 1 and components:
+                names = ", ".join(get_name(each) for each in realizing[1:3])
+                words = f"{call(components[0])} is realized by {names[:100]}, too: a component is made from one type"
+                self._ledger.leave(realization, words)
+            if not components or not realizing:
+                words = f"{call(realization)} is not taken: it does not lead from a class to a component"
+                self._ledger.leave(realization, words)
+        return realizers
+
+    def _sort_classes(self) -> None:
+        classes = self._catalogue.classes
+        part_types = self._find_part_types()
+        realizing = set(self._realizers.values())
+        generals = set(self._generals.values())
+        data_uses = self._count_data_uses()
+        component_family = self._find_family(realizing | self._with_ports)
+        for element in classes:
+            own_id = get_id(element)
+            if element in self._with_ports:
+                is_type = (
+                    own_id.startswith(_TYPE_PREFIX)
+                    or is_true(element, "isAbstract")
+                    or element in part_types
+                    or element in generals
+                    or element in realizing
+                )
+                sort = "component_type" if is_type and not own_id.startswith(_COMPONENT_PREFIX) else "component"
+            elif own_id.startswith(_DATA_PREFIX):
+                sort = "data"
+            else:
+                is_data = data_uses[element] and element not in component_family and not own_id.startswith(OWN_PREFIX)
+                has_methods = bool(list_children(element, "Operation"))
+                sort = "data" if is_data and not has_methods else "component_type"
+            self.facts[element] = ClassFacts(element, sort)
+        for element, facts in self.facts.items():
+            base = self._realizers.get(element) or self._generals.get(element)
+            if base is not None and self.facts[base].sort == "component_type":
+                facts.base = self.facts[base]
+        self._cut_circles()
+
+    def _cut_circles(self) -> None:
+        """Leave out bases that lead round: a component may be realized by a class that is made from it."""
+        for facts in self.facts.values():
+            bases = facts.list_bases()
+            if any(base is facts for base in bases):
+                words = f"{call(facts.element)} would be made from itself"
+                self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
+                facts.base = None
+
+    def _find_part_types(self) -> set[XmlElement]:
+        """Return the classes with ports that stand as parts in others."""
+        return {
+            reference.element
+            for owner in self._catalogue.classes
+            for part in list_children(owner, "Property")
+            if (reference := self._index.find_reference(part, "type")) and reference.element in self._with_ports
+        }
+
+    def _find_family(self, members: set[XmlElement]) -> set[XmlElement]:
+        """Return classes with all that they are made from and all that is made from them."""
+        family = set(members)
+        for member in members:
+            current = self._generals.get(member)
+            while current is not None and current not in family:
+                family.add(current)
+                current = self._generals.get(current)
+        derived = defaultdict(list)
+        for special, general in self._generals.items():
+            derived[general].append(special)
+        stack = list(family)
+        while stack:
+            for special in derived[stack.pop()]:
+                if special not in family:
+                    family.add(special)
+                    stack.append(special)
+        return family
+
+    def _count_data_uses(self) -> Counter[XmlElement]:
+        """Count how often a class is the type of a port, a property or a parameter."""
+        uses: Counter[XmlElement] = Counter()
+        owners = (*self._catalogue.classes, *self._catalogue.interfaces, *self._catalogue.data_types)
+        for owner in owners:
+            for feature in list_children(owner, "Property", "Port", "Operation"):
+                typed = list_children(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
+                uses.update(each for element in typed for each in self._index.list_named(element, "type"))
+        return uses

@@ -1,0 +1,183 @@
+"""Nodes, devices, communication paths, artifacts and execution environments: hosts, links and what runs where."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xmi.component_assembly import ComponentAssembly
+from archgen.importers.xmi.component_facts import ClassFacts
+from archgen.importers.xmi.import_ledger import ImportLedger, call, make_hints
+from archgen.importers.xmi.made_names import choose_id, say_title
+from archgen.importers.xmi.uml_catalogue import UmlCatalogue, read_description
+from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, list_children
+from archgen.model.element_ids import make_unique_id
+
+
+class DeploymentSections:
+    """Makes the sections `hosts`, `links` and `nodes`."""
+
+    def __init__(
+        self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, assembly: ComponentAssembly
+    ) -> None:
+        self._index, self._ledger, self._catalogue, self._assembly = index, ledger, catalogue, assembly
+        self._facts_of = {facts.element: facts for facts in assembly.components}
+        self._hosts: dict[XmlElement, str] = {}
+        self._libraries: dict[str, list[str]] = defaultdict(list)
+        self._host_of: dict[ClassFacts, str] = {}
+        self._package_of: dict[ClassFacts, XmlElement] = {}
+        taken: set[str] = set()
+        for element in catalogue.hardware:
+            if get_kind(element) == "Node":
+                self._hosts[element] = choose_id(element, "host", taken)
+                taken.add(self._hosts[element])
+                ledger.take(element)
+        self._middlewares = self._find_middlewares()
+        self._read_manifestations()
+        self._read_deployments()
+        for facts, element in assembly.hosted.items():
+            if host := self._find_host(element):
+                self._host_of.setdefault(facts, host)
+
+    def _find_host(self, element: XmlElement | None) -> str | None:
+        """Return the host that a node, or an execution environment in one, stands for."""
+        while element is not None:
+            if element in self._hosts:
+                return self._hosts[element]
+            element = self._index.get_parent(element)
+        return None
+
+    def _find_middlewares(self) -> dict[str, list[str]]:
+        """Return the names of execution environments by host; one that stands in no node is that of all nodes."""
+        middlewares: dict[str, list[str]] = defaultdict(list)
+        for element in self._catalogue.hardware:
+            if get_kind(element) != "ExecutionEnvironment":
+                continue
+            host = self._find_host(element)
+            hosts = [host] if host else list(self._hosts.values())
+            if not hosts:
+                self._ledger.leave(element, f"{call(element)} is not taken: there is no node that has it")
+                continue
+            for each in hosts:
+                middlewares[each].append(get_name(element))
+            words = f"{call(element)} is a hint of {', '.join(f'`{each}`' for each in hosts[:3])}"
+            self._ledger.note(element, words + (" and others" if len(hosts) > 3 else ""))  # noqa: PLR2004 - as shown
+            self._ledger.take(element)
+        return middlewares
+
+    def _read_manifestations(self) -> None:
+        for element in self._catalogue.manifestations:
+            artifacts = self._index.list_named(element, "client") or _list_parent(self._index, element)
+            manifested = self._index.list_named(element, "utilizedElement", "supplier")
+            components = [self._facts_of[each] for each in manifested if each in self._facts_of]
+            for artifact in artifacts:
+                if get_kind(artifact) == "Artifact":
+                    for facts in components:
+                        self._package_of.setdefault(facts, artifact)
+            if components:
+                self._ledger.take(element)
+            else:
+                self._ledger.leave(element, f"{call(element)} is not taken: what it manifests is no component")
+
+    def _read_deployments(self) -> None:
+        manifested = defaultdict(list)
+        for facts, artifact in self._package_of.items():
+            manifested[artifact].append(facts)
+        for element in self._catalogue.deployments:
+            parent = self._index.get_parent(element)
+            targets = self._index.list_named(element, "location", "client")
+            host = self._find_host(targets[0] if targets else parent)
+            deployed = self._index.list_named(element, "deployedArtifact", "supplier")
+            if host is None or not deployed:
+                self._ledger.leave(
+                    element, f"{call(element)} is not taken: it does not lead from an artifact to a node"
+                )
+                continue
+            for each in deployed:
+                self._deploy(element, each, manifested.get(each, []), host)
+
+    def _deploy(self, deployment: XmlElement, deployed: XmlElement, manifested: list[ClassFacts], host: str) -> None:
+        if deployed in self._facts_of:
+            manifested = [self._facts_of[deployed]]
+        elif get_kind(deployed) == "Artifact" and not manifested:
+            self._libraries[host].append(get_name(deployed))
+            self._ledger.note(deployed, f"{call(deployed)} is a hint of `{host}`: no component is in it")
+            self._ledger.take(deployment)
+            return
+        for facts in manifested:
+            if self._host_of.setdefault(facts, host) != host:
+                words = f"`{facts.id}` runs on `{self._host_of[facts]}` already: one component is on one host"
+                self._ledger.leave(deployment, words)
+        if manifested:
+            self._ledger.take(deployment)
+        else:
+            self._ledger.leave(deployment, f"{call(deployed)} is not taken to `{host}`: it is no artifact or component")
+
+    def make_hosts(self) -> dict[str, object]:
+        """Return the section `hosts`."""
+        section: dict[str, object] = {}
+        for element, host_id in self._hosts.items():
+            middlewares = self._middlewares.get(host_id, [])
+            hints = make_hints(
+                element,
+                middleware=middlewares[0] if len(middlewares) == 1 else middlewares,
+                artifacts=list(dict.fromkeys(self._libraries.get(host_id, ()))),
+            )
+            section[host_id] = say_title(get_name(element), host_id) | read_description(self._index, element) | hints
+        return section
+
+    def make_nodes(self) -> dict[str, object]:
+        """Return the section `nodes`: a node for each component that is deployed or has an artifact."""
+        section: dict[str, object] = {}
+        for facts in dict.fromkeys((*self._package_of, *self._host_of)):
+            if facts.root.sort != "component" or facts.device or facts.inside:
+                continue
+            node: dict[str, object] = {"implements": ".".join(facts.path)}
+            artifact = self._package_of.get(facts)
+            if artifact is not None:
+                node["package"] = get_name(artifact)
+                self._ledger.take(artifact)
+            if facts in self._host_of:
+                node["host"] = self._host_of[facts]
+            section[make_unique_id(facts.id, section.keys())] = node
+        library_names = {name for names in self._libraries.values() for name in names}
+        for artifact in self._catalogue.artifacts:
+            is_used = artifact in self._package_of.values() or get_name(artifact) in library_names
+            if not is_used:
+                self._ledger.leave(
+                    artifact, f"{call(artifact)} is not taken: it is on no node, and no component is in it"
+                )
+        return section
+
+    def make_links(self) -> dict[str, object]:
+        """Return the section `links`: communication paths, and associations of nodes and devices."""
+        section: dict[str, object] = {}
+        for element in self._catalogue.paths:
+            ends = self._find_ends(element)
+            if ends is None:
+                words = f"{call(element)} is not taken: what flows between components is said by ports and interfaces"
+                self._ledger.leave(element, words)
+                continue
+            link_id = choose_id(element, "link", section.keys(), get_name(element) or "link")
+            section[link_id] = {"connects": ends} | say_title(get_name(element), link_id) | make_hints(element)
+            self._ledger.take(element)
+        return section
+
+    def _find_ends(self, element: XmlElement) -> list[str] | None:
+        members = self._index.list_named(element, "memberEnd")
+        properties = list(dict.fromkeys((*members, *list_children(element, "Property"))))
+        ends = [target for each in properties for target in self._index.list_named(each, "type")[:1]]
+        ends = ends or self._index.list_named(element, "endType")
+        references: list[str] = []
+        for end in ends:
+            host = self._hosts.get(end) or (self._find_host(end) if get_kind(end) == "ExecutionEnvironment" else None)
+            facts = self._facts_of.get(end)
+            if host is None and (facts is None or not facts.device):
+                return None
+            references.append(host or ".".join(facts.path if facts else ()))
+        return list(dict.fromkeys(references)) if len(set(references)) > 1 else None
+
+
+def _list_parent(index: UmlIndex, element: XmlElement) -> list[XmlElement]:
+    parent = index.get_parent(element)
+    return [] if parent is None else [parent]

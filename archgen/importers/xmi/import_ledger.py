@@ -1,0 +1,56 @@
+"""The account of an import: how many of each construct were taken, and each that was not."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from archgen.importers.foreign.foreign_import import ImportNote
+from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
+
+OWN_PREFIX = "archgen."
+"""What the ids of elements begin with that `archgen export xmi` wrote."""
+
+
+class ImportLedger:
+    """Counts and notes, in the order in which they come up."""
+
+    def __init__(self, index: UmlIndex) -> None:
+        self._index = index
+        self.taken: Counter[str] = Counter()
+        self._notes: dict[tuple[XmlElement, str], ImportNote] = {}
+
+    def take(self, element: XmlElement, kind: str = "") -> None:
+        """Count an element that was taken."""
+        self.taken[f"uml:{kind or get_kind(element)}"] += 1
+
+    def leave(self, element: XmlElement, message: str, help_line: str = "", kind: str = "") -> None:
+        """Note an element that is not taken."""
+        self._add(element, message, help_line, "not taken", kind)
+
+    def note(self, element: XmlElement, message: str, help_line: str = "", kind: str = "") -> None:
+        """Note an element that is taken in another form than it is written in."""
+        self._add(element, message, help_line, "noted", kind)
+
+    def _add(self, element: XmlElement, message: str, help_line: str, fate: str, kind: str) -> None:
+        word = kind or f"uml:{get_kind(element) or element.tag}"
+        note = ImportNote(word, message, self._index.get_span(element), help_line, fate)
+        self._notes.setdefault((element, message), note)
+
+    def list_notes(self) -> tuple[ImportNote, ...]:
+        """Return the notes in the order of the files."""
+        return tuple(sorted(self._notes.values(), key=lambda each: (each.span.file, each.span.line, each.span.column)))
+
+
+def call(element: XmlElement) -> str:
+    """Return what messages call an element: its kind and its name or id."""
+    name = get_name(element) or get_id(element)
+    return f"the {get_kind(element) or element.tag} `{name[:80]}`" if name else f"a {get_kind(element) or element.tag}"
+
+
+def make_hints(element: XmlElement, **others: object) -> dict[str, object]:
+    """Return `hints` with the way back to an element: its id, unless archgen made it, and what else is to be kept."""
+    element_id = get_id(element)
+    kept: dict[str, object] = {} if not element_id or element_id.startswith(OWN_PREFIX) else {"id": element_id}
+    kept |= {key: value for key, value in others.items() if value}
+    return {"hints": {"uml": kept}} if kept else {}

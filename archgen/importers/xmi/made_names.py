@@ -1,0 +1,39 @@
+"""Ids, titles and names of the language for elements of UML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+
+from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xmi.import_ledger import OWN_PREFIX
+from archgen.importers.xmi.uml_index import get_id, get_kind, get_name
+from archgen.model.element_ids import is_id, make_id, make_unique_id
+from archgen.model.path_resolver import title_from_id
+
+_PARAMETER_NAME = re.compile(r"[^\s.]+\Z")
+MAX_TYPE_LENGTH = 200
+
+
+def choose_id(element: XmlElement, kind: str, taken: Collection[str], name: str = "") -> str:
+    """Return a free id for an element: the one that archgen exported it from, else one made from its name."""
+    own_id = get_id(element)
+    if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken:
+        return last_word
+    wanted = make_id(name or get_name(element) or get_kind(element), kind)
+    return make_unique_id(wanted, frozenset(taken))
+
+
+def say_title(name: str, element_id: str) -> dict[str, object]:
+    """Return `title` where the id alone would give another one."""
+    return {"title": name} if name and name != title_from_id(element_id) else {}
+
+
+def name_parameter(name: str) -> str:
+    """Return a name that a parameter may have."""
+    return name if _PARAMETER_NAME.match(name) and len(name) <= MAX_TYPE_LENGTH else make_id(name, "parameter")
+
+
+def name_type(name: str) -> str:
+    """Return the name of a conceptual type: brackets of templates would be generics."""
+    return name.replace("<", "(").replace(">", ")")[:MAX_TYPE_LENGTH].strip()

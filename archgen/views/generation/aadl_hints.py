@@ -1,0 +1,61 @@
+"""What an import from AADL left in `hints: {aadl: ...}`, as the properties that it was read from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from archgen.model.component import Component
+from archgen.model.node import Node
+from archgen.views.generation.aadl_words import AadlProperty, make_property, write_text, write_texts
+
+
+def read_aadl_hints(*elements: Node | Component) -> dict[str, Any]:
+    """Return the hints of elements that are one in AADL; what the last one says counts."""
+    found: dict[str, Any] = {}
+    for element in elements:
+        hints = element.annotations.hints.get("aadl")
+        if isinstance(hints, Mapping):
+            found.update(hints)
+    return found
+
+
+def list_source_properties(hints: Mapping[str, Any]) -> list[AadlProperty]:
+    """Return the schema of a node's internal state, and its own sources."""
+    found = []
+    schema = _find_text(hints.get("internal_state"), "schema")
+    if schema:
+        found.append(make_property("Source_Text", write_texts((schema,)), "internal_state"))
+    sources = _list_texts(hints.get("source_text"))
+    if sources:
+        found.append(make_property("Source_Text", write_texts(sources)))
+    return found
+
+
+def list_function_properties(hints: Mapping[str, Any], component_name: str) -> list[AadlProperty]:
+    """Return headers and entry of the function that a component's thread calls, in terms of that thread."""
+    threads = hints.get("threads")
+    if not isinstance(threads, Mapping) or not threads:
+        return []
+    thread = threads.get(component_name) or next(iter(threads.values()))
+    functions = thread.get("functions") if isinstance(thread, Mapping) else None
+    if not isinstance(functions, Mapping) or not functions:
+        return []
+    function = functions.get("function") or next(iter(functions.values()))
+    found = []
+    sources = _list_texts(function.get("source_text") if isinstance(function, Mapping) else None)
+    if sources:
+        found.append(make_property("Source_Text", write_texts(sources), "function"))
+    entry = _find_text(function, "source_name")
+    if entry:
+        found.append(make_property("Source_Name", write_text(entry), "function"))
+    return found
+
+
+def _find_text(hints: object, key: str) -> str | None:
+    value = hints.get(key) if isinstance(hints, Mapping) else None
+    return value if isinstance(value, str) else None
+
+
+def _list_texts(value: object) -> tuple[str, ...]:
+    return tuple(each for each in value if isinstance(each, str)) if isinstance(value, list | tuple) else ()

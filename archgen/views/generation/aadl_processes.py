@@ -1,0 +1,196 @@
+"""A node as a process of AADL: what it sends and reads as features, and a thread for each component that it implements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from archgen.model.architecture import Architecture
+from archgen.model.declared_timing import Timing
+from archgen.model.node import Endpoint, Node
+from archgen.views.generation.aadl_behaviours import Behaviour
+from archgen.views.generation.aadl_hints import list_function_properties, list_source_properties, read_aadl_hints
+from archgen.views.generation.aadl_ports import PortPart
+from archgen.views.generation.aadl_types import TypeBook
+from archgen.views.generation.aadl_words import (
+    AadlProperty,
+    NameSpace,
+    make_classifier,
+    make_item,
+    make_named_properties,
+    make_property,
+    make_text_properties,
+    write_text,
+)
+from archgen.views.generation.generation_context import write_place
+
+_RESERVED_NAMES = ("tf", "internal_state", "main_thread", "main_state")
+"""What a process has from the library `ros`."""
+_TF_TOPICS = frozenset({"/tf", "/tf_static"})
+_LONGEST_QUEUE = 512
+"""What the standard's own project file lets readers take."""
+_NO_TIMING = Timing()
+_INTERNAL_KINDS = {
+    "publishes": "out data port",
+    "subscribes": "in event data port",
+    "serves": "provides subprogram access",
+    "calls": "requires subprogram access",
+}
+"""What a node has that is no port of a component, by its use."""
+
+
+class Process:
+    """A node in AADL: its type and implementation, which grow as connections and flows are found."""
+
+    def __init__(
+        self,
+        architecture: Architecture,
+        types: TypeBook,
+        node: Node,
+        endpoints: Sequence[Endpoint],
+        package_names: NameSpace,
+    ) -> None:
+        """Write a node; `package_names` are those of the package in which its classifiers stand."""
+        self.node = node
+        self.name = package_names.take_name(node.id)
+        self.name_in_system = self.name
+        self.names = NameSpace(_RESERVED_NAMES)
+        self.features: dict[tuple[bool, str, str], str] = {}
+        """The names of its features by the keys of the parts of its ports."""
+        self.threads: dict[str, str] = {}
+        """The names of its threads by the complete ids of the components."""
+        self.connections: list[dict[str, Any]] = []
+        self.flows: list[dict[str, Any]] = []
+        self.thread_classifiers: list[dict[str, Any]] = []
+        self._endpoints = endpoints
+        self._subcomponents: list[dict[str, Any]] = []
+        self._properties: list[AadlProperty] = []
+        components = [found for each in node.implements if (found := architecture.find_component(each)) is not None]
+        self._hints = read_aadl_hints(node, *components)
+        self.behaviours = {
+            each.id: Behaviour(architecture, types, each, node.timing.get(each.id) or node.timing.get("") or _NO_TIMING)
+            for each in components
+        }
+        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or "tf" in (
+            self._hints.get("access") or ()
+        )
+        # Ports come before threads: it is they that others see.
+        self._feature_items = [
+            self._make_feature(part) for behaviour in self.behaviours.values() for part in behaviour.parts
+        ]
+        self._feature_items += [
+            self._make_internal_feature(types, each)
+            for each in endpoints
+            if each.port is None and each.name not in _TF_TOPICS
+        ]
+        for behaviour in self.behaviours.values():
+            self._add_thread(behaviour, package_names, is_only=len(self.behaviours) == 1)
+        self._properties += list_source_properties(self._hints)
+
+    def find_endpoints(self, part: PortPart, source_id: str = "") -> Iterable[Endpoint]:
+        """Yield what a part of a port uses; with a source only what it arrives on."""
+        uses = {"publishes", "serves"} if part.is_output else {"subscribes", "calls"}
+        for endpoint in self._endpoints:
+            if endpoint.port != part.port.id or endpoint.use not in uses:
+                continue
+            if (
+                part.is_output
+                or not endpoint.sources
+                or any(part.reads(each) and source_id in {"", each} for each in endpoint.sources)
+            ):
+                yield endpoint
+
+    def _make_feature(self, part: PortPart) -> dict[str, Any]:
+        port = part.port
+        name = self.features[part.key] = self.names.take_name(part.name)
+        properties = make_named_properties(name, port.name)
+        endpoint = next(iter(self.find_endpoints(part)), None)
+        if endpoint and endpoint.medium == "ros":
+            own_name = endpoint.own_name or endpoint.name
+            properties.append(make_property("topic_properties::Default_Name", write_text(own_name)))
+        properties += make_text_properties(
+            medium=port.medium if port.medium != "ros" else None,
+            external_end=port.external,
+            description=port.description,
+            frame=port.frame,
+        )
+        return make_item(name, part.text, properties)
+
+    def _make_internal_feature(self, types: TypeBook, endpoint: Endpoint) -> dict[str, Any]:
+        classifier = types.name_type(endpoint.type or endpoint.message, endpoint.flow)
+        name = self.names.take_name(endpoint.name.strip("/").replace("/", "_") or "internal")
+        properties = [
+            make_property("topic_properties::Default_Name", write_text(endpoint.own_name or endpoint.name)),
+            make_property("archgen::Is_Internal", "true"),
+        ]
+        return make_item(name, f"{_INTERNAL_KINDS[endpoint.use]} {classifier}", properties)
+
+    def _add_thread(self, behaviour: Behaviour, package_names: NameSpace, *, is_only: bool) -> None:
+        component, hints = behaviour.component, read_aadl_hints(behaviour.component)
+        kind = behaviour.pattern.partition("::")[2].replace("component_behaviour", "behaviour")
+        own_words = self.node.id if is_only else f"{self.node.id}_{component.name}"
+        classifier = package_names.take_name(f"{kind}_{own_words}")
+        self.thread_classifiers += behaviour.make_classifiers(classifier)
+        name = self.threads[component.id] = self.names.take_name(component.name)
+        properties = make_text_properties(component=None if is_only else component.id)
+        self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
+        for part in behaviour.parts:
+            feature, own_port = self.features[part.key], f"{name}.{behaviour.port_names[part.key]}"
+            ends = (own_port, feature) if part.is_output else (feature, own_port)
+            self._connect(f"{feature}_link", f"{part.connection_kind} {ends[0]} -> {ends[1]}")
+        self._connect(f"{name}_state", f"data access internal_state -> {name}.ist")
+        if behaviour.uses_tf and self.uses_tf:
+            self._connect(f"{name}_tf", f"data access tf -> {name}.tf")
+        own = behaviour.list_properties() + self._list_queue_sizes(behaviour)
+        own += list_function_properties(hints, component.name)
+        self._properties += [
+            {**each, "applies_to": f"{name}.{each['applies_to']}" if each["applies_to"] else name} for each in own
+        ]
+
+    def _list_queue_sizes(self, behaviour: Behaviour) -> list[AadlProperty]:
+        found = []
+        for part in behaviour.parts:
+            endpoint = next(iter(self.find_endpoints(part)), None)
+            depth = endpoint.qos.depth if endpoint and endpoint.qos.written else None
+            if depth and depth <= _LONGEST_QUEUE and part.kind == "in event data port":
+                found.append(make_property("Queue_Size", str(depth), behaviour.port_names[part.key]))
+        return found
+
+    def _connect(self, name: str, text: str, properties: Iterable[AadlProperty] = ()) -> None:
+        self.connections.append(make_item(self.names.take_name(name), text, properties))
+
+    def find_part(self, port_id: str, *, is_output: bool, source_id: str = "") -> PortPart | None:
+        """Return the part of a port that this node has; None where another one has it."""
+        behaviour = self.behaviours.get(port_id.rpartition(".")[0])
+        return behaviour.find_part(port_id, is_output=is_output, source_id=source_id) if behaviour else None
+
+    def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
+        """Join the ports of two components that this node implements."""
+        ends = []
+        for part in (output, reader):
+            component = part.port.component
+            ends.append(f"{self.threads[component]}.{self.behaviours[component].port_names[part.key]}")
+        name = f"{self.features[output.key]}_to_{self.features[reader.key]}"
+        self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
+
+    def make_classifiers(self) -> list[dict[str, Any]]:
+        """Return its threads, its type and its implementation."""
+        node = self.node
+        only_component = node.implements[0] if len(node.implements) == 1 else None
+        properties = [
+            *make_named_properties(self.name, node.id, node.title),
+            *make_text_properties(
+                component=only_component,
+                description=node.description,
+                package_name=node.package,
+                executable_name=node.executable,
+                node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
+            ),
+        ]
+        own_type = make_classifier("process", self.name, extends="ros::node", properties=properties)
+        implementation = make_classifier("process", f"{self.name}.impl", extends="ros::node.impl")
+        own_type.update(features=self._feature_items, flows=self.flows, place=write_place(node.at))
+        implementation.update(
+            subcomponents=self._subcomponents, connections=self.connections, properties=self._properties
+        )
+        return [*self.thread_classifiers, own_type, implementation]

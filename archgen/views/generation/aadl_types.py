@@ -1,0 +1,160 @@
+"""Data and calls as AADL has them: packages of ROS's messages, and one of the project's own types."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from archgen.model.architecture import Architecture
+from archgen.model.message_types import ConceptualType, DataField, flow_of, full_message_name
+from archgen.views.generation.aadl_words import (
+    AadlProperty,
+    NameSpace,
+    make_classifier,
+    make_item,
+    make_named_properties,
+    make_property,
+    make_text_properties,
+    write_text,
+)
+from archgen.views.generation.generation_context import write_place
+
+UNTYPED = "ros::untyped"
+"""The data of a port whose type nobody says: readers refuse a port without any."""
+UNTYPED_CALL = "ros::untyped_call"
+BASE_TYPES: Mapping[str, str] = {
+    "bool": "Boolean",
+    "byte": "Unsigned_8",
+    "char": "Unsigned_8",
+    "string": "String",
+    "wstring": "String",
+    **{f"float{bits}": f"Float_{bits}" for bits in (32, 64)},
+    **{f"int{bits}": f"Integer_{bits}" for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": f"Unsigned_{bits}" for bits in (8, 16, 32, 64)},
+}
+"""The types of the standard's package `Base_Types` for those of fields."""
+_SHARED_BASES = frozenset({"byte", "char", "wstring"})
+_FIXED_ARRAY = re.compile(r"\[[1-9][0-9]{0,8}\]\Z")
+_GREATEST_SIZE = 2**32
+"""The most bytes that the standard's own project file lets readers take."""
+
+
+class TypeBook:
+    """All types that something names, each written once. Asking for the name of a type writes it."""
+
+    def __init__(self, architecture: Architecture, package_name: str, package_names: NameSpace) -> None:
+        """Begin with no type; `package_name` is that of the project's own types."""
+        self._types = architecture.types
+        self._package_name = package_name
+        self._package_names = package_names
+        self._own_names = NameSpace()
+        self._names: dict[tuple[str, str], str] = {}
+        self._own: dict[str, list[dict[str, Any]]] = {}
+        self._message_packages: dict[str, tuple[str, NameSpace, list[dict[str, Any]]]] = {}
+        self._messages: dict[str, str] = {}
+
+    def name_type(self, type_name: str | None, flow: str = "topic") -> str:
+        """Return the complete name of the classifier for a type: data, or a subprogram where it is called for."""
+        if not type_name:
+            return UNTYPED if flow == "topic" else UNTYPED_CALL
+        if (type_name, flow) not in self._names:
+            found = self._types.get(type_name)
+            message = full_message_name(type_name)
+            if message and flow_of(message) == flow and (found is None or found.origin == "message"):
+                self._names[type_name, flow] = self._name_message(message)
+            else:
+                own_name = self._own_names.take_name(type_name)
+                # The name is known before its fields are asked for: types may hold one another.
+                self._names[type_name, flow] = f"{self._package_name}::{own_name}"
+                self._own[own_name] = []
+                self._own[own_name] += self._record_type(own_name, found or ConceptualType(type_name), flow)
+        return self._names[type_name, flow]
+
+    def list_packages(self) -> list[tuple[str, list[dict[str, Any]]]]:
+        """Return the packages with their classifiers: those of messages by their names, then the project's own."""
+        packages = [(name, classifiers) for name, _, classifiers in self._message_packages.values()]
+        own = [each for classifiers in self._own.values() for each in classifiers]
+        return [*sorted(packages), *([(self._package_name, own)] if own else [])]
+
+    def _name_message(self, message: str) -> str:
+        if message not in self._messages:
+            package, kind, name = message.split("/")
+            if package not in self._message_packages:
+                self._message_packages[package] = (self._package_names.take_name(package), NameSpace(), [])
+            package_name, names, classifiers = self._message_packages[package]
+            own_name = names.take_name(name)
+            is_renamed = package_name != package or own_name != name
+            properties = make_text_properties(
+                message_name=message if is_renamed else None, flow_kind="action" if kind == "action" else None
+            )
+            self._messages[message] = f"{package_name}::{own_name}"
+            classifiers += _record_shape(own_name, flow_of(message), names, properties)
+        return self._messages[message]
+
+    def _record_type(self, own_name: str, declared: ConceptualType, flow: str) -> list[dict[str, Any]]:
+        size = declared.size
+        properties = [
+            *make_named_properties(own_name, declared.name),
+            *make_text_properties(
+                description=declared.comment, status=declared.status, flow_kind="action" if flow == "action" else None
+            ),
+        ]
+        if flow == "topic" and size and size.value <= _GREATEST_SIZE and size.value.denominator == 1:
+            properties.append(make_property("Data_Size", f"{size.value} Bytes"))
+        place = write_place(declared.at)
+        if flow != "topic":
+            if declared.message and flow_of(declared.message) == flow and not declared.has_content:
+                extends = self._name_message(declared.message)
+                return [make_classifier("subprogram", own_name, extends=extends, properties=properties, place=place)]
+            return _record_shape(own_name, flow, self._own_names, properties, place)
+        has_message = declared.message and flow_of(declared.message) == "topic" and not declared.has_content
+        extends = self._name_message(declared.message or "") if has_message else ""
+        data = make_classifier("data", own_name, extends=extends, properties=properties, place=place)
+        if not declared.fields:
+            return [data]
+        names = NameSpace()
+        fields = [self._record_field(each, names) for each in declared.fields]
+        return [data, make_classifier("data", f"{own_name}.impl", subcomponents=fields)]
+
+    def _record_field(self, field: DataField, names: NameSpace) -> dict[str, Any]:
+        name = names.take_name(field.name)
+        element_type, bound, _ = field.element_type.partition("<=")
+        base = BASE_TYPES.get(element_type)
+        is_fixed = _FIXED_ARRAY.match(field.array) is not None
+        is_plain = not bound and element_type not in _SHARED_BASES and (not field.array or is_fixed)
+        if base:
+            classifier = f"Base_Types::{base}"
+        else:
+            known = field.element_type if field.element_type in self._types else None
+            classifier = self.name_type(known or full_message_name(field.element_type))
+            is_plain = is_plain and classifier != UNTYPED
+        default = field.default if isinstance(field.default, str | None) else ", ".join(field.default)
+        properties = [
+            *make_named_properties(name, field.name),
+            *make_text_properties(
+                field_type=None if is_plain else field.type,
+                default_value=default,
+                unit_name=field.unit,
+                description=field.comment,
+            ),
+        ]
+        return make_item(name, f"data {classifier}{field.array if is_fixed else ''}", properties)
+
+
+def _record_shape(
+    name: str, flow: str, names: NameSpace, properties: list[AadlProperty], place: str = ""
+) -> list[dict[str, Any]]:
+    """Return data without content; for a call a subprogram with what it takes and gives, for an action with its feedback."""
+    if flow == "topic":
+        return [make_classifier("data", name, properties=properties, place=place)]
+    parts = {"Request": "in parameter", "Response": "out parameter"}
+    if flow == "action":
+        parts = {"Goal": "in parameter", "Result": "out parameter", "Feedback": "out event data port"}
+    part_names = {part: names.take_name(f"{name}_{part}") for part in parts}
+    features = [make_item(part.lower(), f"{kind} {part_names[part]}") for part, kind in parts.items()]
+    mark = [make_property("archgen::Part_Of", write_text(name))]
+    return [
+        *(make_classifier("data", each, properties=mark) for each in part_names.values()),
+        make_classifier("subprogram", name, features=features, properties=properties, place=place),
+    ]
