@@ -13,9 +13,16 @@ from archgen.views.generation.middleware_names import IDL_KEYWORDS
 
 _TOKEN = re.compile(r"\s+|//[^\n]*|#[^\n]*|(::|[A-Za-z_]\w*|[{}<>();,])")
 _PRIMITIVES = {
-    **{"boolean": "Boolean", "octet": "Octet", "short": "Short", "unsigned short": "UShort", "long": "Long"},
-    **{"unsigned long": "ULong", "long long": "LongLong", "unsigned long long": "ULongLong", "float": "Float"},
-    **{"double": "Double"},
+    "boolean": "Boolean",
+    "octet": "Octet",
+    "short": "Short",
+    "unsigned short": "UShort",
+    "long": "Long",
+    "unsigned long": "ULong",
+    "long long": "LongLong",
+    "unsigned long long": "ULongLong",
+    "float": "Float",
+    "double": "Double",
 }
 
 
@@ -28,6 +35,7 @@ class IdlReader:
     """What is known so far by its full name: `fixed`, `variable` or `list`."""
 
     def take(self, expected: str | None = None) -> str:
+        """Return the next word."""
         token = self.tokens.pop(0)
         assert expected is None or token == expected, (token, expected, self.tokens[:8])
         return token
@@ -61,6 +69,7 @@ class IdlReader:
         return name, self.types[name]
 
     def read_definitions(self, space: str, taken: set[str]) -> Iterator[str]:
+        """Yield what a scope defines, in C++."""
         while self.tokens and self.tokens[0] != "}":
             kind = self.take()
             if kind == "module":
@@ -159,4 +168,8 @@ def write_skeleton(idl: str) -> str:
     lines = list(IdlReader(tokens).read_definitions("", set()))
     head = "#pragma once\n#include <rtm/idl/BasicDataTypeSkel.h>\n"
     # A servant is derived from a class of its own namespace.
-    return head + "\n".join(lines) + f"\nnamespace POA_{space} {{ namespace services {{ using namespace {space}::services; }} }}\n"
+    return (
+        head
+        + "\n".join(lines)
+        + f"\nnamespace POA_{space} {{ namespace services {{ using namespace {space}::services; }} }}\n"
+    )

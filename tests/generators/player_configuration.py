@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 
-_TOKEN = re.compile(r'[ \t\n]+|#(?P<comment>[^\n]*)|"(?P<text>[^"\n]*)"|(?P<word>[A-Za-z_]\w*)|(?P<number>[+-]?[0-9][\w.+-]*)|(?P<sign>[()\[\]])')
+_TOKEN = re.compile(
+    r'[ \t\n]+|#(?P<comment>[^\n]*)|"(?P<text>[^"\n]*)"|(?P<word>[A-Za-z_]\w*)|(?P<number>[+-]?[0-9][\w.+-]*)|(?P<sign>[()\[\]])'
+)
 _COMMENT_SIZE = 250
 _WORD_SIZE = 1000
 _ADDRESS_SIZE = 127
@@ -46,6 +48,6 @@ def read_configuration(text: str) -> list[dict[str, str | list[str]]]:
                 options[key] = value
         tokens.pop(0)
         addresses = [*options.get("provides", ()), *options.get("requires", ())]
-        assert all(len(each) < _ADDRESS_SIZE and each.count(":") == 4 for each in addresses), addresses  # noqa: PLR2004
+        assert all(len(each) < _ADDRESS_SIZE and each.count(":") == 4 for each in addresses), addresses
         sections.append(options)
     return sections

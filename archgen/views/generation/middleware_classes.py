@@ -12,8 +12,14 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.port_media import DIGITAL, word_of_medium
 from archgen.views.generation.class_words import find_type_words
-from archgen.views.generation.generation_context import tell_left_out, write_place
-from archgen.views.generation.middleware_names import drop_clashes, name_class, name_interface, name_member, shorten_name
+from archgen.views.generation.generation_context import GenerationContext, tell_left_out, write_place
+from archgen.views.generation.middleware_names import (
+    drop_clashes,
+    name_class,
+    name_interface,
+    name_member,
+    shorten_name,
+)
 from archgen.views.generation.middleware_operations import record_operations, record_served
 from archgen.views.generation.middleware_types import MiddlewareTypes
 
@@ -34,12 +40,22 @@ class ComponentClass:
         return self.components[0]
 
 
-def collect_component_classes(architecture: Architecture) -> dict[str, ComponentClass]:
-    """Return the class of each component that holds no others, by its complete id."""
+def collect_component_classes(context: GenerationContext) -> dict[str, ComponentClass]:
+    """Return the class of each component that holds no others, by its complete id.
+
+    What has nothing that software has, and no node that somebody wrote, is none: a device.
+    """
+    architecture = context.architecture
     by_words: dict[str, ComponentClass] = {}
     classes: dict[str, ComponentClass] = {}
     media = {DIGITAL, architecture.project.middleware}
     for component in architecture.components.values():
+        node = context.nodes_by_component.get(component.id)
+        is_digital = any(word_of_medium(port) in media for port in component.ports)
+        if not (
+            is_digital or component.operations or component.parameters or component.timing or (node and node.written)
+        ):
+            continue
         words = find_type_words(architecture, component)
         if words is None:
             words = component.id.replace(".", " ")
@@ -193,7 +209,11 @@ def _find_server(sources: Iterable[Output], classes: Mapping[str, ComponentClass
         server = classes.get(source.component)
         for operation in server.record.get("operations", ()) if server else ():
             if server and operation["port"] == source.name:
-                return {"server": server.record["name"], "server_module": server.record["module"], "operation": operation}
+                return {
+                    "server": server.record["name"],
+                    "server_module": server.record["module"],
+                    "operation": operation,
+                }
     return None
 
 

@@ -63,14 +63,17 @@ def connect_instances(
             continue
         source, target = classes[output.component].record, classes[reader.component].record
         sent = _find(source["outputs"], output.name)
-        same = [each for each in target["inputs"] if sent and name_port_type(each["type"]) == name_port_type(sent["type"])]
+        same = [
+            each for each in target["inputs"] if sent and name_port_type(each["type"]) == name_port_type(sent["type"])
+        ]
         read = _find(same, reader.name)
         served = _find(source["operations"], output.name, "port")
         call = _find(target["calls"], reader.name)
         ends: dict[str, Any] = {
             **_record_end("source", instances[output.component], sent or served),
             **_record_end("target", instances[reader.component], read or call),
-            **{"id": f"{output.id} -> {reader.id}", "place": write_place(reader.at)},
+            "id": f"{output.id} -> {reader.id}",
+            "place": write_place(reader.at),
         }
         ends["name"] = ".".join(str(ends.get(each)) for each in _JOINT_NAME)
         if sent and read:
@@ -170,7 +173,9 @@ def record_hosts(
         if host in clashing:
             continue
         ends = [each for each in listed if host in {each["source_host"], each["target_host"]}]
-        others = {each[f"{end}_id"]: each for end in ("source", "target") for each in ends if each[f"{end}_host"] != host}
+        others = {
+            each[f"{end}_id"]: each for end in ("source", "target") for each in ends if each[f"{end}_host"] != host
+        }
         remote = [each for each in known_instances if each["id"] in others]
         hosts.append(
             {

@@ -33,7 +33,9 @@ _TASK_NAMES = frozenset(
 )
 """What every component of Orocos has already, in small letters."""
 _MOST_WIRE = 40
-_TAKEN_SPACES = frozenset(("boost", "corba", "omniorb", "player", "posa", "posix", "rtc", "rtm", "rtt", "ocl", "coil", "sdopackage"))
+_TAKEN_SPACES = frozenset(
+    ("boost", "corba", "omniorb", "player", "posa", "posix", "rtc", "rtm", "rtt", "ocl", "coil", "sdopackage")
+)
 
 
 def name_member(name: str) -> str:

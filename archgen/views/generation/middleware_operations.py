@@ -55,7 +55,10 @@ def _record_operation(types: MiddlewareTypes, words: str, operation: Operation, 
         "title": operation.id,
         "port": None,
         "is_command": is_command(operation),
-        "arguments": [{"name": name_inside(name_member(name), name_interface(operation.id)), "title": name, "type": each} for name, each in arguments],
+        "arguments": [
+            {"name": name_inside(name_member(name), name_interface(operation.id)), "title": name, "type": each}
+            for name, each in arguments
+        ],
         "result": made,
         "description": operation.description or "",
         "place": write_place(operation.at),
@@ -72,9 +75,9 @@ def record_served(architecture: Architecture, types: MiddlewareTypes, port: Outp
         "title": port.name,
         "port": port.name,
         "is_command": architecture.flow_of(port) == "action",
-        "arguments": [
-            {"name": name_inside("request", name_interface(port.name)), "title": "request", "type": request}
-        ] if request else [],
+        "arguments": [{"name": name_inside("request", name_interface(port.name)), "title": "request", "type": request}]
+        if request
+        else [],
         "result": answer,
         "description": port.description or "",
         "place": write_place(port.at),

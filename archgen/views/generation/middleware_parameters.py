@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -42,7 +42,9 @@ def record_middleware_parameters(
             else:
                 findings.append(
                     tell_left_out(
-                        f"the value of `{each['name']}` of `{component_id}` is left out: it {fault}", span, element=component_id
+                        f"the value of `{each['name']}` of `{component_id}` is left out: it {fault}",
+                        span,
+                        element=component_id,
                     )
                 )
         base = str(each["type"]).removesuffix("_array")
@@ -54,7 +56,9 @@ def record_middleware_parameters(
                 "type": base,
                 "values": written,
                 "default": next(iter(written.values()), None),
-                "is_small": all(-(2**31) <= value < 2**31 for value in _flatten(values.values()) if isinstance(value, int)),
+                "is_small": all(
+                    -(2**31) <= value < 2**31 for value in _flatten(values.values()) if isinstance(value, int)
+                ),
             }
         )
     return records, findings
@@ -65,7 +69,7 @@ def _name_option(name: str) -> str:
     return f"{name}_" if name in _PLAYER_WORDS or name.endswith("_sources") else name
 
 
-def _flatten(values: Any) -> Iterator[object]:
+def _flatten(values: Iterable[object]) -> Iterator[object]:
     for each in values:
         if isinstance(each, list | tuple):
             yield from each
@@ -80,14 +84,11 @@ def _find_faults(value: object, backend: str) -> Iterator[str]:
             fault = find_text_fault(each)
             if fault:
                 yield fault[0]
-            yield from _FAULTS.get(backend, _find_nothing)(each, isinstance(value, list))
+            if backend in _FAULTS:
+                yield from _FAULTS[backend](each, isinstance(value, list))
 
 
-def _find_nothing(text: str, is_listed: bool) -> Iterator[str]:  # noqa: FBT001 - as the others of the table
-    yield from ()
-
-
-def _find_player_fault(text: str, is_listed: bool) -> Iterator[str]:  # noqa: ARG001, FBT001
+def _find_player_fault(text: str, is_listed: bool) -> Iterator[str]:  # noqa: ARG001, FBT001 - as the other
     if '"' in text:
         yield "has a double quote, which ends a text of Player"
     if len(text.encode()) > _PLAYER_TEXT:

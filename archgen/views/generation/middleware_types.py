@@ -41,7 +41,10 @@ _ALIASES = {
     **dict.fromkeys(("int", "integer", "eint"), "int32"),
     **dict.fromkeys(("boolean", "eboolean"), "bool"),
     **dict.fromkeys(("text", "estring"), "string"),
-    **{"long": "int64", "short": "int16", "octet": "uint8", "unlimitednatural": "uint32"},
+    "long": "int64",
+    "short": "int16",
+    "octet": "uint8",
+    "unlimitednatural": "uint32",
 }
 """What UML and programming languages call such values."""
 _LIST = re.compile(r"\s*\[[^\[\]]*\]\Z")
@@ -139,16 +142,18 @@ class MiddlewareTypes:
     def describe_primitive(self, primitive: str, *, is_list: bool = False) -> dict[str, Any]:
         """Return what is no record, or a list of it."""
         kind, cpp, idl, corba = PRIMITIVES[primitive]
-        return self._describe(kind, cpp, idl, f"CORBA::{corba}", corba, is_list=is_list, is_fixed=kind != "text")
+        return self._describe(kind, (cpp, idl, f"CORBA::{corba}", corba), is_list=is_list, is_fixed=kind != "text")
 
     def _describe_record(self, record: Mapping[str, Any], *, is_list: bool = False) -> dict[str, Any]:
         cpp = f"{self.space}::{record['space']}::{record['name']}"
         word = f"{record['space']}_{record['name']}"
-        return self._describe("record", cpp, f"::{cpp}", cpp, word, is_list=is_list, is_fixed=record["is_fixed"])
+        return self._describe("record", (cpp, f"::{cpp}", cpp, word), is_list=is_list, is_fixed=record["is_fixed"])
 
     def _describe(
-        self, kind: str, cpp: str, idl: str, corba: str, word: str, *, is_list: bool, is_fixed: bool
+        self, kind: str, names: tuple[str, str, str, str], *, is_list: bool, is_fixed: bool
     ) -> dict[str, Any]:
+        """Return a type by its names in C++, in IDL, in the mapping of IDL, and as a part of names."""
+        cpp, idl, corba, word = names
         is_shipped = kind != "record" and word not in {"LongLong", "ULongLong"}
         rtm = f"RTC::Timed{word}" if is_shipped else f"{self.space}::timed::{word}"
         item = {"kind": kind, "cpp": cpp, "idl": idl, "corba": corba, "is_list": False, "is_fixed": is_fixed}
@@ -160,8 +165,13 @@ class MiddlewareTypes:
         listed = f"{self.space}::{name}"
         return {
             **item,
-            **{"cpp": f"std::vector<{cpp}>", "idl": f"::{listed}", "corba": listed, "is_list": True, "is_fixed": False},
-            **{"item": item, "rtm": f"{self.space}::timed::{name}"},
+            "cpp": f"std::vector<{cpp}>",
+            "idl": f"::{listed}",
+            "corba": listed,
+            "is_list": True,
+            "is_fixed": False,
+            "item": item,
+            "rtm": f"{self.space}::timed::{name}",
         }
 
     def _read_foreign(self, hints: Mapping[str, object], span: Span, name: str) -> dict[str, Any]:
@@ -169,7 +179,9 @@ class MiddlewareTypes:
         texts = {key: str(hints.get(key) or "") for key in ("type", "header", "typekit")}
         for key, pattern in (("type", _FOREIGN_TYPE), ("header", _FOREIGN_FILE), ("typekit", _FOREIGN_FILE)):
             if texts[key] and not pattern.match(texts[key]):
-                self._tell(f"the hint `{key}` is no {'class of C++' if key == 'type' else 'name of a file'}", span, name)
+                self._tell(
+                    f"the hint `{key}` is no {'class of C++' if key == 'type' else 'name of a file'}", span, name
+                )
                 return {}
         if not texts["type"]:
             return {}

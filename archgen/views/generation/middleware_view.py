@@ -33,7 +33,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     """
     architecture = context.architecture
     types = MiddlewareTypes(architecture, name_space(architecture.project.id), context.backend)
-    classes = collect_component_classes(architecture)
+    classes = collect_component_classes(context)
     unnamed, findings = name_classes(architecture, list_classes(classes))
     classes = {key: own for key, own in classes.items() if own.first.id not in unnamed}
     made = list_classes(classes)
