@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import first_written_span
+from archgen.diagnostics.source_span import Span, first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.port_media import DIGITAL, word_of_medium
@@ -129,13 +129,14 @@ def record_inputs(
     """Add what a class reads (rule R2) and whom it calls to its record; return what is left out."""
     findings: list[Diagnostic] = []
     taken = {each["name"].casefold() for each in own.record["outputs"] + own.record["operations"]}
-    names: list[tuple[str, str, Any]] = []
+    names: list[tuple[str, str, Span]] = []
     read: list[tuple[dict[str, Any], str, Input]] = []
     called: dict[str, dict[str, Any]] = {}
     for name, port in own.inputs.items():
         sources = _list_sources(architecture, own, name)
         # An input without a type of its own has that of what it reads.
-        shown = next((each for each in (port, *sources) if each.type), port)
+        ends: tuple[Input | Output, ...] = (port, *sources)
+        shown = next((each for each in ends if each.type), port)
         interface = name_interface(name)
         if interface.casefold() in taken:
             interface = f"{name_member(name)}_input"
