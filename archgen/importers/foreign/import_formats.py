@@ -77,6 +77,12 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             (),
             "archgen.importers.running_graph.graph_import:read_ros_1_graph",
         ),
+        ImportFormat(
+            "orca",
+            "components of the Orca Robotics project, from their definition files (.def)",
+            (),
+            "archgen.importers.orca.orca_import:read_orca",
+        ),
     )
 }
 
