@@ -1,0 +1,90 @@
+"""The tokens of an AADL text, one after the other, and where they stand."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from archgen.diagnostics.source_span import Span
+
+# An annex is one token: its text is of another language, and ends where its first `**}` stands.
+_TOKEN = re.compile(
+    r"""
+      (?P<blank>\s+|--[^\n]*)
+    | (?P<annex>\{\*\*)
+    | (?P<number>[0-9](?:_?[0-9])*\#[0-9A-Fa-f](?:_?[0-9A-Fa-f])*\#(?:[eE]\+?[0-9]+)?
+        |[0-9](?:_?[0-9])*(?:\.[0-9](?:_?[0-9])*)?(?:[eE][+-]?[0-9]+)?)
+    | (?P<name>[^\W\d]\w*)
+    | (?P<text>"(?:[^"\\]|""|\\.)*")
+    | (?P<sign>\+=>|=>|<->|->|-\[|\]->|::|\.\.|\*\*|[-+*;:,.(){}\[\]^@<>/])
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+END, OPEN_ANNEX = "end of the file", "annex without an end"
+
+
+class Token(NamedTuple):
+    """A token: `kind` is name, number, text, sign, annex, stray (what begins no token), OPEN_ANNEX or END."""
+
+    kind: str
+    text: str
+    offset: int
+
+    @property
+    def end(self) -> int:
+        """Return the offset behind its last character."""
+        return self.offset + len(self.text)
+
+    @property
+    def word(self) -> str:
+        """Return the text by which it is compared: words of AADL count in any case."""
+        return self.text.lower() if self.kind == "name" else self.text
+
+
+class AadlText:
+    """The text of a file, which tells lines and columns of offsets."""
+
+    def __init__(self, file: str, text: str) -> None:
+        """Take the text of `file`, by the name under which messages tell of it."""
+        self.file, self.text = file, text
+        self._line_starts = [0, *(match.end() for match in re.finditer(r"\n", text))]
+
+    def span(self, start: int, end: int) -> Span:
+        """Return the span between two offsets."""
+        return Span(self.file, *self._place(start), *self._place(max(start, end)))
+
+    def _place(self, offset: int) -> tuple[int, int]:
+        line = bisect_right(self._line_starts, offset)
+        return line, offset - self._line_starts[line - 1] + 1
+
+
+def scan_tokens(text: str) -> Iterator[Token]:
+    """Yield the tokens of a text without blanks and comments; END is the last, again and again."""
+    offset, size, match_token = 0, len(text), _TOKEN.match
+    while offset < size:
+        match = match_token(text, offset)
+        if match is None:
+            yield Token("stray", text[offset], offset)
+            offset += 1
+            continue
+        kind = match.lastgroup or ""
+        if kind == "annex":
+            end = text.find("**}", offset + 3)
+            if end < 0:
+                yield Token(OPEN_ANNEX, "{**", offset)
+                break
+            yield Token(kind, text[offset : end + 3], offset)
+            offset = end + 3
+            continue
+        if kind != "blank":
+            yield Token(kind, match.group(), offset)
+        offset = match.end()
+    while True:
+        yield Token(END, "", size)
+
+
+def read_text(token: Token) -> str:
+    """Return what a token of kind text says, without its quotes."""
+    return token.text[1:-1].replace('""', '"').replace('\\"', '"')

@@ -1,0 +1,79 @@
+"""End to end flows become chains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from archgen.importers.aadl.aadl_tree import Flow, Path
+from archgen.importers.aadl.component_bodies import Body
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.property_values import Scope, read_text, read_time_range
+from archgen.importers.aadl.robot_groups import LaunchedSystem
+from archgen.importers.aadl.structures import Structure
+from archgen.model.element_ids import make_id, make_unique_id
+
+
+class ChainMapper:
+    """Makes the chains of all roots."""
+
+    def __init__(self, notes: NoteList) -> None:
+        """Start without any chain."""
+        self.chains: dict[str, Body] = {}
+        self._notes = notes
+
+    def add_chains(self, system: LaunchedSystem) -> None:
+        """Add the end to end flows of a root, of its groups, and of the components in them."""
+        group_of_root = next((frame.group_id for frame in system.frames if not frame.path), "")
+        places: list[tuple[Structure, Scope, tuple[str, ...]]] = [(system.structure, system.scope, (group_of_root,))]
+        places += [(frame.structure, frame.scope, (frame.group_id,)) for frame in system.frames if frame.path]
+        places += [(inst.structure, inst.scope, inst.ids) for inst in system.instances.values() if inst.structure.parts]
+        for structure, scope, ids in places:
+            for flow in structure.resolved.flows.values():
+                if flow.kind == "end to end":
+                    self._add_chain(system, structure, scope, ids, flow)
+
+    def _add_chain(
+        self, system: LaunchedSystem, structure: Structure, scope: Scope, ids: tuple[str, ...], flow: Flow
+    ) -> None:
+        through: list[str] = []
+        for step in flow.steps:
+            for reference in _name_step(system, structure, ids, step):
+                if not through or through[-1] != reference:
+                    through.append(reference)
+        if len(through) <= 1:
+            words = f"flow {flow.name} leads through fewer than two components"
+            self._notes.add("end to end flow", words, flow.span)
+            return
+        wanted = read_text(scope.value((flow.name.lower(),), "archgen::id")) or make_id(flow.name, "chain")
+        chain_id = make_unique_id(wanted, self.chains.keys())
+        body: Body = {"through": through}
+        if title := read_text(scope.value((flow.name.lower(),), "archgen::title")):
+            body["title"] = title
+        lowest, highest = read_time_range(scope.value((flow.name.lower(),), "latency"))
+        body |= {"deadline": highest} if highest else {}
+        hints = {"name": flow.name} if flow.name != chain_id else {}
+        if lowest and lowest != highest and not lowest.startswith("0 "):
+            hints["shortest"] = lowest
+        self.chains[chain_id] = {**body, "hints": {"aadl": hints}} if hints else body
+
+
+def _name_step(system: LaunchedSystem, structure: Structure, ids: tuple[str, ...], step: Path) -> Iterator[str]:
+    """Yield the components that a step of a flow leads through; a connection is none."""
+    names = tuple(name.lower() for name in step)
+    part = structure.parts.get(names[0])
+    if part is None:
+        return
+    group_id = system.groups.get(part.name) if structure is system.structure else None
+    if group_id is None:
+        yield ".".join((*ids, part.id))
+        return
+    if part.structure is not None and len(names) > 1:
+        yield from _go_through(part.structure, group_id, names[1])
+
+
+def _go_through(structure: Structure, group_id: str, flow_name: str) -> Iterator[str]:
+    """Yield the components of a group through which its own flow leads."""
+    flow = structure.resolved.flows.get((flow_name, True))
+    for step in flow.steps if flow else ():
+        if part := structure.parts.get(step[0].lower()):
+            yield f"{group_id}.{part.id}"

@@ -1,0 +1,220 @@
+"""Classifiers become components and component types: ports, timing, parts, wiring, hints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
+from archgen.importers.aadl.element_hints import keep_sources, keep_structure, keep_thread
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.property_values import Scope, read_count, read_text
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved
+from archgen.importers.aadl.structures import Structure, StructuredPart, Wire
+from archgen.importers.aadl.thread_timing import add_port_hints, add_trigger, find_role, fits_role, map_timing
+
+Body = dict[str, Any]
+MAX_COMPONENTS = 50_000
+_USES = {(True, False): "subscribes", (False, False): "publishes", (True, True): "calls", (False, True): "serves"}
+
+
+class TooManyPartsError(Exception):
+    """The parts of a model are more than anybody wants to read."""
+
+
+class ComponentBuilder:
+    """Makes the bodies of components; what stands in several places is an instance of a component type."""
+
+    def __init__(self, resolver: ClassifierResolver, notes: NoteList, find_type: Callable[[Structure], str]) -> None:
+        """Ask `find_type` for the component type that a structure is; it answers nothing for what is written in place."""
+        self._resolver, self._notes, self._find_type = resolver, notes, find_type
+        self._count = 0
+
+    def build_body(self, structure: Structure, scope: Scope) -> Body:
+        """Return the body of a component that has all of a classifier."""
+        self._count += 1
+        if self._count > MAX_COMPONENTS:
+            raise TooManyPartsError
+        resolved, ports = structure.resolved, structure.ports
+        hints: Body = {"classifier": resolved.known.full_name}
+        body: Body = {}
+        inputs, outputs = ports.make_section(is_input=True), ports.make_section(is_input=False)
+        if structure.parts:
+            body["components"] = {part.id: self.build_instance(part, scope) for part in structure.parts.values()}
+            hints |= _keep_connection_names(structure, scope)
+        else:
+            body |= self._describe_leaf(structure, scope, hints)
+        body |= {"inputs": inputs} if inputs else {}
+        body |= {"outputs": outputs} if outputs else {}
+        if not structure.parts:
+            add_port_hints(body, ports, body.get("timing", {}))
+        if resolved.category == "device":
+            body["tags"] = ["device"]
+            for port_body in outputs.values():
+                port_body["medium"] = "physical"
+        own_scope = Scope(self._resolver, scope.used, resolved)
+        hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
+        body["hints"] = {"aadl": hints}
+        self._wire_inside(structure, body, scope)
+        return body | _read_own_words(scope)
+
+    def build_instance(self, part: StructuredPart, scope_around: Scope) -> Body:
+        """Return the body of a part: an instance of a component type, or all of it."""
+        structure = part.structure
+        scope = scope_around.go_into(part.part, structure.resolved if structure else None)
+        name = part.part.written.name
+        names = {"name": name} if name != part.id else {}
+        if structure is None:
+            self._count += 1
+            known = {"classifier": part.part.use.full_name} if part.part.use.name else {}
+            tags = {"tags": ["device"]} if part.part.category == "device" else {}
+            return {**tags, "hints": {"aadl": {**names, **known}}} if names or known else tags
+        if type_id := self._find_type(structure):
+            hints = {"hints": {"aadl": names}} if names else {}
+            return {"is": type_id, **self.build_overlay(structure, scope.only_around()), **hints}
+        body = self.build_body(structure, scope)
+        body["hints"]["aadl"] = {**names, **body["hints"]["aadl"]}
+        return body
+
+    def build_overlay(self, structure: Structure, scope: Scope) -> Body:
+        """Return what is written around an instance of its parts and threads."""
+        if not scope.says_anything():
+            return {}
+        body: Body = _read_own_words(scope)
+        for part in structure.parts.values():
+            if part.structure:
+                inner = self.build_overlay(part.structure, scope.go_into(part.part, None))
+                if inner:
+                    body.setdefault("components", {})[part.id] = inner
+        if not structure.parts and (timing := map_timing(scope, _find_thread_path(structure), self._notes)):
+            body["timing"] = timing
+        return body
+
+    def _describe_leaf(self, structure: Structure, scope: Scope, hints: Body) -> Body:
+        resolved, body = structure.resolved, {}
+        path = _find_thread_path(structure)
+        thread = self._resolver.resolve(structure.thread.use) if structure.thread else None
+        timing = map_timing(scope, path, self._notes)
+        if structure.thread:
+            hints["threads"] = {structure.thread.written.name: keep_thread(scope, path, thread)}
+            triggering = {port.id for port in structure.ports.ports if _is_triggered(structure, thread, port.id)}
+        else:
+            triggering = {p.id for p in structure.ports.ports if p.is_input and p.kind.startswith("event")}
+        if resolved.category == "thread":
+            thread = resolved
+            hints |= keep_thread(scope, (), resolved)
+        add_trigger(timing, structure.ports, triggering)
+        if thread and (role := find_role(thread)) and fits_role(role, structure.ports):
+            body["role"] = role
+        return {**body, "timing": timing} if timing else body
+
+    def _wire_inside(self, structure: Structure, body: Body, scope: Scope) -> None:
+        for wire in structure.wires:
+            producer, consumer = wire.producer, wire.consumer
+            reference = f"{producer.part.id if producer.part else 'self'}.{producer.port.id}"
+            if consumer.part is None:
+                add_source(body["outputs"][consumer.port.id], reference)
+            else:
+                add_source(reach_port(body["components"][consumer.part.id], "inputs", consumer.port.id), reference)
+        set_media(structure, body.get("components", {}), scope, self._notes)
+
+
+def add_source(port_body: Body, reference: str) -> None:
+    """Add a source to a port."""
+    sources = port_body.setdefault("from", [])
+    if reference not in sources:
+        sources.append(reference)
+
+
+def reach_port(body: Body, section: str, port_id: str) -> Body:
+    """Return the body of a port, made if it is not written yet."""
+    port_body: Body = body.setdefault(section, {}).setdefault(port_id, {})
+    return port_body
+
+
+def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes: NoteList) -> None:
+    """Say what the ports of devices travel over: the bus that a connection is bound to."""
+    readers: dict[tuple[str, str], list[Wire]] = {}
+    for wire in structure.wires:
+        if wire.producer.part:
+            readers.setdefault((wire.producer.part.id, wire.producer.port.id), []).append(wire)
+    for (part_id, port_id), wires in readers.items():
+        part = wires[0].producer.part
+        from_device = part is not None and part.part.category == "device"
+        to_devices = [bool(wire.consumer.part and wire.consumer.part.part.category == "device") for wire in wires]
+        if not (from_device or any(to_devices)) or part_id not in bodies:
+            continue
+        if not from_device and not all(to_devices):
+            words = "what a device and programs read alike has no medium of its own"
+            notes.add("connection", words, wires[0].connection.span)
+            continue
+        media = {find_medium(wire, structure, scope) for wire in wires}
+        medium = media.pop() if len(media) == 1 else "physical"
+        reach_port(bodies[part_id], "outputs", port_id)["medium"] = medium
+        for consumer in (wire.consumer for wire in wires):
+            if consumer.part and consumer.part.part.category == "device" and consumer.part.id in bodies:
+                reach_port(bodies[consumer.part.id], "inputs", consumer.port.id)["medium"] = medium
+
+
+def find_medium(wire: Wire, structure: Structure, scope: Scope) -> str:
+    """Return the word for the bus that a connection is bound to; physical where it is bound to none."""
+    path = read_bound_path(scope, wire.connection.name)
+    part = structure.resolved.parts.get(path[0]) if path else None
+    return name_bus_medium(part) if part else "physical"
+
+
+def map_node_ports(structure: Structure, scope: Scope, *, is_type: bool) -> Body:
+    """Return what a node calls its topics, and how long its queues are."""
+    node: Body = {}
+    for port in structure.ports.ports:
+        path = port.path
+        use: Body = {}
+        default_name = read_text(scope.value(path, "topic_properties::default_name"))
+        if default_name:
+            key = "name" if port.is_call else "topic"
+            use["own_name" if port.is_input or not is_type else key] = default_name
+        depth = read_count(scope.value(path, "queue_size"))
+        if depth is None and structure.thread and (inner := structure.thread_ports.get((port.id, port.is_input))):
+            thread_path = (structure.thread.written.name.lower(), *inner.split("."))
+            depth = read_count(scope.value(thread_path, "queue_size"))
+        if depth and not port.is_call:
+            use["qos"] = {"depth": depth}
+        if use:
+            node.setdefault(_USES[port.is_input, port.is_call], {})[port.id] = use
+    return node
+
+
+def name_use_section(*, is_input: bool, is_call: bool) -> str:
+    """Return the key of a node below which a port stands."""
+    return _USES[is_input, is_call]
+
+
+def _find_thread_path(structure: Structure) -> Path:
+    return (structure.thread.written.name.lower(),) if structure.thread else ()
+
+
+def _is_triggered(structure: Structure, thread: Resolved | None, port_id: str) -> bool:
+    inner = structure.thread_ports.get((port_id, True))
+    port = thread.ports.get(inner) if thread and inner else None
+    return port is not None and port.kind.startswith("event")
+
+
+def _keep_connection_names(structure: Structure, scope: Scope) -> Body:
+    names = {
+        connection.name: f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
+        for connection in {id(wire.connection): wire.connection for wire in structure.wires}.values()
+        if connection.name
+        and (
+            scope.find((connection.name.lower(),), "topic_properties::name")
+            or scope.find((connection.name.lower(),), "actual_connection_binding")
+        )
+    }
+    return {"connections": names} if names else {}
+
+
+def _read_own_words(scope: Scope) -> Body:
+    """Return what archgen's own properties say: title and description."""
+    title = read_text(scope.value((), "archgen::title"))
+    description = read_text(scope.value((), "archgen::description"))
+    return {**({"title": title} if title else {}), **({"description": description} if description else {})}

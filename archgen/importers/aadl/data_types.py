@@ -1,0 +1,198 @@
+"""Make types of data and subprograms: messages of ROS, types with fields, services."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from archgen.importers.aadl.aadl_tree import AadlLink, AadlList, AadlName
+from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text, read_texts
+from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, Resolved, Use
+
+_ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
+_ROS_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+_BASE_TYPES = {
+    "boolean": "bool",
+    "string": "string",
+    "character": "char",
+    "float_32": "float32",
+    "float_64": "float64",
+    **{f"integer_{size}": f"int{size}" for size in (8, 16, 32, 64)},
+    **{f"unsigned_{size}": f"uint{size}" for size in (8, 16, 32, 64)},
+}
+_SIZELESS_TYPES = {"integer": "int32", "natural": "uint32", "float": "float64"}
+_MAX_ARRAY = 1_000_000
+_BASE_PACKAGES = frozenset({"base_types", "data_model"})
+_KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
+"""Data of the library of components: they are hints of who has them, and no types."""
+
+
+class DataTypes:
+    """The types of a model; each gets its name when it is first asked for."""
+
+    def __init__(self, resolver: ClassifierResolver, notes: NoteList, used: UsedProperties) -> None:
+        """Make types of what `resolver` knows."""
+        self.types: dict[str, dict[str, Any]] = {}
+        self._resolver, self._notes, self._used = resolver, notes, used
+        self._names: dict[str, str] = {}
+        self._taken_names: set[str] = set()
+        self._only_implementations = find_only_implementations(resolver.names)
+
+    def name_use(self, use: Use, kind: str = "msg") -> str:
+        """Return the name of the type of a port; nothing where it has none."""
+        if not use.name or use.category == UNBOUND:
+            return ""
+        if use.known is None:
+            return _name_unknown(use.name, kind)
+        name = self._name_known(use.known, kind)
+        values = [self.name_use(value) for value in use.bindings.values()]
+        return f"{name}<{', '.join(values)}>" if values and all(values) else name
+
+    def add_all(self) -> int:
+        """Take all data that are types of the model; return how many."""
+        count = 0
+        for known in self._resolver.names.known.values():
+            if known.classifier.category == "data" and not _is_library_data(known) and not self._is_shadowed(known):
+                count += 1
+                self._name_known(known, "msg")
+        return count
+
+    def _is_shadowed(self, known: KnownClassifier) -> bool:
+        """Whether a type is told by its only implementation."""
+        return known.key in self._only_implementations
+
+    def _name_known(self, known: KnownClassifier, kind: str) -> str:
+        # A type and its only implementation are one: it has the fields of the implementation.
+        known = self._only_implementations.get(known.key, known)
+        key = known.key
+        type_key = key.partition(".")[0]
+        is_only = self._only_implementations.get(type_key) is known
+        if key in self._names:
+            return self._names[key]
+        resolved = self._resolver.resolve(Use(known.full_name, known))
+        body: dict[str, Any] = {}
+        message = _make_message(known.full_name, kind)
+        name = known.classifier.name.partition(".")[0]
+        if known.classifier.is_implementation and not is_only:
+            name = known.classifier.name.replace(".", " ")
+        if name in self._taken_names:
+            name = f"{name} ({known.package.name.replace('::', ' ')})"[:200]
+        self._names[key] = name
+        if resolved is not None:
+            body = self._describe(resolved, kind)
+        if message:
+            if not body:
+                # The message says all that the model says.
+                self._names[key] = message
+                return message
+            body = {"message": message, **body}
+        self._taken_names.add(name)
+        if known.package.name.lower() not in _BASE_PACKAGES:
+            body.setdefault("hints", {"aadl": {}})["aadl"] = {
+                "classifier": known.full_name,
+                **body.get("hints", {}).get("aadl", {}),
+            }
+            self.types[name] = body
+        return name
+
+    def _describe(self, resolved: Resolved, kind: str) -> dict[str, Any]:
+        scope = Scope(self._resolver, self._used, resolved)
+        body: dict[str, Any] = {}
+        if prototypes := [use.name for use in resolved.prototypes.values() if use.category == UNBOUND]:
+            body["generic"] = prototypes
+        if kind == "srv":
+            body |= self._describe_call(resolved)
+        elif values := self._read_enumerators(scope):
+            body["values"] = values
+        elif fields := self._read_fields(resolved, scope):
+            body["fields"] = fields
+        hints: dict[str, Any] = {}
+        if texts := read_texts(scope.value((), "source_text")):
+            hints["source_text"] = texts
+        if text := read_text(scope.value((), "source_name")):
+            hints["source_name"] = text
+        return {**body, "hints": {"aadl": hints}} if hints else body
+
+    def _describe_call(self, resolved: Resolved) -> dict[str, Any]:
+        parts: dict[str, dict[str, Any]] = {"request": {}, "response": {}}
+        for port in resolved.ports.values():
+            if port.kind == "parameter":
+                name = self._name_field(port.use)
+                for word, part in (("in", "request"), ("out", "response")):
+                    if word in port.direction.split() and name:
+                        parts[part][_fold_field_name(port.written.name)] = name
+        return {key: value for key, value in parts.items() if value} and parts
+
+    def _read_enumerators(self, scope: Scope) -> list[str]:
+        value = scope.value((), "data_model::data_representation")
+        if not (isinstance(value, AadlName) and value.name.lower() == "enum"):
+            return []
+        words = [re.sub(r"\W", "_", text).upper() for text in read_texts(scope.value((), "data_model::enumerators"))]
+        return list(dict.fromkeys(word for word in words if word and word[0].isalpha()))
+
+    def _read_fields(self, resolved: Resolved, scope: Scope) -> dict[str, str]:
+        fields: dict[str, str] = {}
+        for part in resolved.parts.values():
+            if part.category == "data" and (type_name := self._name_field(part.use)):
+                fields[_fold_field_name(part.written.name)] = type_name + _write_dimensions(part.written.dimensions)
+        if not fields:
+            names = read_texts(scope.value((), "data_model::element_names"))
+            base = scope.value((), "data_model::base_type")
+            items = base.items if isinstance(base, AadlList) else ()
+            links = [item.path[0] for item in items if isinstance(item, AadlLink) and item.kind == "classifier"]
+            if names and len(names) == len(links):
+                uses = [self._resolver.find_use(link, {}, resolved.known, {}) for link in links]
+                fields = {_fold_field_name(name): self._name_field(use) for name, use in zip(names, uses, strict=True)}
+        return {name: type_name for name, type_name in fields.items() if type_name}
+
+    def _name_field(self, use: Use) -> str:
+        """Return the type of a field: one of ROS where the model has one of its own base types."""
+        if use.category == UNBOUND:
+            return use.name
+        package, _, name = use.full_name.lower().rpartition("::")
+        if package == "base_types" or (use.known is None and not package):
+            if name in _BASE_TYPES:
+                return _BASE_TYPES[name]
+            if name in _SIZELESS_TYPES and use.known is not None:
+                words = f"it has no size in AADL; fields have `{_SIZELESS_TYPES[name]}`"
+                self._notes.add_counted(f"Base_Types::{name}", words, use.known.classifier.span, fate="noted")
+            if name in _SIZELESS_TYPES:
+                return _SIZELESS_TYPES[name]
+        return self.name_use(use)
+
+
+def _is_library_data(known: KnownClassifier) -> bool:
+    name = known.classifier.name.lower().partition(".")[0]
+    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS
+
+
+def _name_unknown(name: str, kind: str) -> str:
+    return _make_message(name, kind) or name.rpartition("::")[2].partition(".")[0]
+
+
+def _make_message(full_name: str, kind: str) -> str:
+    """Return the message or service of ROS that a name means, or nothing."""
+    package, _, name = full_name.partition(".")[0].rpartition("::")
+    if _ROS_PACKAGE.match(package) and _ROS_NAME.match(name):
+        return f"{package}/{kind}/{name}"
+    return ""
+
+
+def _write_dimensions(dimensions: tuple[str, ...]) -> str:
+    if not dimensions:
+        return ""
+    sizes = [int(size) for size in dimensions if size.isdigit()]
+    if len(sizes) != len(dimensions):
+        return "[]"
+    total = 1
+    for size in sizes:
+        total *= size
+    return f"[{total}]" if 0 < total < _MAX_ARRAY else "[]"
+
+
+def _fold_field_name(name: str) -> str:
+    """Return a name as fields of messages are called."""
+    folded = re.sub(r"_+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name)).lower().strip("_")
+    return folded if folded[:1].isalpha() else f"field_{folded}"

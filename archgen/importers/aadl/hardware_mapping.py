@@ -1,0 +1,203 @@
+"""Processors become hosts, buses become links; what is bound to them runs and travels there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from archgen.importers.aadl.aadl_tree import AadlNumber, AadlRange, AadlRecord, AadlValue, Path
+from archgen.importers.aadl.bus_names import name_bus_medium
+from archgen.importers.aadl.component_bodies import Body
+from archgen.importers.aadl.element_hints import keep_sources
+from archgen.importers.aadl.hardware_tree import HardwareFinder, HardwarePart, HardwareTree
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.property_values import (
+    Scope,
+    read_bandwidth,
+    read_references,
+    read_text,
+    read_time_range,
+    read_word,
+    write_number,
+)
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
+from archgen.importers.aadl.robot_groups import LaunchedSystem, drill
+from archgen.importers.aadl.structures import Structure
+from archgen.model.element_ids import make_id, make_unique_id
+from archgen.model.port_media import MEDIUM_NAMES
+
+_BUSES = frozenset({"bus", "virtual bus"})
+_SCHEDULING = {
+    "edf": "edf",
+    "earliest_deadline_first_protocol": "edf",
+    "round_robin_protocol": "round_robin",
+    "roundrobin": "round_robin",
+    "rms": "fixed_priority",
+    "rate_monotonic_protocol": "fixed_priority",
+    "deadline_monotonic_protocol": "fixed_priority",
+    "fixedpriority": "fixed_priority",
+    "posix_1003_highest_priority_first_protocol": "fixed_priority",
+    "highest_priority_first_protocol": "fixed_priority",
+    "hpf": "fixed_priority",
+}
+
+
+class HardwareMapper:
+    """Makes hosts and links of all roots."""
+
+    def __init__(self, resolver: ClassifierResolver, notes: NoteList) -> None:
+        """Look up by `resolver`."""
+        self.hosts: dict[str, Body] = {}
+        self.links: dict[str, Body] = {}
+        self._resolver, self._notes = resolver, notes
+
+    def map_system(self, system: LaunchedSystem) -> dict[Path, str]:
+        """Add the hosts and links of a root; return the hosts of its programs."""
+        finder = HardwareFinder(self._resolver, self._notes)
+        finder.walk(system.structure.resolved, system.scope)
+        tree = finder.tree
+        host_ids: dict[Path, str] = {}
+        for path, hardware in tree.parts.items():
+            category = hardware.part.category
+            if category == "processor" or (category == "virtual processor" and path not in tree.bindings):
+                host_ids[path] = self._add_host(path, hardware)
+        hosts = {path: host for path in system.instances if (host := self._find_host(tree, path, host_ids, system))}
+        for path, hardware in tree.parts.items():
+            if hardware.part.category in _BUSES:
+                ends = _list_ends(tree, path, system, host_ids, hosts)
+                names = [name for _, name in tree.bound_connections.get(path, [])]
+                if len(ends) > 1:
+                    self._add_link(hardware, ends, names)
+                else:
+                    # A link is between two; what joins less is kept as a hint of the group.
+                    system.lone_buses[hardware.part.written.name] = _keep_bus(hardware, names)
+        return hosts
+
+    def _add_host(self, path: Path, hardware: HardwarePart) -> str:
+        name = hardware.part.written.name
+        wanted = make_id(name, "host")
+        host_id = make_unique_id(
+            wanted if wanted not in self.hosts else make_id("_".join(path), "host"), self.hosts.keys()
+        )
+        hints: Body = {"name": name} if name != host_id else {}
+        if hardware.part.use.name:
+            hints["classifier"] = hardware.part.use.full_name
+        if hardware.part.category != "processor":
+            hints["category"] = hardware.part.category
+        hints |= keep_sources(hardware.scope, ())
+        body: Body = {}
+        if title := read_text(hardware.scope.value((), "archgen::title")):
+            body["title"] = title
+        protocol = hardware.scope.find((), "scheduling_protocol")
+        word = read_word(hardware.scope.value((), "scheduling_protocol"))
+        if word in _SCHEDULING:
+            body["scheduling"] = _SCHEDULING[word]
+        elif protocol:
+            words = f"the scheduling `{word or 'written here'}` has no word here"
+            self._notes.add_counted("Scheduling_Protocol", words, protocol.span)
+        self.hosts[host_id] = {**body, "hints": {"aadl": hints}} if hints else body
+        return host_id
+
+    @staticmethod
+    def _find_host(tree: HardwareTree, path: Path, host_ids: dict[Path, str], system: LaunchedSystem) -> str:
+        """Return the host of an instance: what it, what is around it, or all of its threads are bound to."""
+        bound = next(
+            (tree.bindings[path[:size]] for size in range(len(path), -1, -1) if path[:size] in tree.bindings), None
+        )
+        if bound is None and system.instances[path].structure.is_node:
+            inner = {target for source, target in tree.bindings.items() if source[: len(path)] == path}
+            bound = inner.pop() if len(inner) == 1 else None
+        for _ in range(5):
+            if bound is None or bound in host_ids:
+                break
+            # A virtual processor is bound to a processor; a system stands for its only one.
+            below = [processor for processor in host_ids if processor[: len(bound)] == bound]
+            bound = tree.bindings.get(bound) or (below[0] if len(below) == 1 else None)
+        return host_ids.get(bound, "") if bound else ""
+
+    def _add_link(self, hardware: HardwarePart, ends: list[str], connection_names: list[str]) -> None:
+        part, scope = hardware.part, hardware.scope
+        link_id = make_unique_id(make_id(part.written.name, "link"), self.links.keys())
+        body: Body = {"connects": ends} if ends else {}
+        if title := read_text(scope.value((), "archgen::title")):
+            body["title"] = title
+        medium = name_bus_medium(part)
+        body |= {"protocol": medium} if medium in MEDIUM_NAMES else {}
+        body |= _read_speed(scope)
+        names: Body = {"name": part.written.name} if part.written.name != link_id else {}
+        hints = {**names, **_keep_bus(hardware, connection_names)}
+        self.links[link_id] = {**body, "hints": {"aadl": hints}} if hints else body
+
+
+def _keep_bus(hardware: HardwarePart, connection_names: list[str]) -> Body:
+    """Return what is kept of a bus beside what a link says."""
+    part = hardware.part
+    kept: Body = {"classifier": part.use.full_name} if part.use.name else {}
+    if part.category != "bus":
+        kept["category"] = part.category
+    if carrier := next(iter(read_references(hardware.scope.value((), "actual_connection_binding"))), None):
+        kept["bound_to"] = ".".join(carrier)
+    return {**kept, "connections": connection_names} if connection_names else kept
+
+
+def _list_ends(
+    tree: HardwareTree, path: Path, system: LaunchedSystem, host_ids: Mapping[Path, str], hosts: Mapping[Path, str]
+) -> list[str]:
+    """Return the hosts and devices that have access to a bus, or whose connections are bound to it."""
+    ends: dict[str, None] = {}
+    root = tree.find_root(path)
+    for access, owner in tree.devices.items():
+        if tree.find_root(access) == root:
+            ends |= _name_end(owner, system, host_ids)
+    if len(ends) > 1:
+        return list(ends)
+    for place, connection_name in tree.bound_connections.get(path, []):
+        for leaf_path in _list_wired(system, place, connection_name):
+            ends |= {hosts[leaf_path]: None} if leaf_path in hosts else {}
+    return list(ends)
+
+
+def _name_end(owner: Path, system: LaunchedSystem, host_ids: Mapping[Path, str]) -> dict[str, None]:
+    if owner in host_ids:
+        return {host_ids[owner]: None}
+    instance = system.instances.get(owner)
+    return {".".join(instance.ids): None} if instance else {}
+
+
+def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> list[Path]:
+    """Return the processes and devices that a connection joins."""
+    structure: Structure | None = system.structure if not place else None
+    if place:
+        instance = system.instances.get(place)
+        frame = next((frame for frame in system.frames if frame.path == place), None)
+        structure = instance.structure if instance else frame.structure if frame else None
+    found: list[Path] = []
+    for wire in structure.wires if structure else ():
+        if wire.connection.name.lower() == connection_name:
+            for end in (wire.producer, wire.consumer):
+                found += [path for path, _ in drill(end.part, end, (*place, end.part.name))] if end.part else []
+    return found
+
+
+def _read_speed(scope: Scope) -> Body:
+    """Return latency and bandwidth of a bus."""
+    body: Body = {}
+    lowest, highest = read_time_range(scope.value((), "latency"))
+    if highest:
+        body["latency"] = {"best": lowest or highest, "worst": highest}
+    bandwidth = read_bandwidth(
+        scope.value((), "archgen::bandwidth", "sei::bandwidthcapacity", "bus_properties::bandwidth")
+    )
+    transmission = scope.value((), "transmission_time")
+    if bandwidth is None and isinstance(transmission, AadlRecord):
+        slowest = next((value for name, value in transmission.fields.items() if name.lower() == "perbyte"), None)
+        bandwidth = _read_byte_time(slowest)
+    return {**body, "bandwidth": bandwidth} if bandwidth else body
+
+
+def _read_byte_time(value: AadlValue | None) -> str | None:
+    """Return the bytes a second of the time that a byte takes, the longest of a range."""
+    longest = value.high if isinstance(value, AadlRange) else value
+    factors = {"ps": 10**12, "ns": 10**9, "us": 10**6, "ms": 10**3, "sec": 1}
+    if isinstance(longest, AadlNumber) and longest.value > 0 and longest.unit.lower() in factors:
+        return write_number(factors[longest.unit.lower()] / longest.value, "B/s")
+    return None

@@ -1,0 +1,111 @@
+"""Find the processors and buses of a system wherever they stand, what has access to them, and what is bound to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.bus_names import read_bound_path
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.property_values import Scope, read_references
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.importers.aadl.structures import HARDWARE_CATEGORIES
+from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
+
+PROCESSORS = frozenset({"processor", "virtual processor"})
+_BUS_ACCESSES = frozenset({"bus access", "virtual bus access"})
+_FLAT_CATEGORIES = frozenset({"data", "subprogram", "subprogram group", "thread", "memory"})
+_MAX_DEPTH = 40
+
+
+@dataclass(slots=True)
+class HardwarePart:
+    """A processor or bus where it stands."""
+
+    part: Part
+    resolved: Resolved | None
+    scope: Scope
+
+
+@dataclass(slots=True)
+class HardwareTree:
+    """All hardware of a root, what is joined by bus accesses, and what is bound to what."""
+
+    parts: dict[Path, HardwarePart] = field(default_factory=dict)
+    joined: dict[Path, Path] = field(default_factory=dict)
+    """A forest: paths of accesses and buses, each with another one that it is joined to."""
+    devices: dict[Path, Path] = field(default_factory=dict)
+    """Accesses of processors and devices, with who has them."""
+    bindings: dict[Path, Path] = field(default_factory=dict)
+    """What is bound to processors, with the processor."""
+    bound_connections: dict[Path, list[tuple[Path, str]]] = field(default_factory=dict)
+    """By bus: the connections bound to it, as where they stand and what they are called."""
+    count: int = 0
+
+    def find_root(self, path: Path) -> Path:
+        """Return what all paths joined to this one have in common."""
+        while self.joined.get(path, path) != path:
+            path = self.joined[path]
+        return path
+
+    def join(self, one: Path, other: Path) -> None:
+        """Join two paths."""
+        self.joined[self.find_root(one)] = self.find_root(other)
+
+
+class HardwareFinder:
+    """Goes through all parts of a system."""
+
+    def __init__(self, resolver: ClassifierResolver, notes: NoteList) -> None:
+        """Look up by `resolver`."""
+        self.tree = HardwareTree()
+        self._resolver, self._notes = resolver, notes
+
+    def walk(self, resolved: Resolved, scope: Scope, path: Path = ()) -> None:
+        """Add all that stands in a classifier at a path."""
+        tree = self.tree
+        tree.count += 1
+        if tree.count > MAX_INSTANCES:
+            raise TooManyInstancesError
+        self._add_bindings(resolved, scope, path)
+        for connection in resolved.connections.values():
+            if connection.kind in _BUS_ACCESSES and connection.source:
+                tree.join(_lower((*path, *connection.source)), _lower((*path, *connection.target)))
+        for name, part in resolved.parts.items():
+            inner = self._resolver.resolve(part.use)
+            inner_path, inner_scope = (*path, name), scope.go_into(part, inner)
+            if part.category in HARDWARE_CATEGORIES and part.category != "memory":
+                tree.parts[inner_path] = HardwarePart(part, inner, inner_scope)
+            if inner is None or part.category in _FLAT_CATEGORIES:
+                continue
+            if part.category in PROCESSORS or part.category == "device":
+                accesses = (key for key, port in inner.ports.items() if port.kind in _BUS_ACCESSES)
+                tree.devices |= {(*inner_path, access): inner_path for access in accesses}
+            if len(path) < _MAX_DEPTH:
+                self.walk(inner, inner_scope, inner_path)
+
+    def _add_bindings(self, resolved: Resolved, scope: Scope, path: Path) -> None:
+        # What is written farther out was found before, and counts.
+        for (target, name), (association, _) in resolved.properties.items():
+            if name == "actual_processor_binding":
+                scope.used.ids.add(id(association))
+                references = read_references(association.value)
+                if references:
+                    self.tree.bindings.setdefault((*path, *target), (*path, *references[0]))
+                if len(references) > 1:
+                    words = "of several processors the first is taken"
+                    self._notes.add("Actual_Processor_Binding", words, association.span, fate="noted")
+            elif name == "actual_connection_binding" and target:
+                scope.used.ids.add(id(association))
+                for reference in read_references(association.value)[:1]:
+                    self.tree.bound_connections.setdefault((*path, *reference), []).append((path, target[-1]))
+        for connection in resolved.connections.values():
+            if connection.properties and (bus := read_bound_path(scope, connection.name)):
+                entry = (path, connection.name.lower())
+                bound = self.tree.bound_connections.setdefault((*path, *bus), [])
+                if entry not in bound:
+                    bound.append(entry)
+
+
+def _lower(path: Path) -> Path:
+    return tuple(step.lower() for step in path if step.lower() != "self")

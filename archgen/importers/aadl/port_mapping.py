@@ -1,0 +1,132 @@
+"""Features become inputs and outputs; feature groups are taken apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.data_types import DataTypes
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Port, Resolved
+from archgen.model.element_ids import make_id, make_unique_id
+
+PORT_KINDS = frozenset({"data port", "event data port", "event port", "feature", "subprogram access"})
+KEPT_ACCESSES = frozenset({"data access", "bus access", "virtual bus access", "subprogram group access"})
+_MAX_GROUP_DEPTH = 10
+_MAX_PORTS = 20_000
+_OPPOSITE = {"in": "out", "out": "in", "requires": "provides", "provides": "requires"}
+
+
+@dataclass(slots=True)
+class MappedPort:
+    """An input or output that a feature became; `path` is the feature's name, below those of its groups."""
+
+    id: str
+    path: Path
+    written_name: str
+    is_input: bool
+    is_call: bool
+    kind: str
+    type_name: str
+
+
+@dataclass(slots=True)
+class MappedPorts:
+    """The ports of a classifier, and the accesses that are kept as hints."""
+
+    ports: list[MappedPort] = field(default_factory=list)
+    accesses: dict[str, dict[str, str]] = field(default_factory=dict)
+    by_path: dict[Path, list[MappedPort]] = field(default_factory=dict)
+    groups: dict[Path, list[MappedPort]] = field(default_factory=dict)
+    """All ports in a feature group, by the group's path."""
+
+    def make_section(self, *, is_input: bool) -> dict[str, dict[str, Any]]:
+        """Return the inputs or the outputs as data of the language."""
+        section: dict[str, dict[str, Any]] = {}
+        for port in self.ports:
+            if port.is_input == is_input:
+                hints = {"name": port.written_name} if port.written_name != port.id else {}
+                body = {"type": port.type_name} if port.type_name else {}
+                section[port.id] = {**body, "hints": {"aadl": hints}} if hints else body
+        return section
+
+
+class PortMapper:
+    """Maps the features of classifiers, each classifier once."""
+
+    def __init__(self, resolver: ClassifierResolver, types: DataTypes, notes: NoteList) -> None:
+        """Name types by `types`."""
+        self._resolver, self._types, self._notes = resolver, types, notes
+        self._mapped: dict[int, MappedPorts] = {}
+
+    def map_ports(self, resolved: Resolved) -> MappedPorts:
+        """Return the ports of a classifier."""
+        if id(resolved) not in self._mapped:
+            mapped = MappedPorts()
+            used: tuple[set[str], set[str]] = (set(), set())
+            for port in resolved.ports.values():
+                self._add_port(mapped, port, (), used, is_inverse=False)
+            self._mapped[id(resolved)] = mapped
+        return self._mapped[id(resolved)]
+
+    def _add_port(
+        self, mapped: MappedPorts, port: Port, prefix: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
+    ) -> list[MappedPort]:
+        written = port.written
+        path = (*prefix, written.name.lower())
+        if port.kind == "feature group":
+            mapped.groups[path] = self._add_group(mapped, port, path, used, is_inverse=is_inverse != written.inverse)
+            return mapped.groups[path]
+        if port.kind in KEPT_ACCESSES:
+            access = {"kind": f"{port.direction} {port.kind}"}
+            mapped.accesses[".".join(path)] = {**access, **({"type": port.use.full_name} if port.use.name else {})}
+            return []
+        if port.kind not in PORT_KINDS or not port.direction:
+            words = (
+                f"feature {written.name} has no direction" if port.kind in PORT_KINDS else f"{written.name} is no port"
+            )
+            self._notes.add_counted(port.kind, words, written.span)
+            return []
+        is_call = port.kind == "subprogram access"
+        directions = port.direction.split()
+        added = []
+        for word in [_OPPOSITE[word] for word in directions] if is_inverse else directions:
+            is_input = word in {"in", "requires"}
+            wanted = make_id("_".join((*prefix, written.name)), "port")
+            port_id = make_unique_id(wanted, used[is_input])
+            used[is_input].add(port_id)
+            type_name = self._types.name_use(port.use, "srv" if is_call else "msg")
+            added.append(
+                MappedPort(port_id, path, ".".join((*prefix, written.name)), is_input, is_call, port.kind, type_name)
+            )
+        if written.dimensions:
+            self._notes.add_counted("array of ports", "an array of ports is taken as one", written.span, fate="noted")
+        mapped.ports += added
+        mapped.by_path.setdefault(path, []).extend(added)
+        return added
+
+    def _add_group(
+        self, mapped: MappedPorts, port: Port, path: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
+    ) -> list[MappedPort]:
+        resolved = self._resolver.resolve(port.use)
+        if resolved is None or len(path) > _MAX_GROUP_DEPTH:
+            words = f"what is in feature group {port.written.name} is not known"
+            self._notes.add("feature group", words, port.written.span)
+            return []
+        inner_ports = resolved.ports
+        if not inner_ports and resolved.known.classifier.inverse_of:
+            use = self._resolver.find_use(resolved.known.classifier.inverse_of, {}, resolved.known, {})
+            inverse = self._resolver.resolve(use)
+            inner_ports, is_inverse = (inverse.ports if inverse else {}), not is_inverse
+        added: list[MappedPort] = []
+        for inner in inner_ports.values():
+            if len(mapped.ports) > _MAX_PORTS:
+                self._notes.add(
+                    "feature group",
+                    f"feature groups in one another are more than {_MAX_PORTS:,} ports",
+                    port.written.span,
+                )
+                break
+            added += self._add_port(mapped, inner, path, used, is_inverse=is_inverse)
+        return added

@@ -1,0 +1,230 @@
+"""Find the values of properties where they count, and read them as values of the language."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from archgen.importers.aadl.aadl_tree import (
+    AadlLink,
+    AadlList,
+    AadlName,
+    AadlNumber,
+    AadlRange,
+    AadlText,
+    AadlValue,
+    Path,
+    Property,
+)
+from archgen.importers.aadl.classifier_names import ClassifierNames, fold_property_name
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+
+_UNITS = {"ns": "ns", "us": "us", "ms": "ms", "sec": "s", "s": "s", "min": "min", "hr": "h", "h": "h"}
+_BYTES_A_SECOND = {
+    "bytesps": "B/s",
+    "kbytesps": "kB/s",
+    "mbytesps": "MB/s",
+    "gbytesps": "GB/s",
+    "bitsps": "bit/s",
+    "kbitsps": "kbit/s",
+    "mbitsps": "Mbit/s",
+    "gbitsps": "Gbit/s",
+    "bps": "bit/s",
+    "kbps": "kbit/s",
+    "mbps": "Mbit/s",
+    "gbps": "Gbit/s",
+}
+_MAX_CONSTANTS = 20
+_MAX_PLACES = 18
+
+
+@dataclass(slots=True)
+class UsedProperties:
+    """Associations that were taken, by identity, so that the others can be told."""
+
+    ids: set[int] = field(default_factory=set)
+
+
+@dataclass(slots=True)
+class Scope:
+    """Where a classifier stands: the associations around it count before its own.
+
+    `layers` are what is around it, the outermost first, each with the path from there to it.
+    """
+
+    resolver: ClassifierResolver
+    used: UsedProperties
+    inner: Resolved | None
+    layers: tuple[tuple[Resolved, Path], ...] = ()
+
+    def find(self, path: Path, name: str) -> Property | None:
+        """Return the association of a property to what stands at a path, or None."""
+        for outer, prefix in self.layers:
+            if found := outer.properties.get((prefix + path, name)):
+                self.used.ids.add(id(found[0]))
+                return found[0]
+        return self._find_inside(self.inner, path, name) if self.inner else None
+
+    def _find_inside(self, resolved: Resolved, path: Path, name: str) -> Property | None:
+        if found := resolved.properties.get((path, name)):
+            self.used.ids.add(id(found[0]))
+            return found[0]
+        if not path:
+            return None
+        part = resolved.parts.get(path[0])
+        if part is None:
+            connection = resolved.connections.get(path[0]) if len(path) == 1 else None
+            port = resolved.ports.get(path[0]) if len(path) == 1 else None
+            flow = (
+                (resolved.flows.get((path[0], False)) or resolved.flows.get((path[0], True)))
+                if len(path) == 1
+                else None
+            )
+            written = [*(port.written.properties if port else []), *(connection.properties if connection else [])]
+            return self._find_written([*written, *(flow.properties if flow else [])], (), name)
+        if found_here := self._find_written(part.written.properties, path[1:], name):
+            return found_here
+        inner = self.resolver.resolve(part.use)
+        return self._find_inside(inner, path[1:], name) if inner else None
+
+    def _find_written(self, written: list[Property], path: Path, name: str) -> Property | None:
+        for association in reversed(written):
+            paths = [tuple(step.lower() for step in target) for target in association.paths] or [()]
+            if path in paths and fold_property_name(association.name) == name:
+                self.used.ids.add(id(association))
+                return association
+        return None
+
+    def value(self, path: Path, *names: str) -> AadlValue | None:
+        """Return the value of the first of these properties that has one; constants are looked up."""
+        for name in names:
+            if found := self.find(path, name):
+                return fold_value(found.value, self.resolver.names)
+        return None
+
+    def inherited_value(self, path: Path, *names: str) -> AadlValue | None:
+        """Return a value that counts for all that stands in what it is written of."""
+        for length in range(len(path), -1, -1):
+            value = self.value(path[:length], *names)
+            if value is not None:
+                return value
+        return None
+
+    def go_into(self, part: Part, inner: Resolved | None) -> Scope:
+        """Return the scope of a subcomponent."""
+        name = part.written.name.lower()
+        layers = [(outer, (*prefix, name)) for outer, prefix in self.layers]
+        if self.inner is not None:
+            layers.append((self.inner, (name,)))
+        if part.written.properties:
+            layers.append((_wrap_properties(part), ()))
+        return Scope(self.resolver, self.used, inner, tuple(layers))
+
+    def says_anything(self) -> bool:
+        """Whether an association around the classifier applies to it or to something in it."""
+        return any(prefix in outer.list_prefixes() for outer, prefix in self.layers)
+
+    def only_around(self) -> Scope:
+        """Return the scope without the classifier's own associations: what is written of this instance alone."""
+        return Scope(self.resolver, self.used, None, self.layers)
+
+
+def _wrap_properties(part: Part) -> Resolved:
+    """Return the associations in the braces of a subcomponent, as if they were a classifier's."""
+    wrapped = Resolved(part.owner)
+    for association in part.written.properties:
+        for path in association.paths or ((),):
+            key = (tuple(step.lower() for step in path), fold_property_name(association.name))
+            wrapped.properties[key] = (association, part.owner.package)
+    return wrapped
+
+
+def fold_value(value: AadlValue, names: ClassifierNames) -> AadlValue:
+    """Return a value with constants looked up."""
+    for _ in range(_MAX_CONSTANTS):
+        if not isinstance(value, AadlName) or "::" not in value.name:
+            break
+        constant = names.find_constant(value.name)
+        if constant is None:
+            break
+        value = constant
+    if isinstance(value, AadlRange):
+        return AadlRange(fold_value(value.low, names), fold_value(value.high, names))
+    return value
+
+
+def read_texts(value: AadlValue | None) -> list[str]:
+    """Return the texts of a list of texts, or of one."""
+    if isinstance(value, AadlText):
+        return [value.text]
+    if isinstance(value, AadlList):
+        return [item.text for item in value.items if isinstance(item, AadlText)]
+    return []
+
+
+def read_text(value: AadlValue | None) -> str:
+    """Return the text of a value, the first of a list, or nothing."""
+    return next(iter(read_texts(value)), "")
+
+
+def read_word(value: AadlValue | None) -> str:
+    """Return a word of an enumeration in lower case, or nothing; of a list with one word that word."""
+    if isinstance(value, AadlList) and len(value.items) == 1:
+        value = value.items[0]
+    return value.name.lower() if isinstance(value, AadlName) else ""
+
+
+def read_count(value: AadlValue | None) -> int | None:
+    """Return a whole number that is not negative, or None."""
+    if isinstance(value, AadlNumber) and not value.unit and value.value.denominator == 1 and value.value >= 0:
+        return int(value.value)
+    return None
+
+
+def read_references(value: AadlValue | None) -> list[Path]:
+    """Return the paths of references in lower case."""
+    items = value.items if isinstance(value, AadlList) else (value,)
+    return [
+        tuple(step.lower() for step in item.path)
+        for item in items
+        if isinstance(item, AadlLink) and item.kind == "reference"
+    ]
+
+
+def read_duration(value: AadlValue | None) -> str | None:
+    """Return a time as the language writes it, or None."""
+    if not isinstance(value, AadlNumber) or value.value < 0:
+        return None
+    unit = value.unit.lower()
+    if unit == "ps":
+        return write_number(value.value / 1000, "ns")
+    return write_number(value.value, _UNITS[unit]) if unit in _UNITS else None
+
+
+def read_time_range(value: AadlValue | None) -> tuple[str | None, str | None]:
+    """Return the lower and the upper end of a time; of a single time both are it."""
+    if isinstance(value, AadlRange):
+        return read_duration(value.low), read_duration(value.high)
+    single = read_duration(value)
+    return single, single
+
+
+def read_bandwidth(value: AadlValue | None) -> str | None:
+    """Return data a second as the language writes it, or None."""
+    if not isinstance(value, AadlNumber) or value.value <= 0:
+        return None
+    unit = _BYTES_A_SECOND.get(value.unit.lower())
+    return write_number(value.value, unit) if unit else None
+
+
+def write_number(number: Fraction, unit: str) -> str | None:
+    """Return a number with its unit if the language can write it exactly, else None."""
+    for places in range(_MAX_PLACES + 1):
+        scaled = number * 10**places
+        if scaled.denominator == 1:
+            whole, rest = divmod(int(scaled), 10**places)
+            if whole >= 10**_MAX_PLACES:
+                return None
+            decimals = f".{rest:0{places}}" if places else ""
+            return f"{whole}{decimals} {unit}"
+    return None

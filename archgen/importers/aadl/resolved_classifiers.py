@@ -1,0 +1,247 @@
+"""Classifiers with all that they have from what they extend; what prototypes stand for is put in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from archgen.importers.aadl.aadl_tree import (
+    Binding,
+    Classifier,
+    Connection,
+    Feature,
+    Flow,
+    Package,
+    Path,
+    Property,
+    Subcomponent,
+)
+from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
+from archgen.importers.aadl.import_notes import NoteList
+
+UNBOUND = "prototype"
+"""The category of a prototype for which nothing stands."""
+_MAX_PARENTS = 150
+"""So many classifiers may extend one another: more than any model has, and less than Python can go down."""
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """A classifier as it is used: its name as written, what it is (None if that is in no file), its prototypes' values."""
+
+    name: str = ""
+    known: KnownClassifier | None = None
+    bindings: Mapping[str, Use] = field(default_factory=dict)
+    category: str = ""
+
+    @property
+    def full_name(self) -> str:
+        """Return the complete name, or the one that is written."""
+        return self.known.full_name if self.known else self.name
+
+
+@dataclass(slots=True)
+class Part:
+    """A subcomponent, its classifier looked up, with the package in which it is written."""
+
+    written: Subcomponent
+    use: Use
+    category: str
+    owner: KnownClassifier
+
+
+@dataclass(slots=True)
+class Port:
+    """A feature, its classifier looked up."""
+
+    written: Feature
+    use: Use
+    kind: str
+    direction: str
+    owner: KnownClassifier
+
+
+@dataclass(slots=True, eq=False)
+class Resolved:
+    """A classifier with all that it inherits, by names in lower case."""
+
+    known: KnownClassifier
+    ancestors: tuple[KnownClassifier, ...] = ()
+    """What it extends and what it implements, the nearest first."""
+    prototypes: dict[str, Use] = field(default_factory=dict)
+    """What its prototypes stand for."""
+    ports: dict[str, Port] = field(default_factory=dict)
+    parts: dict[str, Part] = field(default_factory=dict)
+    connections: dict[str, Connection] = field(default_factory=dict)
+    flows: dict[tuple[str, bool], Flow] = field(default_factory=dict)
+    """By name, and whether it is a flow of an implementation."""
+    properties: dict[tuple[Path, str], tuple[Property, Package]] = field(default_factory=dict)
+    """The last association of each property, by the path that it applies to."""
+    calls: list[Subcomponent] = field(default_factory=list)
+    annexes: list[str] = field(default_factory=list)
+    _prefixes: set[Path] | None = None
+
+    def list_prefixes(self) -> set[Path]:
+        """Return all beginnings of paths to which associations apply."""
+        if self._prefixes is None:
+            self._prefixes = {path[:size] for path, _ in self.properties for size in range(len(path) + 1)}
+        return self._prefixes
+
+    @property
+    def category(self) -> str:
+        """Return its category."""
+        return self.known.classifier.category
+
+    def is_made_from(self, *names: str) -> bool:
+        """Whether it or what it extends is called so (in lower case, without package and implementation)."""
+        return any(entry.classifier.name.lower().partition(".")[0] in names for entry in (self.known, *self.ancestors))
+
+
+class ClassifierResolver:
+    """Writes classifiers out, each once for the values of its prototypes."""
+
+    def __init__(self, names: ClassifierNames, notes: NoteList) -> None:
+        """Look names up in `names`, and tell what is in none."""
+        self.names, self.notes = names, notes
+        self._resolved: dict[tuple[str, str], Resolved] = {}
+        self._open: set[int] = set()
+
+    def resolve(self, use: Use) -> Resolved | None:
+        """Return what is used with all that it inherits, or None where it is in no file."""
+        if use.known is None:
+            return None
+        key = (use.known.key, _name_bindings(use.bindings))
+        if key not in self._resolved:
+            self._resolved[key] = self._write_out(use.known, use.bindings)
+        return self._resolved[key]
+
+    def find_use(
+        self, name: str, bindings: Mapping[str, Binding], place: KnownClassifier, env: Mapping[str, Use]
+    ) -> Use:
+        """Return what a name means at a place; a prototype's is what it stands for."""
+        if name.lower() in env:
+            return env[name.lower()]
+        known = self.names.find(name, place.package)
+        values = {key: self._bind(binding, place, env) for key, binding in bindings.items()}
+        return Use(name, known, values)
+
+    def _bind(self, binding: Binding, place: KnownClassifier, env: Mapping[str, Use]) -> Use:
+        found = self.find_use(binding.classifier, binding.bindings, place, env) if binding.classifier else Use()
+        return replace(found, category=binding.category)
+
+    def _write_out(self, known: KnownClassifier, bindings: Mapping[str, Use]) -> Resolved:
+        found = Resolved(known)
+        classifier = known.classifier
+        if id(classifier) in self._open:
+            words = f"{known.full_name} extends itself in the end; what it extends is left out here"
+            self.notes.add_contradiction("extends", words, classifier.span)
+            return found
+        if len(self._open) > _MAX_PARENTS:
+            self.notes.add_contradiction(
+                "extends", f"more than {_MAX_PARENTS} classifiers extend one another", classifier.span
+            )
+            return found
+        self._open.add(id(classifier))
+        env = {
+            prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {})
+            if prototype.classifier
+            else Use(prototype.name, category=UNBOUND)
+            for prototype in classifier.prototypes
+        } | dict(bindings)
+        for parent in self._list_parents(known, env):
+            _add_inherited(found, parent)
+        self._open.discard(id(classifier))
+        found.prototypes |= env
+        self._add_own(found, classifier, found.prototypes)
+        return found
+
+    def _list_parents(self, known: KnownClassifier, env: Mapping[str, Use]) -> list[Resolved]:
+        classifier = known.classifier
+        uses: list[tuple[str, Mapping[str, Binding]]] = []
+        if classifier.is_implementation:
+            uses.append((classifier.name.partition(".")[0], {}))
+        if classifier.extends:
+            uses.append((classifier.extends, classifier.bindings))
+        parents: list[Resolved] = []
+        for name, own_bindings in uses:
+            use = self.find_use(name, own_bindings, known, {})
+            if use.known is None:
+                self.notes.add_unknown_classifier(name, classifier.span)
+                continue
+            values = {key: self._bind(binding, known, env) for key, binding in own_bindings.items()}
+            if parent := self.resolve(Use(name, use.known, {**env, **values})):
+                parents.append(parent)
+        return parents
+
+    def _add_own(self, found: Resolved, classifier: Classifier, env: Mapping[str, Use]) -> None:
+        known = found.known
+        for feature in classifier.features:
+            self._add_feature(found, feature, env)
+        for written in classifier.subcomponents:
+            name = written.name.lower()
+            earlier = found.parts.get(name)
+            use = self.find_use(written.classifier, written.bindings, known, env) if written.classifier else Use()
+            if earlier and not written.classifier:
+                use = earlier.use
+            if use.name and use.known is None and use.category != UNBOUND:
+                self.notes.add_unknown_classifier(use.name, written.span)
+            found.parts[name] = Part(written, use, written.category, known)
+        _add_connections(found, classifier)
+        _add_flows(found, classifier)
+        found.calls += classifier.calls
+        found.annexes += [name for name, _ in classifier.annexes if name not in found.annexes]
+        for association in classifier.properties:
+            for path in association.paths or ((),):
+                key = (
+                    tuple(step.lower() for step in path if step.lower() != "self"),
+                    fold_property_name(association.name),
+                )
+                found.properties[key] = (association, known.package)
+
+    def _add_feature(self, found: Resolved, feature: Feature, env: Mapping[str, Use]) -> None:
+        earlier = found.ports.get(feature.name.lower())
+        use = self.find_use(feature.classifier, {}, found.known, env) if feature.classifier else Use()
+        if earlier and not feature.classifier:
+            use = earlier.use
+        kind = feature.kind
+        if earlier and kind == "feature":
+            kind = earlier.kind
+        direction = feature.direction or (earlier.direction if earlier else "")
+        found.ports[feature.name.lower()] = Port(feature, use, kind, direction, found.known)
+
+
+def _add_inherited(found: Resolved, parent: Resolved) -> None:
+    found.ancestors = tuple(dict.fromkeys((*found.ancestors, parent.known, *parent.ancestors)))
+    found.prototypes.update(parent.prototypes)
+    found.ports.update(parent.ports)
+    found.parts.update(parent.parts)
+    found.connections.update(parent.connections)
+    found.flows.update(parent.flows)
+    found.properties.update(parent.properties)
+    found.calls += [call for call in parent.calls if call not in found.calls]
+    found.annexes += [name for name in parent.annexes if name not in found.annexes]
+
+
+def _name_bindings(bindings: Mapping[str, Use]) -> str:
+    """Return a text that is equal for equal values of prototypes."""
+    return ",".join(
+        f"{name}={use.full_name.lower()}({_name_bindings(use.bindings)})" for name, use in sorted(bindings.items())
+    )
+
+
+def _add_connections(found: Resolved, classifier: Classifier) -> None:
+    for index, written in enumerate(classifier.connections):
+        name = written.name.lower() or f"{found.known.key}#{index}"
+        earlier, connection = found.connections.get(name), written
+        if written.refined and earlier and not written.source:
+            connection = replace(written, source=earlier.source, target=earlier.target)
+        found.connections[name] = connection
+
+
+def _add_flows(found: Resolved, classifier: Classifier) -> None:
+    for written in classifier.flows:
+        key = (written.name.lower(), classifier.is_implementation and written.kind != "end to end")
+        earlier, flow = found.flows.get(key), written
+        if written.refined and earlier and not written.steps:
+            flow = replace(written, steps=earlier.steps)
+        found.flows[key] = flow

@@ -1,0 +1,205 @@
+"""Systems that are part of no other become groups: their components, who feeds whom, and which programs there are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, add_source, reach_port, set_media
+from archgen.importers.aadl.element_hints import keep_sources, keep_structure
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.model_roots import ModelRoots
+from archgen.importers.aadl.port_mapping import MappedPort
+from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
+from archgen.importers.aadl.structures import End, Structure, StructuredPart
+from archgen.model.element_ids import make_id, make_unique_id
+
+PortPlace = tuple[Path, bool, str]
+"""A port of a process or device: where that stands, whether it is an input, and the port's id."""
+
+
+@dataclass(slots=True)
+class Frame:
+    """A system whose parts are components of a group: `path` leads to it from its root."""
+
+    group_id: str
+    structure: Structure
+    scope: Scope
+    path: Path
+    bodies: dict[str, Body] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Instance:
+    """A process or device where it stands: its ids from the group on, and its names in AADL from the root on."""
+
+    ids: tuple[str, ...]
+    path: Path
+    structure: Structure
+    scope: Scope
+    is_of_type: bool
+
+
+@dataclass(slots=True)
+class LaunchedSystem:
+    """A root: what stands in it, for hosts, links and chains."""
+
+    name: str
+    structure: Structure
+    scope: Scope
+    frames: list[Frame]
+    instances: dict[Path, Instance] = field(default_factory=dict)
+    topics: dict[PortPlace, list[str]] = field(default_factory=dict)
+    senders: dict[PortPlace, list[PortPlace]] = field(default_factory=dict)
+    """Who sends what an input reads, by connections that name a topic."""
+    lone_buses: dict[str, Body] = field(default_factory=dict)
+    """What is kept of buses that join fewer than two."""
+    groups: dict[str, str] = field(default_factory=dict)
+    """Groups by the names of the parts of the root that they are."""
+
+
+class GroupBuilder:
+    """Builds the groups of all roots."""
+
+    def __init__(
+        self,
+        resolver: ClassifierResolver,
+        roots: ModelRoots,
+        builder: ComponentBuilder,
+        used: UsedProperties,
+        notes: NoteList,
+    ) -> None:
+        """Build components by `builder`."""
+        self.groups: dict[str, Body] = {}
+        self.systems: list[LaunchedSystem] = []
+        self._resolver, self._roots, self._builder = resolver, roots, builder
+        self._used, self._notes = used, notes
+
+    def add_root(self, root: Structure) -> None:
+        """Build the groups of a root."""
+        scope = Scope(self._resolver, self._used, root.resolved)
+        system = LaunchedSystem(root.resolved.known.full_name, root, scope, [])
+        parts = list(root.parts.values())
+        grouped = [part for part in parts if self._is_group(part)]
+        for part in grouped:
+            if part.structure:
+                inner_scope = scope.go_into(part.part, part.structure.resolved)
+                group_id = self._open_group(part.id, part.part.written.name, part.structure, inner_scope)
+                frame = Frame(group_id, part.structure, inner_scope, (part.name,))
+                system.groups[part.name] = frame.group_id
+                self._add_components(frame, list(part.structure.parts.values()))
+                system.frames.append(frame)
+        if loose := [part for part in parts if part not in grouped]:
+            name = root.resolved.known.classifier.name.partition(".")[0]
+            wanted = read_text(scope.value((), "archgen::id")) or make_id(name, "group")
+            frame = Frame(self._open_group(wanted, root.resolved.known.classifier.name, root, scope), root, scope, ())
+            self._add_components(frame, loose)
+            system.frames.append(frame)
+        for frame in system.frames:
+            self._wire_frame(system, frame)
+        if grouped:
+            self._wire_groups(system)
+        self.systems.append(system)
+
+    def _is_group(self, part: StructuredPart) -> bool:
+        structure = part.structure
+        return (
+            part.part.category == "system"
+            and structure is not None
+            and bool(structure.parts)
+            and self._roots.is_single(structure)
+        )
+
+    def _open_group(self, wanted_id: str, name: str, structure: Structure, scope: Scope) -> str:
+        group_id = make_unique_id(wanted_id, self.groups.keys())
+        names = {"name": name} if name != group_id else {}
+        hints = {**names, "classifier": structure.resolved.known.full_name}
+        own_scope = Scope(self._resolver, self._used, structure.resolved)
+        hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
+        title, description = (read_text(scope.value((), f"archgen::{key}")) for key in ("title", "description"))
+        body: Body = {"title": title} if title else {}
+        body |= {"description": description} if description else {}
+        self.groups[group_id] = {**body, "hints": {"aadl": hints}, "components": {}}
+        return group_id
+
+    def _add_components(self, frame: Frame, parts: list[StructuredPart]) -> None:
+        for part in parts:
+            frame.bodies[part.id] = self._builder.build_instance(part, frame.scope)
+        self.groups[frame.group_id]["components"].update(frame.bodies)
+
+    def _wire_frame(self, system: LaunchedSystem, frame: Frame) -> None:
+        """Join the parts of a frame; what leads out of the robot is external."""
+        is_root = frame.structure is system.structure
+        for wire in frame.structure.wires:
+            producer, consumer = wire.producer, wire.consumer
+            from_here = producer.part is not None and producer.part.id in frame.bodies
+            to_here = consumer.part is not None and consumer.part.id in frame.bodies
+            if from_here and to_here and producer.part and consumer.part:
+                reference = f"{frame.group_id}.{producer.part.id}.{producer.port.id}"
+                add_source(reach_port(frame.bodies[consumer.part.id], "inputs", consumer.port.id), reference)
+            elif is_root and to_here and producer.part is None and consumer.part:
+                body = reach_port(frame.bodies[consumer.part.id], "inputs", consumer.port.id)
+                body["external"] = producer.port.written_name
+            elif is_root and from_here and consumer.part is None and producer.part:
+                body = reach_port(frame.bodies[producer.part.id], "outputs", producer.port.id)
+                body["external"] = consumer.port.written_name
+        set_media(frame.structure, frame.bodies, frame.scope, self._notes)
+
+    def _wire_groups(self, system: LaunchedSystem) -> None:
+        frames = {frame.path[0]: frame for frame in system.frames if frame.path}
+        root_frame = next((frame for frame in system.frames if not frame.path), None)
+        for wire in system.structure.wires:
+            references = _list_references(wire.producer, frames, root_frame)
+            bodies = _list_bodies(wire.consumer, frames, root_frame, is_input=True)
+            for body in bodies:
+                for reference in references:
+                    add_source(body, reference)
+                if wire.producer.part is None:
+                    body["external"] = wire.producer.port.written_name
+            if wire.consumer.part is None:
+                for body in _list_bodies(wire.producer, frames, root_frame, is_input=False):
+                    body["external"] = wire.consumer.port.written_name
+
+
+def _list_references(end: End, frames: dict[str, Frame], root_frame: Frame | None) -> list[str]:
+    """Return the outputs of components that stand behind an output of a part of a root."""
+    if end.part is None:
+        return []
+    frame = frames.get(end.part.name)
+    if frame is None:
+        return [f"{root_frame.group_id}.{end.part.id}.{end.port.id}"] if root_frame else []
+    return [
+        f"{frame.group_id}.{wire.producer.part.id}.{wire.producer.port.id}"
+        for wire in frame.structure.wires
+        if wire.consumer.part is None and wire.consumer.port is end.port and wire.producer.part
+    ]
+
+
+def _list_bodies(end: End, frames: dict[str, Frame], root_frame: Frame | None, *, is_input: bool) -> list[Body]:
+    """Return the ports of components that stand behind a port of a part of a root."""
+    if end.part is None:
+        return []
+    section = "inputs" if is_input else "outputs"
+    frame = frames.get(end.part.name)
+    if frame is None:
+        return [reach_port(root_frame.bodies[end.part.id], section, end.port.id)] if root_frame else []
+    found: list[Body] = []
+    for wire in frame.structure.wires:
+        outer, inner = (wire.producer, wire.consumer) if is_input else (wire.consumer, wire.producer)
+        if outer.part is None and outer.port is end.port and inner.part:
+            found.append(reach_port(frame.bodies[inner.part.id], section, inner.port.id))
+    return found
+
+
+def drill(part: StructuredPart, end: End, path: Path) -> list[tuple[Path, MappedPort]]:
+    """Return the ports of processes and devices that stand behind an end of a wire, with their paths."""
+    structure = part.structure
+    if structure is None or structure.is_node or not structure.parts:
+        return [(path, end.port)]
+    found: list[tuple[Path, MappedPort]] = []
+    for wire in structure.wires:
+        outer, inner = (wire.producer, wire.consumer) if end.port.is_input else (wire.consumer, wire.producer)
+        if outer.part is None and outer.port is end.port and inner.part:
+            found += drill(inner.part, inner, (*path, inner.part.name))
+    return found

@@ -1,0 +1,218 @@
+"""How a classifier is built: its parts that are components, its hardware, and who sends to whom among them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from archgen.importers.aadl.aadl_tree import AadlText, Connection, Path
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.model.element_ids import make_id, make_unique_id
+
+COMPONENT_CATEGORIES = frozenset({"system", "process", "device", "abstract", "thread", "thread group"})
+HARDWARE_CATEGORIES = frozenset({"processor", "virtual processor", "memory", "bus", "virtual bus"})
+_MAX_LEVELS = 40
+WIRE_KINDS = frozenset(
+    [
+        "port",
+        "data port",
+        "event port",
+        "event data port",
+        "feature group",
+        "port group",
+        "feature",
+        "subprogram access",
+    ]
+)
+
+
+@dataclass(slots=True, eq=False)
+class StructuredPart:
+    """A part that is a component: the id that it gets, and how it is built (None where its classifier is in no file)."""
+
+    id: str
+    part: Part
+    structure: Structure | None
+
+    @property
+    def name(self) -> str:
+        """Return its name in lower case."""
+        return self.part.written.name.lower()
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """An end of a wire: a port of a part, or of the classifier itself where `part` is None."""
+
+    part: StructuredPart | None
+    port: MappedPort
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """Data that flows from an end to another, by a connection."""
+
+    producer: End
+    consumer: End
+    connection: Connection
+
+
+@dataclass(slots=True, eq=False)
+class Structure:
+    """How a classifier is built."""
+
+    resolved: Resolved
+    ports: MappedPorts
+    parts: dict[str, StructuredPart] = field(default_factory=dict)
+    wires: list[Wire] = field(default_factory=list)
+    thread: Part | None = None
+    """The only thread of a process, which is one component with it."""
+    thread_ports: dict[tuple[str, bool], str] = field(default_factory=dict)
+    """The ports of that thread behind those of the process, by id and whether they are inputs."""
+    access_connections: dict[str, Connection] = field(default_factory=dict)
+
+    @property
+    def is_node(self) -> bool:
+        """Whether it is one program: a process."""
+        return self.resolved.category == "process"
+
+
+class StructureFinder:
+    """Finds how classifiers are built, each once."""
+
+    def __init__(self, resolver: ClassifierResolver, mapper: PortMapper, notes: NoteList) -> None:
+        """Look up by `resolver`, map ports by `mapper`."""
+        self._resolver, self._mapper, self._notes = resolver, mapper, notes
+        self._found: dict[int, Structure] = {}
+        self._open: list[Resolved] = []
+
+    def find(self, resolved: Resolved) -> Structure:
+        """Return how a classifier is built."""
+        if id(resolved) not in self._found:
+            self._open.append(resolved)
+            self._found[id(resolved)] = self._build(resolved)
+            self._open.pop()
+        return self._found[id(resolved)]
+
+    def _build(self, resolved: Resolved) -> Structure:
+        found = Structure(resolved, self._mapper.map_ports(resolved))
+        parts = [part for part in resolved.parts.values() if part.category in COMPONENT_CATEGORIES]
+        if resolved.category == "process" and len(parts) == 1 and parts[0].category == "thread":
+            found.thread = parts[0]
+            self._join_thread(found, parts[0])
+            parts = []
+        used_ids: set[str] = set()
+        for part in parts:
+            if structured := self._build_part(resolved, part, used_ids):
+                found.parts[structured.name] = structured
+        self._add_wires(found)
+        return found
+
+    def _build_part(self, around: Resolved, part: Part, used_ids: set[str]) -> StructuredPart | None:
+        inner = self._resolver.resolve(part.use)
+        if inner is not None and (inner in self._open or len(self._open) > _MAX_LEVELS):
+            words = (
+                f"{part.written.name} is within itself in the end"
+                if inner in self._open
+                else f"more than {_MAX_LEVELS} levels of parts"
+            )
+            self._notes.add_contradiction("subcomponent", words, part.written.span)
+            return None
+        structure = self.find(inner) if inner else None
+        if structure and part.category == "system" and _is_only_hardware(structure):
+            return None
+        if part.written.dimensions:
+            self._notes.add_counted(
+                "array of subcomponents", "an array of subcomponents is taken as one", part.written.span, fate="noted"
+            )
+        part_id = make_unique_id(make_id(_read_own_id(around, part) or part.written.name, "part"), used_ids)
+        used_ids.add(part_id)
+        return StructuredPart(part_id, part, structure)
+
+    def _join_thread(self, found: Structure, thread: Part) -> None:
+        """Find which port of the thread stands behind which of the process."""
+        name = thread.written.name.lower()
+        for connection in found.resolved.connections.values():
+            ends = [_fold_path(connection.source), _fold_path(connection.target)]
+            inside = next((end[1:] for end in ends if len(end) > 1 and end[0] == name), None)
+            outside = next((end for end in ends if end and end[0] != name), None)
+            if connection.kind not in WIRE_KINDS:
+                found.access_connections[connection.name] = connection
+            elif inside and outside:
+                for port in found.ports.by_path.get(outside, ()):
+                    found.thread_ports[port.id, port.is_input] = ".".join(inside)
+
+    def _add_wires(self, found: Structure) -> None:
+        if found.thread is not None:
+            return
+        for connection in found.resolved.connections.values():
+            if connection.kind not in WIRE_KINDS:
+                found.access_connections[connection.name] = connection
+                continue
+            sources, targets = self._list_ends(found, connection.source), self._list_ends(found, connection.target)
+            wires = list(_join_ends(sources, targets, connection))
+            if not wires and sources is not None and targets is not None:
+                words = f"connection {connection.name} joins no output to an input".replace("  ", " ")
+                self._notes.add("connection", words, connection.span, "are its ends called so, and in the right order?")
+            found.wires += wires
+
+    def _list_ends(self, found: Structure, written_path: Path) -> list[tuple[Path, End]] | None:
+        """Return the ports that an end of a connection means, with their paths below it; None if it is no component's."""
+        path = _fold_path(written_path)
+        if not path:
+            return []
+        part = found.parts.get(path[0]) if len(path) > 1 else None
+        if part is None and len(path) > 1 and path[0] in found.resolved.parts:
+            return None
+        if part is not None and part.structure is None:
+            return None
+        ports = part.structure.ports if part and part.structure else found.ports
+        port_path = path[1:] if part else path
+        if port_path in ports.groups:
+            return [(port.path[len(port_path) :], End(part, port)) for port in ports.groups[port_path]]
+        if ".".join(port_path) in ports.accesses:
+            return None
+        return [((), End(part, port)) for port in ports.by_path.get(port_path, ())]
+
+
+def _read_own_id(around: Resolved, part: Part) -> str:
+    """Return the id that an export of archgen's wrote at a part, or nothing."""
+    found = around.properties.get(((part.written.name.lower(),), "archgen::id"))
+    associations = [association for association in part.written.properties if association.name.lower() == "archgen::id"]
+    values = [found[0].value] if found else [association.value for association in associations]
+    return next((value.text for value in values if isinstance(value, AadlText)), "")
+
+
+def _join_ends(
+    sources: list[tuple[Path, End]] | None, targets: list[tuple[Path, End]] | None, connection: Connection
+) -> Iterator[Wire]:
+    """Yield who sends to whom: ends of feature groups are joined by their names below the group."""
+    targets_by_path: dict[Path, list[End]] = {}
+    for path, end in targets or ():
+        targets_by_path.setdefault(path, []).append(end)
+    for path, source in sources or ():
+        for target in targets_by_path.get(path, ()):
+            if _sends(source) and not _sends(target):
+                yield Wire(source, target, connection)
+            elif _sends(target) and not _sends(source):
+                yield Wire(target, source, connection)
+
+
+def _sends(end: End) -> bool:
+    """Whether data comes out of an end: out of a part's output, or into the classifier by its own input."""
+    return end.port.is_input == (end.part is None)
+
+
+def _is_only_hardware(structure: Structure) -> bool:
+    parts = structure.resolved.parts.values()
+    return (
+        not structure.parts
+        and not structure.ports.ports
+        and any(part.category in HARDWARE_CATEGORIES for part in parts)
+    )
+
+
+def _fold_path(path: Path) -> Path:
+    return tuple(step.lower() for step in path if step.lower() != "self")

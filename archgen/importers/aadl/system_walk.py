@@ -1,0 +1,139 @@
+"""Go through all instances of a root system: programs, topics, hosts, links."""
+
+from __future__ import annotations
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.component_bodies import Body, map_node_ports, name_use_section
+from archgen.importers.aadl.element_hints import keep_sources
+from archgen.importers.aadl.model_roots import ModelRoots
+from archgen.importers.aadl.property_values import Scope, read_text
+from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, drill
+from archgen.importers.aadl.structures import End, Structure, StructuredPart
+from archgen.model.element_ids import make_id, make_unique_id
+
+MAX_INSTANCES = 50_000
+
+
+class TooManyInstancesError(Exception):
+    """A root has more instances than anybody wants to read."""
+
+
+def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
+    """Find the processes and devices of a root, and the names of their topics."""
+    _find_topics(system, system.structure, system.scope, ())
+    for frame in system.frames:
+        if frame.path:
+            _find_topics(system, frame.structure, frame.scope, frame.path)
+        group = Instance((frame.group_id,), frame.path, frame.structure, frame.scope, is_of_type=False)
+        for part in frame.structure.parts.values():
+            if part.id in frame.bodies:
+                _walk(system, roots, part, group)
+
+
+def _walk(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, around: Instance) -> None:
+    structure = part.structure
+    if structure is None:
+        return
+    scope = around.scope.go_into(part.part, structure.resolved)
+    is_of_type = around.is_of_type or bool(roots.find_type_id(structure))
+    instance = Instance((*around.ids, part.id), (*around.path, part.name), structure, scope, is_of_type)
+    system.instances[instance.path] = instance
+    if len(system.instances) > MAX_INSTANCES:
+        raise TooManyInstancesError
+    if structure.is_node:
+        return
+    _find_topics(system, structure, scope, instance.path)
+    for inner in structure.parts.values():
+        _walk(system, roots, inner, instance)
+
+
+def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, path: Path) -> None:
+    for wire in structure.wires:
+        if not wire.connection.name:
+            continue
+        name = read_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
+        if not name:
+            continue
+        producers, consumers = _list_leaves(wire.producer, path), _list_leaves(wire.consumer, path)
+        for leaf in (*producers, *consumers):
+            topics = system.topics.setdefault(leaf, [])
+            if name not in topics:
+                topics.append(name)
+        for leaf in consumers:
+            system.senders.setdefault(leaf, []).extend(producers)
+
+
+def _list_leaves(end: End, path: Path) -> list[PortPlace]:
+    """Return the ports of processes and devices behind an end of a wire."""
+    leaves = drill(end.part, end, (*path, end.part.name)) if end.part else []
+    return [(leaf_path, port.is_input, port.id) for leaf_path, port in leaves]
+
+
+class NodeWriter:
+    """Writes a node for each process where it stands."""
+
+    def __init__(self) -> None:
+        """Start without any node."""
+        self.nodes: dict[str, Body] = {}
+
+    def add_nodes(self, system: LaunchedSystem, hosts: dict[Path, str]) -> None:
+        """Write the programs of a root; `hosts` are those of its instances."""
+        fed = _find_fed_ports(system)
+        for instance in system.instances.values():
+            if not instance.structure.is_node:
+                continue
+            body = self._describe_node(system, instance, fed)
+            if host := hosts.get(instance.path):
+                body["host"] = host
+            wanted = read_text(instance.scope.value((), "archgen::node")) or instance.ids[-1]
+            if wanted in self.nodes:
+                wanted = "_".join(instance.ids)
+            node_id = make_unique_id(make_id(wanted, "node"), self.nodes.keys())
+            self.nodes[node_id] = {"implements": ".".join(instance.ids), **body}
+
+    def _describe_node(self, system: LaunchedSystem, instance: Instance, fed: set[PortPlace]) -> Body:
+        scope = instance.scope
+        default_uses = map_node_ports(instance.structure, scope, is_type=False)
+        written_uses = (
+            map_node_ports(instance.structure, scope.only_around(), is_type=False)
+            if instance.is_of_type
+            else default_uses
+        )
+        body: Body = {}
+        for port in instance.structure.ports.ports:
+            section = name_use_section(is_input=port.is_input, is_call=port.is_call)
+            use = dict(written_uses.get(section, {}).get(port.id, {}))
+            default_name = default_uses.get(section, {}).get(port.id, {}).get("own_name")
+            key = "name" if port.is_call else "topic"
+            use.pop("own_name", None)
+            place = (instance.path, port.is_input, port.id)
+            topics = system.topics.get(place, [])
+            if place in fed:
+                # A reader's topic is its producer's, unless that has several.
+                senders = system.senders.get(place, [])
+                if not any(len(system.topics.get(sender, [])) > 1 for sender in senders):
+                    topics = []
+            if topics:
+                use[key] = topics[0] if len(topics) == 1 or port.is_call else topics
+                if default_name and topics != [default_name] and len(topics) == 1:
+                    use["own_name"] = default_name
+            elif default_name and place in fed:
+                use["own_name"] = default_name
+            elif default_name:
+                use[key] = default_name
+            if use:
+                body.setdefault(section, {})[port.id] = use
+        around = keep_sources(scope.only_around(), ())
+        return {**body, "hints": {"aadl": around}} if around else body
+
+
+def _find_fed_ports(system: LaunchedSystem) -> set[PortPlace]:
+    """Return the inputs of programs that a wire feeds."""
+    fed: set[PortPlace] = set()
+    containers: list[tuple[Structure, Path]] = [(system.structure, ())]
+    containers += [(frame.structure, frame.path) for frame in system.frames if frame.path]
+    containers += [(inst.structure, inst.path) for inst in system.instances.values() if not inst.structure.is_node]
+    for structure, path in containers:
+        for wire in structure.wires:
+            fed.update(_list_leaves(wire.consumer, path) if wire.producer.part else ())
+    return fed

@@ -1,0 +1,84 @@
+"""Properties of a thread become timing; what the library's threads are called tells the role."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.port_mapping import MappedPorts
+from archgen.importers.aadl.property_values import Scope, read_count, read_duration, read_time_range, read_word
+from archgen.importers.aadl.resolved_classifiers import Resolved
+
+_ROLES = {"message_source": "source", "filter": "filter", "message_sink": "sink", "reactive": "reactive"}
+_TRIGGERING_KINDS = frozenset({"event data port", "event port"})
+
+
+def find_role(thread: Resolved) -> str:
+    """Return the role of what is made from a thread of the component-connector library, or nothing."""
+    return next((role for name, role in _ROLES.items() if thread.is_made_from(name)), "")
+
+
+def fits_role(role: str, ports: MappedPorts) -> bool:
+    """Whether a component with these ports can have a role: its thread's need not be that of the whole process."""
+    has_input = any(port.is_input and not port.is_call for port in ports.ports)
+    has_output = any(not port.is_input and not port.is_call for port in ports.ports)
+    has_service = any(not port.is_input and port.is_call for port in ports.ports)
+    return {
+        "source": has_output and not has_input,
+        "filter": has_input and has_output,
+        "sink": has_input and not has_output,
+        "reactive": has_service,
+    }[role]
+
+
+def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
+    """Return what the properties of a thread say: all but its trigger."""
+    timing: dict[str, Any] = {}
+    protocol_property = scope.find(path, "dispatch_protocol")
+    protocol = read_word(scope.value(path, "dispatch_protocol"))
+    if protocol in {"periodic", "sporadic", "aperiodic"}:
+        timing["behaviour"] = "periodic" if protocol == "periodic" else "event"
+    elif protocol_property is not None:
+        words = f"a thread that is dispatched as `{protocol or 'this'}` has no behaviour here"
+        notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
+    period = read_duration(scope.inherited_value(path, "period"))
+    if period and protocol in {"periodic", ""}:
+        timing["period"] = period
+    elif period:
+        found = next(filter(None, (scope.find(path[:size], "period") for size in range(len(path), -1, -1))), None)
+        if found:
+            words = "the smallest distance of a sporadic thread's dispatches is no period here"
+            notes.add_counted("Period of a sporadic thread", words, found.span)
+    for name, key in (("deadline", "deadline"), ("dispatch_jitter", "jitter")):
+        if text := read_duration(scope.value(path, name)):
+            timing[key] = text
+    lowest, highest = read_time_range(scope.value(path, "compute_execution_time"))
+    timing |= {"wcet": highest} if highest else {}
+    timing |= {"bcet": lowest} if lowest and lowest != highest else {}
+    priority = read_count(scope.inherited_value(path, "priority"))
+    return timing if priority is None else {**timing, "priority": priority}
+
+
+def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str]) -> None:
+    """Say what fires a thread that an event fires, where not all of its inputs do."""
+    if timing.get("behaviour") != "event":
+        return
+    inputs = [port for port in ports.ports if port.is_input and not port.is_call]
+    if not triggering_ids and any(port.is_call and not port.is_input for port in ports.ports):
+        timing["behaviour"] = "on_demand"
+    elif triggering_ids and len(triggering_ids) < len(inputs):
+        timing["trigger"] = [port.id for port in inputs if port.id in triggering_ids]
+
+
+def add_port_hints(body: dict[str, Any], ports: MappedPorts, timing: dict[str, Any]) -> None:
+    """Keep the kind of each port where it is not the usual one (docs/aadl.md, Hints)."""
+    behaviour, trigger = timing.get("behaviour"), timing.get("trigger")
+    for port in ports.ports:
+        if port.is_call:
+            continue
+        triggers = behaviour is None or (behaviour == "event" and (trigger is None or port.id in trigger))
+        usual = "event data port" if port.is_input and triggers else "data port"
+        if port.kind != usual:
+            section = body["inputs" if port.is_input else "outputs"][port.id]
+            section.setdefault("hints", {}).setdefault("aadl", {})["port"] = port.kind.removesuffix(" port")
