@@ -9,6 +9,7 @@ from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tree import Property
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
@@ -119,8 +120,8 @@ class _ModelImport:
         self._names, self._notes, self._used = names, notes, UsedProperties()
         self._resolver = ClassifierResolver(names, notes)
         self._types = DataTypes(self._resolver, notes, self._used)
-        mapper = PortMapper(self._resolver, self._types, notes)
-        self._finder = StructureFinder(self._resolver, mapper, notes)
+        mapper = PortMapper(self._resolver, self._types, self._used, notes)
+        self._finder = StructureFinder(self._resolver, mapper, self._used, notes)
 
     def make_import(self) -> ForeignImport:
         """Return the slices, what was taken, and the notes."""
@@ -157,13 +158,15 @@ class _ModelImport:
             "component_types.yaml": _make_slice(component_types=component_types),
             "groups.yaml": _make_slice(groups=bodies),
             "nodes.yaml": _make_slice(nodes=nodes.nodes),
-            "hosts.yaml": _make_slice(hosts=hardware.hosts, links=hardware.links),
+            "hosts.yaml": _make_slice(hosts=hardware.hosts, containers=hardware.containers, links=hardware.links),
             "chains.yaml": _make_slice(chains=chains.chains),
         }
         taken = self._count_taken(roots, data_count)
         taken |= {"processor": len(hardware.hosts), "bus": len(hardware.links), "end to end flow": len(chains.chains)}
         self._tell_left()
-        title = next(iter(self._names.packages.values())).name if len(self._names.packages) == 1 else ""
+        title = next((find_own_text(system.scope, (), "title") for system in groups.systems), "")
+        if not title and len(self._names.packages) == 1:
+            title = next(iter(self._names.packages.values())).name
         return ForeignImport(
             {name: section for name, section in slices.items() if section},
             {name: count for name, count in taken.items() if count},

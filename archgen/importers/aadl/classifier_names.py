@@ -53,6 +53,11 @@ class ClassifierNames:
     repeated: list[tuple[str, Span, Span]] = field(default_factory=list)
     """What is declared again, where, and where it was first."""
 
+    @property
+    def is_own(self) -> bool:
+        """Whether an export of archgen's made the model: then names in AADL follow from the ids, and are not kept."""
+        return "archgen" in self.property_sets
+
     def add_packages(self, packages: Iterable[Package]) -> None:
         """Add packages; the same package in several files is one (its public part may stand apart)."""
         for package in packages:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPorts
 from archgen.importers.aadl.property_values import Scope, read_count, read_duration, read_time_range, read_word
@@ -43,7 +44,10 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
         words = f"a thread that is dispatched as `{protocol or 'this'}` has no behaviour here"
         notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
     period = read_duration(scope.inherited_value(path, "period"))
-    if period and protocol in {"periodic", ""}:
+    rate = find_own_text(scope, path, "rate")
+    if rate:
+        timing["rate"] = rate
+    elif period and protocol in {"periodic", ""}:
         timing["period"] = period
     elif period:
         found = next(filter(None, (scope.find(path[:size], "period") for size in range(len(path), -1, -1))), None)
@@ -55,7 +59,8 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
             timing[key] = text
     lowest, highest = read_time_range(scope.value(path, "compute_execution_time"))
     timing |= {"wcet": highest} if highest else {}
-    timing |= {"bcet": lowest} if lowest and lowest != highest else {}
+    # From 0 on says no more than up to.
+    timing |= {"bcet": lowest} if lowest and lowest != highest and not lowest.startswith("0 ") else {}
     priority = read_count(scope.inherited_value(path, "priority"))
     return timing if priority is None else {**timing, "priority": priority}
 
