@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +44,7 @@ _TAKEN_PROPERTIES = frozenset(
         "scheduling_protocol",
         "latency",
         "transmission_time",
+        "actual_latency",
         "topic_properties::name",
         "topic_properties::default_name",
         "sei::bandwidthcapacity",
@@ -153,7 +154,9 @@ class _ModelImport:
             if base := roots.find_base_id(structure):
                 component_types[type_id] = _subtract_base(component_types[type_id], base, component_types)
         bodies = {name: body for name, body in groups.groups.items() if body["components"]}
+        owners = sorted({owner for part in (bodies, component_types) for owner in _list_owners(part)})
         slices: dict[str, Mapping[str, Any]] = {
+            "partners.yaml": _make_slice(partners={owner: {} for owner in owners}),
             "types.yaml": _make_slice(types=self._types.types),
             "component_types.yaml": _make_slice(component_types=component_types),
             "groups.yaml": _make_slice(groups=bodies),
@@ -236,6 +239,14 @@ def _list_associations(known: KnownClassifier) -> list[Property]:
     for written in elements:
         found += [association for element in written for association in element.properties]
     return found
+
+
+def _list_owners(bodies: Mapping[str, Body]) -> Iterator[str]:
+    """Yield the owners of groups and components, to any depth."""
+    for body in bodies.values():
+        if "owner" in body:
+            yield body["owner"]
+        yield from _list_owners(body.get("components", {}))
 
 
 def _make_slice(**sections: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tree import AadlValue, Classifier, Package, PropertySet
 
+LIBRARY_PACKAGES = frozenset({"cnc", "ros"})
 STANDARD_SETS = frozenset(
     [
         "aadl_project",
@@ -36,6 +37,11 @@ class KnownClassifier:
     def full_name(self) -> str:
         """Return `package::name`, or the bare name of one in no package."""
         return "::".join(filter(None, [self.package.name, self.classifier.name]))
+
+    @property
+    def is_of_library(self) -> bool:
+        """Whether it is of the libraries of components and of nodes of ROS: its name says what it has."""
+        return self.package.name.lower() in LIBRARY_PACKAGES
 
     @property
     def key(self) -> str:

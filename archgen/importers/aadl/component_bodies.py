@@ -49,8 +49,11 @@ class ComponentBuilder:
             body |= self._describe_leaf(structure, scope, hints)
         body |= {"inputs": inputs} if inputs else {}
         body |= {"outputs": outputs} if outputs else {}
+        if not (inputs or outputs or structure.parts):
+            # AADL says that it has none; without them nothing would declare it.
+            body |= {"inputs": {}, "outputs": {}}
         if not structure.parts:
-            add_port_hints(body, ports, body.get("timing", {}))
+            add_port_hints(body, ports, body.get("timing", {}), is_own=self._resolver.names.is_own)
         if resolved.category == "device":
             body["tags"] = ["device"]
             for port_body in outputs.values():
@@ -72,7 +75,9 @@ class ComponentBuilder:
             self._count += 1
             known = {"classifier": part.part.use.full_name} if part.part.use.name else {}
             tags = {"tags": ["device"]} if part.part.category == "device" else {}
-            return {**tags, "hints": {"aadl": {**names, **known}}} if names or known else tags
+            # Nothing is known of it but what it is called.
+            stub: Body = {"title": name, **tags}
+            return {**stub, "hints": {"aadl": {**names, **known}}} if names or known else stub
         if type_id := self._find_type(structure):
             hints = {"hints": {"aadl": names}} if names else {}
             return {"is": type_id, **self.build_overlay(structure, scope.only_around()), **hints}
@@ -109,7 +114,7 @@ class ComponentBuilder:
         if resolved.category == "thread":
             thread = resolved
             hints |= keep_thread(scope, (), resolved)
-        add_trigger(timing, structure.ports, triggering)
+        add_trigger(timing, structure.ports, triggering, is_own=self._resolver.names.is_own)
         if thread and (role := find_role(thread)) and fits_role(role, structure.ports):
             body["role"] = role
         return {**body, "timing": timing} if timing else body

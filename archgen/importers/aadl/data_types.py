@@ -47,6 +47,8 @@ class DataTypes:
             return ""
         if use.known is None:
             return _name_unknown(use.name, kind)
+        if use.known.is_of_library and use.known.classifier.name.lower().startswith("untyped"):
+            return ""
         name = self._name_known(use.known, kind)
         values = [self.name_use(value) for value in use.bindings.values()]
         return f"{name}<{', '.join(values)}>" if values and all(values) else name
@@ -105,8 +107,7 @@ class DataTypes:
         if not self._resolver.names.is_own:
             hints = body.get("hints", {}).get("aadl", {})
             body = {**body, "hints": {"aadl": {"classifier": known.full_name, **hints}}}
-        if body:
-            self.types[name] = body
+        self.types[name] = body
 
     def _describe(self, resolved: Resolved, scope: Scope, kind: str) -> dict[str, Any]:
         body: dict[str, Any] = {}
@@ -190,7 +191,7 @@ class DataTypes:
 
 def _is_library_data(known: KnownClassifier) -> bool:
     name = known.classifier.name.lower().partition(".")[0]
-    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS
+    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or known.is_of_library
 
 
 def _name_unknown(name: str, kind: str) -> str:
@@ -199,7 +200,10 @@ def _name_unknown(name: str, kind: str) -> str:
 
 def _find_message(resolved: Resolved, kind: str) -> str:
     """Return the message of ROS that a type is made from, or nothing."""
-    return next((found for each in resolved.ancestors if (found := _make_message(each.full_name, kind))), "")
+    entries = (resolved.known, *resolved.ancestors)
+    # What is in none of the files is told by its name.
+    names = [*(entry.full_name for entry in entries[1:]), *(entry.classifier.extends for entry in entries)]
+    return next((found for name in names if (found := _make_message(name, kind))), "")
 
 
 def _make_message(full_name: str, kind: str) -> str:

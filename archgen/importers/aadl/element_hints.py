@@ -6,7 +6,6 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Connection, Path, Property
-from archgen.importers.aadl.classifier_names import KnownClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_text, read_texts, read_time_range
 from archgen.importers.aadl.resolved_classifiers import Part, Resolved
@@ -45,21 +44,21 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
     hints: dict[str, Any] = {}
     if resolved.annexes:
         hints["annexes"] = list(resolved.annexes)
-    library_ports = {name for name, port in resolved.ports.items() if _is_of_library(port.owner)}
+    library_ports = {name for name, port in resolved.ports.items() if port.owner.is_of_library}
     used_ports = {
         end[0].lower() for connection in structure.access_connections.values() for end in _list_own_ends(connection)
     }
     kept_ports = {
         key: dict(value)
         for key, value in structure.ports.accesses.items()
-        if key not in library_ports or (key in used_ports and not _is_of_library(resolved.known))
+        if key not in library_ports or (key in used_ports and not resolved.known.is_of_library)
     }
     if kept_ports and not (scope.resolver.names.is_own and resolved.category != "process"):
         hints["access"] = kept_ports
     library_names = {
         connection.name
         for known in resolved.ancestors
-        if _is_of_library(known)
+        if known.is_of_library
         for connection in known.classifier.connections
     }
     joined = {
@@ -69,9 +68,7 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
             "kind": connection.kind,
         }
         for connection in structure.access_connections.values()
-        if connection.kind != "parameter"
-        and connection.name not in library_names
-        and not _is_of_library(resolved.known)
+        if connection.kind != "parameter" and connection.name not in library_names and not resolved.known.is_of_library
     }
     if scope.resolver.names.is_own:
         return hints | _keep_data(structure, scope, notes)
@@ -85,11 +82,6 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
 def _list_own_ends(connection: Connection) -> list[Path]:
     """Return the ends of a connection that are features of what it stands in."""
     return [end for end in (connection.source, connection.target) if len(end) == 1]
-
-
-def _is_of_library(known: KnownClassifier) -> bool:
-    """Whether a classifier is of the paper's libraries: its name says what it has."""
-    return known.package.name.lower() in {"cnc", "ros"}
 
 
 def _name_connection(connection: Connection) -> str:

@@ -56,7 +56,9 @@ class MappedPorts:
                 body: dict[str, Any] = {"type": port.type_name} if port.type_name else {}
                 body |= read_port_words(self.scope, port.path)
                 if section.get(port.id, body).get("type") != body.get("type"):
-                    del body["type"], section[port.id]["type"]
+                    # One input of several types: its sources tell them.
+                    body.pop("type", None)
+                    section[port.id].pop("type", None)
                 section[port.id] = section.get(port.id, {}) | body
                 if hints:
                     section[port.id]["hints"] = {"aadl": hints}

@@ -100,7 +100,12 @@ class StructureFinder:
 
     def _build(self, resolved: Resolved) -> Structure:
         found = Structure(resolved, self._mapper.map_ports(resolved))
-        parts = [part for part in resolved.parts.values() if part.category in COMPONENT_CATEGORIES]
+        # What each node has from the library, such as its main thread, is no behaviour of its own.
+        parts = [
+            part
+            for part in resolved.parts.values()
+            if part.category in COMPONENT_CATEGORIES and not part.owner.is_of_library
+        ]
         if resolved.category == "process" and len(parts) == 1 and parts[0].category == "thread":
             found.thread = parts[0]
             self._join_thread(found, parts[0])

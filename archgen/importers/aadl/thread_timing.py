@@ -65,22 +65,23 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     return timing if priority is None else {**timing, "priority": priority}
 
 
-def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str]) -> None:
-    """Say what fires a thread that an event fires, where not all of its inputs do."""
-    if timing.get("behaviour") != "event":
+def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str], *, is_own: bool) -> None:
+    """Say what fires a thread that an event fires, where not all of its inputs do; `is_own`: archgen wrote the model."""
+    if timing.get("behaviour") != "event" and not (is_own and "behaviour" not in timing and triggering_ids):
         return
-    inputs = [port for port in ports.ports if port.is_input and not port.is_call]
+    inputs = list(dict.fromkeys(port.id for port in ports.ports if port.is_input and not port.is_call))
     if not triggering_ids and any(port.is_call and not port.is_input for port in ports.ports):
         timing["behaviour"] = "on_demand"
     elif triggering_ids and len(triggering_ids) < len(inputs):
-        timing["trigger"] = [port.id for port in inputs if port.id in triggering_ids]
+        timing["trigger"] = [port_id for port_id in inputs if port_id in triggering_ids]
 
 
-def add_port_hints(body: dict[str, Any], ports: MappedPorts, timing: dict[str, Any]) -> None:
+def add_port_hints(body: dict[str, Any], ports: MappedPorts, timing: dict[str, Any], *, is_own: bool) -> None:
     """Keep the kind of each port where it is not the usual one (docs/aadl.md, Hints)."""
     behaviour, trigger = timing.get("behaviour"), timing.get("trigger")
     for port in ports.ports:
-        if port.is_call:
+        # Of a model that archgen wrote, what triggers tells the kinds of inputs.
+        if port.is_call or (is_own and port.is_input and port.kind != "event port"):
             continue
         triggers = behaviour is None or (behaviour == "event" and (trigger is None or port.id in trigger))
         usual = "event data port" if port.is_input and triggers else "data port"
