@@ -62,6 +62,8 @@ class Backend:
     """Filters of its own: each is a table from a character to the text in its place."""
     passes: tuple[str, ...] = ()
     """The passes that the architecture goes through before the views are made; only for a workspace."""
+    choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """What some options may be; the first counts where nobody says another."""
     needs: tuple[str, ...] = ()
     """What must hold of the architecture after the passes; only for a workspace."""
     from_project: bool = False
@@ -147,6 +149,10 @@ def _read_manifest(folder: Path, name: str) -> Backend:
         refuse_manifest(name, message, "give both the same name", find_span(root, ["id"], name))
     _check_escapes(data.get("escapes", {}), root, name)
     views = data["view"]
+    options, choices = data.get("options", {}), dict[str, tuple[str, ...]]()
+    if data["emitter"] == "text":
+        choices = {key: tuple(value) for key, value in options.items() if _is_choice(value)}
+        options = {**options, **{key: values[0] for key, values in choices.items()}}
     backend = Backend(
         id=data["id"],
         title=data["title"],
@@ -154,19 +160,25 @@ def _read_manifest(folder: Path, name: str) -> Backend:
         emitter=data["emitter"],
         views=(views,) if isinstance(views, str) else tuple(views),
         files=tuple(BackendFile(**file) for file in data.get("files", ())),
-        options=data.get("options", {}),
+        options=options,
         folder=folder,
         name=name,
         makes=data.get("makes", "documents"),
         escapes=data.get("escapes", {}),
         passes=tuple(data.get("passes", ())),
         needs=tuple(data.get("needs", ())),
+        choices=choices,
     )
     if backend.makes != "workspace":
         _refuse_workspace_keys(data, root, name)
     if backend.makes == "file":
         _check_single_file(backend, root)
     return backend
+
+
+def _is_choice(value: object) -> bool:
+    """Whether an option is a list of texts: what it may be."""
+    return isinstance(value, list) and bool(value) and all(isinstance(each, str) for each in value)
 
 
 def _refuse_workspace_keys(data: Mapping[str, Any], root: ManifestNode, name: str) -> None:

@@ -129,10 +129,13 @@ def _set_options(backend: Backend, options: Mapping[str, str]) -> Backend:
             msg = f"the backend `{backend.id}` has no option `{name}`"
             known = f"it has {', '.join(known_names)}" if known_names else "it has none"
             raise OutputError(msg, did_you_mean(name, known_names) or known)
-    ros_generation = options.get("ros", "")
-    if ros_generation not in {"", "1", "2"}:
-        msg = f"the option `ros` is 1 or 2, not `{ros_generation}`"
-        raise OutputError(msg, "without it the project's distribution decides")
+    for name, value in options.items():
+        known_values = backend.choices.get(name, ("", "1", "2") if name == "ros" else (value,))
+        if value not in known_values:
+            named = [f"`{each}`" for each in known_values if each]
+            msg = f"the option `{name}` of the backend `{backend.id}` is {' or '.join(named)}, not `{value}`"
+            help_line = "another backend makes that: `archgen list --of backends`" if len(known_values) == 1 else None
+            raise OutputError(msg, did_you_mean(value, known_values) or help_line or "leave it out for the usual one")
     return replace(backend, options={**backend.options, **options})
 
 
@@ -153,6 +156,7 @@ def _render_files(
         backend.options,
         backend.id,
         options.level or "implementation",
+        options.selector_text if selection else "",
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:

@@ -31,7 +31,7 @@ title: Code
 makes: workspace
 emitter: text
 view: interfaces
-options: {word: hello, nested: {a: b}}
+options: {word: hello, nested: {a: b}, shape: [round, square]}
 files:
   - {template: t.j2, for_each: interfaces.files, path: "code/{{ item.name }}.txt"}
 """
@@ -110,7 +110,11 @@ def test_parts_are_apart_and_variants_are_not(run: Run, robot: Path, tmp_path: P
         (["--option", "word"], "`--option` takes KEY=VALUE, not 'word'"),
         (["--option", "wrod=x"], "the backend `code` has no option `wrod`; did you mean `word`?"),
         (["--option", "ros=3"], "the backend `code` has no option `ros`"),
-        (["--option", "nested=x"], "the backend `code` has no option `nested`; it has word"),
+        (["--option", "nested=x"], "the backend `code` has no option `nested`; it has word, shape"),
+        (
+            ["--option", "shape=rond"],
+            "the option `shape` of the backend `code` is `round` or `square`, not `rond`; did you mean `round`?",
+        ),
         (
             ["--overwrite", "code/Scam.txt"],
             "this backend makes no file `code/Scam.txt` here; did you mean `code/Scan.txt`?",

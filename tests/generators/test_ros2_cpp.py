@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import yaml
 
+from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
@@ -94,11 +95,11 @@ def test_a_program_has_what_cpp_asks_for(tmp_path: Path) -> None:
     assert (user["cpp_namespace"], user["cpp_class"], user["cpp_guard"]) == ("people", "Asker", "RT_G__USER")
     assert user["cpp_headers"] == ["std_srvs/srv/trigger.hpp", "test_msgs/action/fibonacci.hpp"]
     assert programs["cam"]["publishers"][1]["cpp_header"] == "sensor_msgs/msg/point_cloud2.hpp"
-    assert both["callback_groups"] == [{"key": "quick", "kind": "MutuallyExclusive"}]
+    assert both["callback_groups"] == [{"key": "quick", "components": ["g.fast"]}]
     assert [(each["key"], each["callback_group"]) for each in both["timers"]] == [("slow", ""), ("fast", "quick")]
     assert (both["subscriptions"][0]["callback_group"], both["clients"][0]["callback_group"]) == ("", "quick")
-    assert programs["det"]["callback_groups"] == [{"key": "reentrant", "kind": "Reentrant"}]
-    assert {each["callback_group"] for each in programs["det"]["subscriptions"]} == {"reentrant"}
+    assert programs["det"]["callback_groups"] == []
+    assert {each["callback_group"] for each in programs["det"]["subscriptions"]} == {""}
 
 
 def test_the_library_declares_what_it_can(tmp_path: Path) -> None:
@@ -121,13 +122,16 @@ def test_with_both_backends_nothing_is_made_twice(tmp_path: Path) -> None:
     assert {path for path in (tmp_path / "w" / "src").rglob("*") if path.is_file()} == before
 
 
-def test_nodes_of_another_language_are_made_where_that_is_asked_for(tmp_path: Path) -> None:
+def test_a_backend_writes_one_language(tmp_path: Path) -> None:
     text = "groups: {g: {components: {a: {}, b: {}}}}\nnodes: {a: {implements: g.a, language: cpp}, b: {implements: g.b}}\n"
     project = write_project(tmp_path / "p", text)
-    write_workspace(
-        project, OutputOptions(), "ros2_cpp", tmp_path / "w", WorkspaceRequest(options={"language": "python"})
-    )
-    assert [path.name for path in tmp_path.rglob("*_node.cpp") if path.parent.name == "src"] == ["b_node.cpp"]
+    generate(project, tmp_path / "w")
+    assert [path.name for path in tmp_path.rglob("*_node.cpp") if path.parent.name == "src"] == ["a_node.cpp"]
+    for backend, language in (("ros2_cpp", "python"), ("ros2_python", "cpp"), ("ros1_python", "c++")):
+        with pytest.raises(OutputError, match=f"the option `language` of the backend `{backend}` is `[a-z]+`, not `"):
+            write_workspace(
+                project, OutputOptions(), backend, tmp_path / "w", WorkspaceRequest(options={"language": language})
+            )
 
 
 def test_a_second_run_touches_nothing(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""What a program in C++ has besides: its namespace and class, headers of messages, and callback groups."""
+"""What a program in C++ has besides: its namespace and class, headers of messages, and what its parameters are."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ from archgen.bringup.program_names import name_plugin
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
-from archgen.model.code_names import make_identifier_in, make_snake_name
+from archgen.model.code_names import make_identifier_in
 from archgen.model.node import Node
 from archgen.views.generation.cpp_parameters import choose_library_parameters
 from archgen.views.generation.generation_context import tell_left_out
 from archgen.views.generation.program_ports import PORT_SECTIONS
 
 _CLASS_NAME = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)(?:::([A-Za-z_][A-Za-z0-9_]*))+\Z", re.ASCII)
-_REENTRANT_GROUP = "reentrant"
 
 
 def find_bad_classes(
@@ -43,20 +42,14 @@ def complete_cpp_program(architecture: Architecture, record: dict[str, Any], nod
     """Write into the record of a program what only C++ asks for."""
     node = nodes[0]
     namespace, _, class_name = name_plugin(node, record["package"], record["executable"]).rpartition("::")
-    groups = [_REENTRANT_GROUP] if record["reentrant"] else list(node.callback_groups)
-    keys = {name: make_snake_name(name) for name in groups}
-    for timer in record["timers"]:
-        timer["callback_group"] = _find_group(node, timer["component"], keys)
     headers = set[str]()
     for section in PORT_SECTIONS.values():
         for port in record[section]:
-            component = port["port"].rpartition(".")[0]
             port |= {
                 # Two underscores in a row are the compiler's own.
                 "key": port["key"].rstrip("_"),
                 "cpp_class": port["message"].replace("/", "::"),
                 "cpp_header": name_message_header(port["message"]),
-                "callback_group": _find_group(node, component, keys),
             }
             headers.add(port["cpp_header"])
     record |= {
@@ -64,7 +57,6 @@ def complete_cpp_program(architecture: Architecture, record: dict[str, Any], nod
         "cpp_class": class_name,
         "cpp_guard": _name_guard(record["package"], record["module"]),
         "cpp_headers": sorted(headers),
-        "callback_groups": list(_list_groups(keys.values(), is_reentrant=bool(record["reentrant"]))),
         "distro": architecture.distro or "",
         **choose_library_parameters(record["parameters"]),
     }
@@ -96,15 +88,3 @@ def name_message_header(message: str) -> str:
 
 def _name_guard(package: str, module: str) -> str:
     return f"{make_identifier_in('cpp', package)}__{module}".upper()
-
-
-def _find_group(node: Node, component: str, keys: Mapping[str, str]) -> str:
-    """Return the callback group of what a component has in a node; empty for the node's default group."""
-    if node.reentrant:
-        return keys[_REENTRANT_GROUP]
-    return next((keys[name] for name, members in node.callback_groups.items() if component in members), "")
-
-
-def _list_groups(keys: Iterable[str], *, is_reentrant: bool) -> Iterable[dict[str, str]]:
-    kind = "Reentrant" if is_reentrant else "MutuallyExclusive"
-    return ({"key": key, "kind": kind} for key in dict.fromkeys(keys))

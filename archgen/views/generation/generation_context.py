@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 from collections.abc import Collection, Mapping
 from dataclasses import field
 from functools import cached_property
@@ -13,6 +15,9 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.ros_distro import is_ros_1
+
+_PLAIN_SELECTOR = re.compile(r"[a-z0-9_]{1,80}(?:[.:][a-z0-9_]{1,80}){0,3}\Z")
+_DIGEST_LENGTH = 8
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
@@ -66,11 +71,25 @@ class GenerationContext:
     """The id of the backend: elements have hints for it below this name."""
     level: DetailLevel = "implementation"
     """Whether the view `structure` shows the ROS side."""
+    selector: str = ""
+    """What `--select` says."""
 
     @property
     def is_whole(self) -> bool:
         """Whether everything is asked for."""
         return self.components is None and self.host is None
+
+    @property
+    def part(self) -> str:
+        """What files are called after that several parts of `--select` would make: `owner-certh`; empty where nothing is selected.
+
+        Different selectors have different names, also where case is ignored.
+        """
+        text = " ".join(self.selector.split())
+        if not text or _PLAIN_SELECTOR.match(text):
+            return text.replace(":", "-")
+        words = re.sub(r"[^a-z0-9]+", "_", text.lower()).strip("_")[:40]
+        return f"{words}-{hashlib.sha256(text.encode()).hexdigest()[:_DIGEST_LENGTH]}"
 
     @cached_property
     def wanted_nodes(self) -> Mapping[str, Node]:

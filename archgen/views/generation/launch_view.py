@@ -80,6 +80,7 @@ def _record_host(
     times = [each["simulated_time"] for each in entries if each["simulated_time"] is not None]
     return {
         "name": name,
+        "file_name": f"{name}.{context.part}" if context.part else name,
         "argument": make_ros_name(name),
         "title": element.title if element else "what has no host",
         "place": write_place(element.at) if element else "",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from archgen.model.code_names import make_identifier_in, make_snake_name
+from archgen.model.code_names import make_snake_name
 from archgen.model.node import Node
 
 CALLED_SECTIONS = ("subscriptions", "services", "clients", "action_servers", "action_clients")
@@ -16,7 +16,7 @@ def add_callback_groups(
 ) -> list[dict[str, object]]:
     """Tell each port and timer its `callback_group`, and return the groups: `key`, and the components in it.
 
-    What is in none is in the node's default group. Where all is reentrant, there are none.
+    A key is a name that something is written behind, in any language: `fast` of `fast_lock`. What is in none is in the node's default group. Where all is reentrant, there are none.
     """
     groups = {} if node.reentrant else _name_groups(node)
     key_by_component = {component: key for key, members in groups.items() for component in members}
@@ -34,10 +34,10 @@ def add_callback_groups(
 
 
 def _name_groups(node: Node) -> dict[str, tuple[str, ...]]:
-    """Return the components of each group, by a name that attributes can have; no two groups get one."""
+    """Return the components of each group, by a name of its own."""
     named: dict[str, tuple[str, ...]] = {}
     for group, members in node.callback_groups.items():
-        stem = make_identifier_in("python", make_snake_name(group))
+        stem = make_snake_name(group)
         key, number = stem, 1
         while key in named:
             number += 1

@@ -21,8 +21,8 @@ def read_hint(annotations: ElementAnnotations, key: str) -> str:
     return value.strip() if isinstance(value, str) else ""
 
 
-def find_wrong_hints(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Yield the hints for the start-up that say nothing that it knows."""
+def find_unread_hints(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield the hints for the start-up that nobody reads: unknown ones, and those that are no text."""
     for host in architecture.hosts.values():
         yield from _judge_hints(host.id, host.annotations, host.at, ("address", "image"))
     for container in architecture.containers.values():

@@ -11,7 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
-from archgen.views.generation.start_hints import find_wrong_hints, read_hint
+from archgen.views.generation.start_hints import find_unread_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_step_record import UNPLACED, record_step
 from archgen.views.generation.wanted_steps import find_wanted_steps
@@ -31,15 +31,20 @@ def make_view(context: GenerationContext) -> GeneratedView:
     steps = {step.id: step for step in plan.steps}
     folder = str(context.options.get("folder") or "") or f"/opt/{architecture.project.id}"
     hosts = [_record_host(architecture, host, plan, records, wanted_ids) for host in wanted_hosts]
+    for record in hosts:
+        record["file_name"] = f"{record['name']}.{context.part}" if context.part else record["name"]
     return GeneratedView(
         {
             "project": {"id": architecture.project.id, "title": architecture.project.title},
             "ros": context.ros_generation,
             "is_whole": context.is_whole,
+            "prefix": f"{architecture.project.id}.{context.part}" if context.part else architecture.project.id,
             "folder": folder.rstrip("/"),
             "image": str(context.options.get("image") or ""),
             "phases": [phase for phase, _ in plan.phases],
             "hosts": hosts,
+            # The file of settings is one for all parts.
+            "computers": list(dict.fromkeys(step.host or UNPLACED for step in plan.steps)),
             "jobs": [job for host in hosts for job in host["jobs"]],
             "targets": [
                 {"host": host["name"], "phase": phase, "phase_before": before, "needs": needs}
@@ -51,7 +56,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 start_phrases.describe_dropped(each, steps) for each in plan.dropped if each.wait.waiting in wanted_ids
             ],
         },
-        tuple(find_wrong_hints(architecture)),
+        tuple(find_unread_hints(architecture)),
     )
 
 

@@ -21,8 +21,8 @@ def make_sections() -> dict[str, list[dict[str, object]]]:
     [
         (
             Node("n", "N", callback_groups=GROUPS),
-            [{"key": "fast", "components": ["g.stop"]}, {"key": "class_", "components": ["g.map"]}],
-            ["fast", "", "", "class_"],
+            [{"key": "fast", "components": ["g.stop"]}, {"key": "class", "components": ["g.map"]}],
+            ["fast", "", "", "class"],
         ),
         (Node("n", "N", callback_groups=GROUPS, reentrant=True), [], ["", "", "", ""]),
         (Node("n", "N"), [], ["", "", "", ""]),

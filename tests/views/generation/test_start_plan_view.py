@@ -10,7 +10,7 @@ import pytest
 from archgen.bringup.start_plan import make_start_plan
 from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.generation.start_hints import find_wrong_hints, read_hint
+from archgen.views.generation.start_hints import find_unread_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_plan_view import make_view
 from archgen.views.generation.start_step_record import UNPLACED, record_step
@@ -168,7 +168,7 @@ def test_hints_of_another_kind_say_nothing(tmp_path: Path, hints: str, found: st
     )
     architecture = check_project(path).architecture
     assert read_hint(architecture.hosts["a"].annotations, "image") == ""
-    findings = list(find_wrong_hints(architecture))
+    findings = list(find_unread_hints(architecture))
     assert "".join(each.message for each in findings) == found
     assert [(each.span.line, each.help) for each in findings] in (
         [],

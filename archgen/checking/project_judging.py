@@ -1,0 +1,127 @@
+"""A merged project is linked and judged by all rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from archgen import analyses
+from archgen.checking.all_rules import RULES_BY_NAME, list_structural_errors
+from archgen.checking.checked_project import CheckedProject
+from archgen.checking.merged_project import MergedProject
+from archgen.checking.named_contents import read_named_contents
+from archgen.checking.project_linking import LinkedProject, PartMemory, link_merged_project
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
+from archgen.findings import (
+    error_aftermath,
+    finding_limit,
+    ignore_comments,
+    instance_findings,
+    option_settings,
+    rule_table,
+)
+from archgen.link import title_guesses
+from archgen.timing.run_analysis import AnalysisMemory
+
+
+def judge_merged_project(
+    merged_project: MergedProject, analysis_memory: AnalysisMemory, part_memory: PartMemory | None = None
+) -> CheckedProject:
+    """Run the stages behind merging; what `part_memory` knows from another variant is not made anew."""
+    loaded_project = merged_project.loaded_project
+    linked_project = link_merged_project(merged_project, part_memory)
+    architecture, read_parameters = linked_project.architecture, linked_project.parameters
+    analysis = analyses.analyse_timing(architecture, analysis_memory)
+    project_chapters, content_findings = read_named_contents(merged_project, linked_project, part_memory)
+    linking_errors = list_structural_errors(
+        (*merged_project.diagnostics, *linked_project.interface_findings, *linked_project.link_findings)
+    )
+    waiting_rules = error_aftermath.list_waiting_rules(
+        (*merged_project.reading_errors, *linking_errors),
+        loaded_project.lost_keys,
+        is_partial=loaded_project.partial,
+    )
+    rule_options, option_findings = option_settings.read_rule_options(loaded_project.rule_options, RULES_BY_NAME)
+    all_diagnostics = (
+        *title_guesses.add_title_guesses(
+            (*loaded_project.diagnostics, *linked_project.link_findings), architecture, loaded_project.sources
+        ),
+        *merged_project.diagnostics,
+        *linked_project.interface_findings,
+        *content_findings,
+        *read_parameters.diagnostics,
+        *error_aftermath.drop_aftermath(
+            analyses.check_architecture(architecture, analysis, rule_options),
+            merged_project.reading_errors,
+            waiting_rules,
+        ),
+        *option_findings,
+        *rule_table.check_rule_settings(loaded_project.rule_spans.items(), RULES_BY_NAME),
+    )
+    reported_findings, silenced_findings = _settle_findings(
+        all_diagnostics, merged_project, linked_project, is_complete=not waiting_rules
+    )
+    return CheckedProject(
+        loaded_project,
+        merged_project.table,
+        architecture,
+        project_chapters,
+        reported_findings,
+        silenced_findings,
+        analysis,
+        rule_options,
+        waiting_rules,
+        read_parameters.texts,
+        read_parameters.packed_texts,
+    )
+
+
+def _settle_findings(
+    all_diagnostics: Iterable[Diagnostic],
+    merged_project: MergedProject,
+    linked_project: LinkedProject,
+    *,
+    is_complete: bool,
+) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """Return the findings to report, sorted, and those that a comment or a setting of the project silences."""
+    loaded_project, architecture = merged_project.loaded_project, linked_project.architecture
+    raw_diagnostics = instance_findings.gather_instance_findings(
+        all_diagnostics,
+        architecture,
+        [entry.value.span for entry in linked_project.expansion.type_entries.values()],
+        frozenset(library.at for library in loaded_project.libraries if library.is_shipped),
+    )
+    ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
+    ignores += (*linked_project.parameters.ignores, *loaded_project.library_ignores)
+    # Only projects that ignore something pay for this.
+    first_lines = ignore_comments.find_first_lines(architecture) if ignores else {}
+    settled_findings = settle_diagnostics(
+        ignore_comments.apply_ignores(
+            raw_diagnostics,
+            ignores,
+            RULES_BY_NAME,
+            first_lines,
+            shared_files=frozenset(loaded_project.library_files),
+            is_complete=is_complete,
+        ),
+        RULES_BY_NAME,
+        loaded_project.rule_settings,
+    )
+    silenced_findings = (
+        _find_silenced(raw_diagnostics, settled_findings, loaded_project.rule_settings)
+        if ignores or Severity.OFF in loaded_project.rule_settings.values()
+        else ()
+    )
+    return finding_limit.limit_findings(settled_findings), silenced_findings
+
+
+def _find_silenced(
+    raw_diagnostics: Iterable[Diagnostic], settled_findings: Iterable[Diagnostic], settings: Mapping[str, Severity]
+) -> tuple[Diagnostic, ...]:
+    """Return the findings that only comments, or settings that switch a rule off, keep out of the settled ones."""
+    shown_findings = frozenset(settled_findings)
+    all_findings = settle_diagnostics(
+        raw_diagnostics,
+        RULES_BY_NAME,
+        {rule: severity for rule, severity in settings.items() if severity != Severity.OFF},
+    )
+    return tuple(finding for finding in all_findings if finding not in shown_findings)

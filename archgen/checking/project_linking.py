@@ -1,0 +1,80 @@
+"""From the table of a project to its architecture, both levels of it."""
+
+from __future__ import annotations
+
+from archgen import compose, derivation, link
+from archgen.checking.interface_loading import load_interfaces
+from archgen.checking.merged_project import MergedProject
+from archgen.compose.project_expansion import ExpandedProject
+from archgen.derivation.derived_parts import DerivedParts
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.frozen import dataclass, replace
+from archgen.link import element_outline, named_files, parameter_reading
+from archgen.link.link_memory import LinkMemory
+from archgen.link.parameter_reading import ReadParameters
+from archgen.link.project_types import declare_project_types
+from archgen.model.architecture import Architecture
+from archgen.model.known_parts import KnownParts
+from archgen.project.commit_days import find_commit_day
+
+
+class PartMemory:
+    """The parts of a project that its variants have in common."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self.linked = LinkMemory()
+        self.derived = DerivedParts()
+        self.named_files: named_files.FilesByGroup = KnownParts()
+
+
+@dataclass(frozen=True, slots=True)
+class LinkedProject:
+    """A project as its architecture, and what was found on the way from its table."""
+
+    expansion: ExpandedProject
+    linked_architecture: Architecture
+    """The architecture as it is written: without values of parameters, and without what is derived."""
+    architecture: Architecture
+    parameters: ReadParameters
+    interface_findings: tuple[Diagnostic, ...]
+    link_findings: tuple[Diagnostic, ...]
+
+
+def link_merged_project(merged_project: MergedProject, part_memory: PartMemory | None = None) -> LinkedProject:
+    """Return the architecture of a merged project; what `part_memory` knows from another variant is not made anew."""
+    linked_parts = part_memory.linked if part_memory else None
+    loaded_project, merged_table = merged_project.loaded_project, merged_project.table
+    damaged_elements = merged_project.damaged_elements
+    expansion = compose.expand_project(
+        merged_table, loaded_project.incomplete_libraries, loaded_project.describe_missing_type
+    )
+    outline = element_outline.build_outline(expansion, linked_parts)
+    declared_types = declare_project_types(loaded_project, merged_table, expansion, outline, damaged_elements)
+    known_interfaces, interface_findings = load_interfaces(loaded_project, merged_table, declared_types)
+    linked_architecture, link_findings = link.link_project(
+        expansion,
+        outline,
+        default_id=loaded_project.id,
+        default_title=loaded_project.title,
+        declared_types=declared_types,
+        interfaces=known_interfaces,
+        lost_keys=loaded_project.lost_keys,
+        damaged_elements=damaged_elements,
+        is_partial=loaded_project.partial,
+        memory=linked_parts,
+    )
+    read_parameters = parameter_reading.read_node_parameters(
+        merged_table, linked_architecture, loaded_project.files if merged_project.is_folder else None
+    )
+    for path, text in read_parameters.texts.items():
+        loaded_project.sources.add_text(path, text)
+    architecture = derivation.derive_low_level(
+        read_parameters.architecture, part_memory.derived if part_memory else None
+    )
+    commit_day = find_commit_day(loaded_project.files, architecture)
+    if commit_day is not None:
+        architecture = replace(architecture, commit_day=commit_day)
+    return LinkedProject(
+        expansion, linked_architecture, architecture, read_parameters, interface_findings, link_findings
+    )
