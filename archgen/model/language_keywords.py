@@ -240,6 +240,7 @@ AADL_KEYWORDS = frozenset(
         "bus",
         "calls",
         "classifier",
+        "client",
         "compute",
         "connections",
         "constant",
@@ -290,6 +291,7 @@ AADL_KEYWORDS = frozenset(
         "renames",
         "requires",
         "self",
+        "server",
         "set",
         "sink",
         "source",
@@ -305,7 +307,7 @@ AADL_KEYWORDS = frozenset(
         "with",
     ]
 )
-"""Those of AADL 2.2, in which letters count alike in either case."""
+"""Those of AADL 2.2, and of AADL 1 as readers of both refuse them; letters count alike in either case."""
 
 ROS_KEYWORDS = PYTHON_KEYWORDS | CPP_KEYWORDS
 """A name of ROS becomes one in the languages in which its messages, packages and parameters are used."""

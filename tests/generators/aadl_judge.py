@@ -200,7 +200,7 @@ def find_member(
     home: str | None = package
     seen = classifier
     own_type = seen.name.partition(".")[0].lower()
-    candidates = [(package, seen), (package, packages[package][own_type])]
+    candidates = [(package, packages[package][own_type]), (package, seen)]
     while candidates and found is None:
         home, seen = candidates.pop(0)
         for title in ("features", "subcomponents", "flows"):

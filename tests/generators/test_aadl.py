@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from archgen.timing.run_analysis import analyse_architecture
 from archgen.views.generation.aadl_view import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from tests import hostile
-from tests.generators.aadl_judge import find_member, judge_packages
+from tests.generators.aadl_judge import Classifier, find_member, judge_packages
 from tests.running import ROOT, contents
 
 EXAMPLES = [
@@ -97,8 +98,9 @@ def find_line(text: str, pattern: str) -> str:
 def test_every_example_is_aadl(example: str, tmp_path: Path) -> None:
     project = check_project(ROOT / example)
     packages = judge_packages(write_files(project, tmp_path))
-    (system,) = [each["robot.launch"] for each in packages.values() if "robot.launch" in each]
-    processes = [tokens for _, tokens in system.sections["subcomponents"] if tokens[2] == "process"]
+    classifiers = [classifier for each in packages.values() for classifier in each.values()]
+    parts = [part for each in classifiers for part in each.sections.get("subcomponents", ())]
+    processes = [tokens for _, tokens in parts if tokens[2] == "process"]
     assert len(processes) == len(project.architecture.nodes)
 
 
@@ -164,9 +166,9 @@ def test_computers_containers_and_links(lab: CheckedProject, tmp_path: Path) -> 
     assert "Latency => 100 us .. 2 ms;" in hosts
     assert "archgen::Cores => 4;" in hosts
     assert "archgen::Threads => 2;" in hosts
-    assert "Actual_Processor_Binding => (reference (box)) applies to data_x;" in system
+    assert "Actual_Processor_Binding => (reference (box)) applies to g.access_x;" in system
     assert "Actual_Processor_Binding => (reference (pc)) applies to box;" in system
-    assert "Actual_Connection_Binding => (reference (lan)) applies to talker_chatter_to_listener" in system
+    assert "Actual_Connection_Binding => (reference (lan)) applies to g.talker_chatter_to_listener" in system
 
 
 def test_what_was_imported_from_aadl_goes_back(lab: CheckedProject, tmp_path: Path) -> None:
@@ -196,23 +198,43 @@ def read_latency(tokens: list[str], name: str) -> Fraction:
 def test_latencies_add_up_to_our_bounds(example: str, tmp_path: Path) -> None:
     project = check_project(ROOT / example)
     packages = judge_packages(write_files(project, tmp_path))
-    home, system = next((name, each["robot.launch"]) for name, each in packages.items() if "robot.launch" in each)
     results = bound_all_chains(analyse_architecture(project.architecture), project.architecture)
-    members = {title: dict(items) for title, items in system.sections.items() if title != "properties"}
-    for name, tokens in members.get("flows", {}).items():
+    for home, system, name, tokens in list_whole_flows(packages):
         result = results[name]
         if "Actual_Latency" not in tokens:
             assert not result.bound.complete
             continue
         assert abs(read_latency(tokens, "Actual_Latency") - result.bound.value) < 1  # type: ignore[operator]
+        connections = dict(system.sections["connections"])
         steps = "".join(tokens[6 : tokens.index("{")]).split("->")
         total = Fraction(0)
         for step in steps:
             if "." in step:
                 total += read_latency(find_member(packages, home, system, step) or [], "Latency")
-            elif "Latency" in members["connections"][step]:
-                total += read_latency(members["connections"][step], "Latency")
+            elif "Latency" in connections[step]:
+                total += read_latency(connections[step], "Latency")
         assert abs(total - result.bound.value) < len(steps)  # type: ignore[operator] # each is rounded to ps
+
+
+def list_whole_flows(
+    packages: dict[str, dict[str, Classifier]],
+) -> Iterator[tuple[str, Classifier, str, list[str]]]:
+    """Yield the end to end flows with the package and the system that they stand in."""
+    for home, classifiers in packages.items():
+        for system in classifiers.values():
+            for name, tokens in system.sections.get("flows", ()):
+                if tokens[2:5] == ["end", "to", "end"]:
+                    yield home, system, name, tokens
+
+
+def test_flows_of_systems_are_those_inside(tmp_path: Path) -> None:
+    packages = judge_packages(write_files(check_project(ROOT / "examples/arm"), tmp_path))
+    systems = packages["two_arms"]
+    (flow,) = [tokens for _, tokens in systems["body.impl"].sections["flows"]]
+    inside = "".join(flow[2:])
+    assert inside == "flowsinkleft_arm_path_x->left_arm_path_x_link->left_arm.path_x_flow"
+    assert read_latency(systems["body"].sections["flows"][0][1], "Latency") == Fraction(57_550_000)
+    assert len(list(list_whole_flows(packages))) == 1
 
 
 def test_chains_that_are_no_flows_are_told(lab: CheckedProject, tmp_path: Path) -> None:

@@ -48,10 +48,40 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             "archgen.importers.xmi:read_xmi",
         ),
         ImportFormat(
+            "nodl",
+            "interfaces of nodes in the Node Definition Language, version 1 (XML) and 2 (YAML, JSON)",
+            (".nodl.yaml", ".nodl.yml", ".nodl.json", ".nodl.xml"),
+            "archgen.importers.nodl.nodl_import:read_nodl",
+        ),
+        ImportFormat(
             "launch",
             "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
             (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
             "archgen.importers.launch.launch_import:read_launch",
+        ),
+        ImportFormat(
+            "package",
+            "packages of ROS: their programs, parameters and messages (package.xml, or a folder)",
+            ("package.xml",),
+            "archgen.importers.ros_package.package_import:read_packages",
+        ),
+        ImportFormat(
+            "ros2",
+            "a running robot, from what `ros2 node info` and its like print",
+            (),
+            "archgen.importers.running_graph.graph_import:read_ros_2_graph",
+        ),
+        ImportFormat(
+            "ros1",
+            "a running robot, from what `rosnode info` and its like print",
+            (),
+            "archgen.importers.running_graph.graph_import:read_ros_1_graph",
+        ),
+        ImportFormat(
+            "orca",
+            "components of the Orca Robotics project, from their definition files (.def)",
+            (),
+            "archgen.importers.orca.orca_import:read_orca",
         ),
     )
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -77,23 +77,22 @@ class PortWiring:
         return PortEnd(owner, port)
 
     def _decide_directions(self, joined: list[tuple[XmlElement, PortEnd, PortEnd]]) -> None:
-        """Let a connector say which way a port goes of which nothing else does: as long as that says something new."""
+        """Let a connector say which way a port goes of which nothing else does, and what follows from that."""
+        ways_from: dict[PortFacts, list[tuple[PortEnd, PortEnd]]] = defaultdict(list)
+        for _, first, second in joined:
+            ways_from[first.port].append((first, second))
+            ways_from[second.port].append((second, first))
         decided = {port for facts in self._everyone for port in facts.ports if port.is_decided}
-        waiting = joined
+        waiting = deque(port for port in ways_from if port in decided)
         while waiting:
-            later = []
-            for connector, first, second in waiting:
-                if (first.port in decided) == (second.port in decided):
-                    later.append((connector, first, second))
+            for known, open_end in ways_from[waiting.popleft()]:
+                if open_end.port in decided:
                     continue
-                known, open_end = (first, second) if first.port in decided else (second, first)
                 is_same_way = known.facts is open_end.facts.owner or open_end.facts is known.facts.owner
                 is_input = known.port.is_input if is_same_way else known.port.is_output
                 open_end.port.is_input, open_end.port.is_output = is_input, not is_input
                 decided.add(open_end.port)
-            if len(later) == len(waiting):
-                return
-            waiting = later
+                waiting.append(open_end.port)
 
     def _connect(self, connector: XmlElement, first: PortEnd, second: PortEnd) -> None:
         for outer, inner in ((first, second), (second, first)):

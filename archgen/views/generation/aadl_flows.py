@@ -5,39 +5,52 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.system.timing_system import Arc
+from archgen.views.generation.aadl_flow_steps import NO_TIME, FlowStep, TimeRange, fold_steps, list_route_steps
+from archgen.views.generation.aadl_parts import Route, SystemPart
 from archgen.views.generation.aadl_processes import Process
-from archgen.views.generation.aadl_words import (
-    AadlProperty,
-    NameSpace,
-    can_be_written,
-    make_item,
-    make_property,
-    write_range,
-)
+from archgen.views.generation.aadl_words import AadlProperty, can_be_written, make_item, make_property, write_range
 
-Connections = Mapping[tuple[str, str, str, str], str]
-"""The names of connections in the system by node and output, node and input."""
+RouteEnds = tuple[str, str, str, str]
+"""Two processes that are joined: node and output, node and input."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Segment:
+    """What a chain does in one process: its terms, the data by which it comes and goes, and the node that it comes from."""
+
+    terms: tuple[ChainTerm, ...]
+    entry: Arc | None = None
+    entry_node: str = ""
+    leave: Arc | None = None
 
 
 class FlowWriter:
-    """Writes the flows of processes as chains ask for them; chains that ask for the same share one."""
+    """Writes the flows of processes and systems as chains ask for them; chains that ask for the same share one."""
 
-    def __init__(self, architecture: Architecture, analysis: Analysis, processes: Mapping[str, Process]) -> None:
-        """Begin with no flow."""
+    def __init__(
+        self,
+        architecture: Architecture,
+        analysis: Analysis,
+        processes: Mapping[str, Process],
+        routes: Mapping[RouteEnds, Route],
+        latencies: Mapping[RouteEnds, TimeRange],
+    ) -> None:
+        """Begin with no flow; `latencies` are those of connections."""
         self._architecture = architecture
         self._analysis = analysis
         self._processes = processes
-        self._known: dict[tuple[str, str, str], str] = {}
+        self._routes = routes
+        self._latencies = latencies
+        self._known: dict[tuple[Process, str, str], str] = {}
+        self._known_systems: dict[tuple[SystemPart, str, str], str] = {}
 
-    def write_chain(
-        self, chain: Chain, result: ChainResult, connections: Connections, names: NameSpace
-    ) -> dict[str, Any] | str:
-        """Return a chain as an end to end flow, or why AADL cannot say it."""
+    def write_chain(self, chain: Chain, result: ChainResult) -> tuple[SystemPart, str] | str:
+        """Write a chain as an end to end flow; return in which system, and its name, or why AADL cannot say it."""
         if chain.unresolved or not result.terms:
             return "no way leads through all that it names"
         segments = self._split_terms(result.terms)
@@ -45,57 +58,67 @@ class FlowWriter:
             return segments
         if len(segments) == 1:
             return "it stays in one process"
-        steps: list[str] = []
-        for terms, entry, leave in segments:
-            node = self._node_of(terms[0])
-            process = self._processes.get(node)
-            if process is None:
-                return f"`{node}` is not part of this export"
-            if entry is not None:
-                key = (entry.output_node, entry.arc.output, node, entry.arc.input)
-                if key not in connections:
-                    return f"nothing here joins `{entry.arc.output}` and `{entry.arc.input}`"
-                steps.append(connections[key])
-            steps.append(
-                f"{process.name_in_system}.{self._write_flow(process, terms, entry.arc if entry else None, leave)}"
-            )
-        name = names.take_name(chain.id)
-        return make_item(
-            name,
-            f"end to end flow {' -> '.join(steps)}",
-            _list_latencies(chain, result),
-        )
+        for segment in segments:
+            if self._node_of(segment.terms[0]) not in self._processes:
+                return f"`{self._node_of(segment.terms[0])}` is not part of this export"
+        for segment in segments[1:]:
+            if segment.entry is None or self._find_ends(segment, segment.entry) not in self._routes:
+                return f"nothing here joins two of its nodes on the way to `{segment.terms[0].activity}`"
+        system, texts = fold_steps(self._list_steps(segments), self._known_systems)
+        name = system.names.take_name(chain.id)
+        text = f"end to end flow {' -> '.join(texts)}"
+        system.flows.append(make_item(name, text, _list_latencies(chain, result)))
+        return system, name
 
     def _node_of(self, term: ChainTerm) -> str:
         return self._analysis.system.activities[term.activity].node
 
-    def _split_terms(self, terms: Sequence[ChainTerm]) -> list[tuple[list[ChainTerm], _Entry | None, Arc | None]] | str:
+    def _find_ends(self, segment: _Segment, entry: Arc) -> RouteEnds:
+        return (segment.entry_node, entry.output, self._node_of(segment.terms[0]), entry.input)
+
+    def _split_terms(self, terms: Sequence[ChainTerm]) -> list[_Segment] | str:
         """Return the terms by process, each with how the chain comes in and goes out."""
-        parts: list[tuple[list[ChainTerm], _Entry | None, Arc | None]] = [([terms[0]], None, None)]
+        segments = [_Segment((terms[0],))]
         for before, term in pairwise(terms):
             arc = self._find_arc(before, term)
             if arc is None:
                 return f"from `{before.activity}` to `{term.activity}` it goes through a call"
-            if self._node_of(before) == self._node_of(term):
-                parts[-1][0].append(term)
-                continue
-            last_terms, entry, _ = parts[-1]
-            parts[-1] = (last_terms, entry, arc)
-            parts.append(([term], _Entry(arc, self._node_of(before)), None))
-        return parts
+            last, node = segments[-1], self._node_of(before)
+            if node == self._node_of(term):
+                segments[-1] = _Segment((*last.terms, term), last.entry, last.entry_node)
+            else:
+                segments[-1] = _Segment(last.terms, last.entry, last.entry_node, arc)
+                segments.append(_Segment((term,), arc, node))
+        return segments
 
     def _find_arc(self, before: ChainTerm, term: ChainTerm) -> Arc | None:
-        """Return the data by which a chain goes on: that whose delays are those of the step."""
-        arcs = [
-            arc
-            for arc in self._analysis.system.arcs_from.get(before.activity, ())
-            if arc.target == term.activity and arc.role == "data" and arc.input in self._architecture.inputs
-        ]
-        return next(iter(arcs), None)
+        """Return the data by which a chain goes on from one activity to the next."""
+        arcs = self._analysis.system.arcs_from.get(before.activity, ())
+        return next(
+            (
+                arc
+                for arc in arcs
+                if arc.target == term.activity and arc.role == "data" and arc.input in self._architecture.inputs
+            ),
+            None,
+        )
 
-    def _write_flow(self, process: Process, terms: Sequence[ChainTerm], entry: Arc | None, leave: Arc | None) -> str:
-        """Return the name of a flow through a process: waiting to be read, and what its threads take to answer."""
-        ends = []
+    def _list_steps(self, segments: Sequence[_Segment]) -> list[FlowStep]:
+        """Return all that a chain goes through, with the systems around it."""
+        first, last = (self._processes[self._node_of(segments[index].terms[0])] for index in (0, -1))
+        steps = [FlowStep("", NO_TIME, enters=system) for system in first.home.path]
+        for segment in segments:
+            if segment.entry is not None:
+                ends = self._find_ends(segment, segment.entry)
+                steps += list_route_steps(self._routes[ends], self._latencies.get(ends, NO_TIME))
+            process = self._processes[self._node_of(segment.terms[0])]
+            name, latency = self._write_flow(process, segment)
+            steps.append(FlowStep(f"{process.name_in_system}.{name}", latency))
+        return [*steps, *(FlowStep("", NO_TIME, leaves=True) for _ in last.home.path)]
+
+    def _write_flow(self, process: Process, segment: _Segment) -> tuple[str, TimeRange | None]:
+        """Return the name of a flow through a process, and how long it takes: waiting to be read, and its threads' answers."""
+        entry, leave, ends = segment.entry, segment.leave, list[str]()
         if entry:
             reader = process.find_part(entry.input, is_output=False, source_id=entry.output)
             ends.append(process.features[reader.key] if reader else "")
@@ -103,39 +126,31 @@ class FlowWriter:
             output = process.find_part(leave.output, is_output=True)
             ends.append(process.features[output.key] if output else "")
         kind = "path" if entry and leave else "sink" if entry else "source"
-        properties = self._list_flow_latency(terms)
+        latency = self._find_latency(segment.terms)
+        properties = [make_property("Latency", write_range(*latency))] if latency else []
         text = f"flow {kind} {' -> '.join(ends)}"
-        key = (process.name, text, str(properties))
+        key = (process, text, str(properties))
         if key not in self._known:
             self._known[key] = process.names.take_name("_to_".join(ends) + ("_flow" if len(ends) == 1 else ""))
             process.flows.append(make_item(self._known[key], text, properties))
-        return self._known[key]
+        return self._known[key], latency
 
-    def _list_flow_latency(self, terms: Sequence[ChainTerm]) -> list[AadlProperty]:
+    def _find_latency(self, terms: Sequence[ChainTerm]) -> TimeRange | None:
+        """Return how long the terms of one process take (ns), None where that is open."""
         longest = Fraction(0)
         for index, term in enumerate(terms):
             # The way to the first one of a process is the connection's.
             inner_link = () if index == 0 else (term.link,)
             for value in (term.sampling, term.response, *inner_link):
                 if value.value is None or not value.complete:
-                    return []
+                    return None
                 longest += value.value
         shortest = sum((self._find_best(term) for term in terms), Fraction(0))
-        return (
-            [make_property("Latency", write_range(min(shortest, longest), longest))] if can_be_written(longest) else []
-        )
+        return (min(shortest, longest), longest) if can_be_written(longest) else None
 
     def _find_best(self, term: ChainTerm) -> Fraction:
         response = self._analysis.responses.get(term.activity)
         return (response.best.value if response else None) or Fraction(0)
-
-
-class _Entry:
-    """How a chain comes into a process."""
-
-    def __init__(self, arc: Arc, output_node: str) -> None:
-        self.arc = arc
-        self.output_node = output_node
 
 
 def _list_latencies(chain: Chain, result: ChainResult) -> list[AadlProperty]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node
+from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.aadl_behaviours import Behaviour
 from archgen.views.generation.aadl_hints import list_function_properties, list_source_properties, read_aadl_hints
 from archgen.views.generation.aadl_ports import PortPart
@@ -23,6 +24,9 @@ from archgen.views.generation.aadl_words import (
     write_text,
 )
 from archgen.views.generation.generation_context import write_place
+
+if TYPE_CHECKING:
+    from archgen.views.generation.aadl_parts import SystemPart
 
 _RESERVED_NAMES = ("tf", "internal_state", "main_thread", "main_state")
 """What a process has from the library `ros`."""
@@ -54,6 +58,8 @@ class Process:
         self.node = node
         self.name = package_names.take_name(node.id)
         self.name_in_system = self.name
+        self.home: SystemPart
+        """The system that it stands in; known when it is placed."""
         self.names = NameSpace(_RESERVED_NAMES)
         self.features: dict[tuple[bool, str, str], str] = {}
         """The names of its features by the keys of the parts of its ports."""
@@ -176,17 +182,20 @@ class Process:
     def make_classifiers(self) -> list[dict[str, Any]]:
         """Return its threads, its type and its implementation."""
         node = self.node
-        only_component = node.implements[0] if len(node.implements) == 1 else None
-        properties = [
-            *make_named_properties(self.name, node.id, node.title),
-            *make_text_properties(
-                component=only_component,
-                description=node.description,
-                package_name=node.package,
-                executable_name=node.executable,
-                node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
-            ),
-        ]
+        behaviours = tuple(self.behaviours.values())
+        component = behaviours[0].component if len(behaviours) == 1 else None
+        element = component or node
+        properties = make_named_properties(element.id, element.id, element.title)
+        if component is not None and node.title != title_from_id(node.id):
+            properties += make_text_properties(node_title=node.title)
+        properties += make_text_properties(
+            description=element.description,
+            functionality=component.functionality if component else None,
+            owner=component.owner if component else node.owner,
+            package_name=node.package,
+            executable_name=node.executable,
+            node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
+        )
         own_type = make_classifier("process", self.name, extends="ros::node", properties=properties)
         implementation = make_classifier("process", f"{self.name}.impl", extends="ros::node.impl")
         own_type.update(features=self._feature_items, flows=self.flows, place=write_place(node.at))

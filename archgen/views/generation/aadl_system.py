@@ -10,16 +10,16 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.node import Endpoint
 from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
-from archgen.views.generation.aadl_flows import FlowWriter
+from archgen.views.generation.aadl_flows import FlowWriter, RouteEnds
+from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
 from archgen.views.generation.aadl_platform import Platform
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_words import (
     AadlProperty,
-    NameSpace,
     can_be_written,
-    make_classifier,
     make_item,
+    make_named_properties,
     make_property,
     make_text_properties,
     write_range,
@@ -37,61 +37,60 @@ class SystemWriter:
 
     def __init__(self, context: GenerationContext, processes: dict[str, Process], names: dict[str, str]) -> None:
         """Begin with the processes; `names` are those of the packages."""
-        self._context = context
         self._architecture = context.architecture
         self._processes = processes
-        self._packages = names
-        self._names = NameSpace()
-        self._subcomponents: list[dict[str, Any]] = []
-        self._connections: list[dict[str, Any]] = []
-        self._bound: dict[str, list[str]] = {}
-        self._properties: list[AadlProperty] = []
-        self._connection_names: dict[tuple[str, str, str, str], str] = {}
+        self._root = SystemPart("", LAUNCH.partition(".")[0], None, None)
+        self._tree = SystemTree(self._architecture, names["system"], self._root)
+        self._bound: dict[str, dict[str, None]] = {}
+        self._routes: dict[RouteEnds, Route] = {}
+        self._latencies: dict[RouteEnds, tuple[Fraction, Fraction]] = {}
         self.classifiers: list[dict[str, Any]] = []
         self.comments: list[str] = []
         for process in processes.values():
-            # A process has the same name as its classifier wherever that is free: flows name it so.
-            process.name_in_system = self._names.take_name(process.name)
-            self._subcomponents.append(
-                make_item(process.name_in_system, f"process {names['nodes']}::{process.name}.impl")
-            )
+            self._place_process(process, names["nodes"])
         hosts = {
             host.id
             for host in self._architecture.hosts.values()
             if context.is_whole or host.id in {process.node.host for process in processes.values()}
         }
-        self.platform = Platform(self._architecture, hosts, self._names, names["hosts"])
+        self.platform = Platform(self._architecture, hosts, self._root.names, names["hosts"])
         self._analysis = _analyse(self._architecture)
 
+    def _place_process(self, process: Process, package: str) -> None:
+        """Put a process into the system of its component, by the name of that."""
+        process.home, component_id = self._tree.find_home(process)
+        own_id = component_id.rpartition(".")[2] or process.node.id
+        process.name_in_system = process.home.names.take_name(own_id)
+        properties = make_named_properties(process.name_in_system, own_id)
+        if own_id != process.node.id:
+            properties += make_text_properties(node=process.node.id)
+        process.home.subcomponents.append(
+            make_item(process.name_in_system, f"process {package}::{process.name}.impl", properties)
+        )
+
     def write(self) -> None:
-        """Write the package of the system."""
+        """Write the package of the systems."""
+        root = self._root
         self._join_processes()
         self._join_tf()
-        flows = self._write_flows()
+        self._write_flows()
         self._bind_processes()
-        properties = [*self._properties, *self.platform.properties]
-        for bus, connections in self._bound.items():
-            properties.append(
-                make_property("Actual_Connection_Binding", f"(reference ({bus}))", ", ".join(connections))
-            )
-        project = self._architecture.project
-        self.classifiers = [
-            make_classifier(
-                "system",
-                LAUNCH.partition(".")[0],
-                properties=make_text_properties(
-                    id=project.id, title=project.title, description=project.description, version=project.version
-                ),
-            ),
-            make_classifier(
-                "system",
-                LAUNCH,
-                subcomponents=[*self._subcomponents, *self.platform.subcomponents],
-                connections=[*self._connections, *self.platform.connections],
-                flows=flows,
-                properties=properties,
-            ),
+        root.subcomponents += self.platform.subcomponents
+        root.connections += self.platform.connections
+        root.properties += self.platform.properties
+        root.properties += [
+            make_property("Actual_Connection_Binding", f"(reference ({bus}))", ", ".join(connections))
+            for bus, connections in self._bound.items()
         ]
+        project = self._architecture.project
+        own_words = make_text_properties(
+            id=project.id, title=project.title, description=project.description, version=project.version
+        )
+        for part in self._tree.parts.values():
+            if part.element is not None:
+                self.classifiers += part.make_classifiers(list_system_properties(part.element))
+        own_type, implementation = root.make_classifiers(own_words)
+        self.classifiers += [own_type, {**implementation, "name": LAUNCH}]
 
     def _join_processes(self) -> None:
         """Write a connection for each pair of processes that implement the two ends of one."""
@@ -105,10 +104,13 @@ class SystemWriter:
                     if reader is source:
                         source.join_inside(output, part, properties)
                         continue
-                    latency = latencies.get((edge.output, edge.input, source.node.id, reader.node.id))
+                    ends = (source.node.id, edge.output, reader.node.id, edge.input)
+                    latency = latencies.get(ends)
                     if latency:
+                        self._latencies[ends] = latency
                         properties.append(make_property("Latency", write_range(*latency)))
-                    self._join((source, output), (reader, part), properties)
+                    route = self._routes[ends] = self._tree.join((source, output), (reader, part), properties)
+                    self._bind_connection(route, source, reader, is_call=output.flow != "topic")
 
     def _find_parts(self, port_id: str, *, is_output: bool, source_id: str = "") -> Iterable[tuple[Process, PortPart]]:
         for process in self._processes.values():
@@ -116,20 +118,7 @@ class SystemWriter:
             if part is not None:
                 yield process, part
 
-    def _join(
-        self, source: tuple[Process, PortPart], reader: tuple[Process, PortPart], properties: list[AadlProperty]
-    ) -> None:
-        (sender, output), (receiver, part) = source, reader
-        ends = (
-            f"{sender.name_in_system}.{sender.features[output.key]}",
-            f"{receiver.name_in_system}.{receiver.features[part.key]}",
-        )
-        name = self._names.take_name(f"{sender.name}_{sender.features[output.key]}_to_{receiver.name}")
-        self._connection_names[sender.node.id, output.port.id, receiver.node.id, part.port.id] = name
-        self._connections.append(make_item(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties))
-        self._bind_connection(name, sender, receiver, is_call=output.flow != "topic")
-
-    def _bind_connection(self, name: str, source: Process, reader: Process, *, is_call: bool) -> None:
+    def _bind_connection(self, route: Route, source: Process, reader: Process, *, is_call: bool) -> None:
         """Bind a connection to the link between two computers where there is exactly one, else to ROS's own."""
         hosts = {source.node.host, reader.node.host}
         links = [
@@ -140,21 +129,24 @@ class SystemWriter:
         if len(links) == 1:
             bus = self.platform.names["link", links[0]]
         else:
-            kind = "services" if is_call else "topics"
-            if ("bus", kind) not in self.platform.names:
-                bus = self.platform.names["bus", kind] = self._names.take_name(kind)
-                self._subcomponents.append(make_item(bus, f"virtual bus ros::{kind}"))
-            bus = self.platform.names["bus", kind]
-        self._bound.setdefault(bus, []).append(name)
+            bus = self._find_virtual_bus("services" if is_call else "topics")
+        name = route.scope.name_inside(self._root, route.joint)
+        if not any(name in names for names in self._bound.values()):
+            self._bound.setdefault(bus, {})[name] = None
+
+    def _find_virtual_bus(self, kind: str) -> str:
+        if ("bus", kind) not in self.platform.names:
+            bus = self.platform.names["bus", kind] = self._root.names.take_name(kind)
+            self._root.subcomponents.append(make_item(bus, f"virtual bus ros::{kind}"))
+        return self.platform.names["bus", kind]
 
     def _join_tf(self) -> None:
         users = [process for process in self._processes.values() if process.uses_tf]
         if users:
-            name = self._names.take_name("tf")
-            self._subcomponents.append(make_item(name, "data ros::tf"))
+            name = self._root.names.take_name("tf")
+            self._root.subcomponents.append(make_item(name, "data ros::tf"))
             for process in users:
-                own_name = self._names.take_name(f"{process.name}_tf")
-                self._connections.append(make_item(own_name, f"data access {name} -> {process.name_in_system}.tf"))
+                self._tree.give_access(process, name)
 
     def _bind_processes(self) -> None:
         """Bind processes to the containers that load them, else to their hosts."""
@@ -165,37 +157,51 @@ class SystemWriter:
                 ("host", node.host or "")
             )
             if place:
-                bound.setdefault(place, []).append(process.name_in_system)
-        for place, names in bound.items():
-            self._properties.append(
-                make_property("Actual_Processor_Binding", f"(reference ({place}))", ", ".join(names))
-            )
+                bound.setdefault(place, []).append(process.home.name_inside(self._root, process.name_in_system))
+        self._root.properties += [
+            make_property("Actual_Processor_Binding", f"(reference ({place}))", ", ".join(names))
+            for place, names in bound.items()
+        ]
 
-    def _write_flows(self) -> list[dict[str, Any]]:
+    def _write_flows(self) -> None:
         if self._analysis is None or not self._architecture.chains:
-            return []
+            return
         from archgen.timing.chains.chain_bounds import bound_all_chains
 
         results = bound_all_chains(self._analysis, self._architecture)
-        writer = FlowWriter(self._architecture, self._analysis, self._processes)
-        flows, written = [], dict[str, Chain]()
+        writer = FlowWriter(self._architecture, self._analysis, self._processes, self._routes, self._latencies)
+        written: dict[SystemPart, dict[str, Chain]] = {}
         for chain in self._architecture.chains.values():
-            flow = writer.write_chain(chain, results[chain.id], self._connection_names, self._names)
-            if isinstance(flow, str):
-                self.comments.append(f"The chain {chain.id} is no end to end flow here: {flow}")
+            place = writer.write_chain(chain, results[chain.id])
+            if isinstance(place, str):
+                self.comments.append(f"The chain {chain.id} is no end to end flow here: {place}")
             else:
-                flows.append(flow)
-                written[flow["name"]] = chain
+                written.setdefault(place[0], {})[place[1]] = chain
+        for system, chains in written.items():
+            system.properties += _list_flow_words(chains, self._list_joined_components())
+
+    def _list_joined_components(self) -> frozenset[str]:
+        """Return the components that share a process: whoever reads it takes the process for a component around them."""
+        shared = (process.behaviours for process in self._processes.values() if len(process.behaviours) > 1)
+        return frozenset(component for behaviours in shared for component in behaviours)
+
+
+def _list_flow_words(chains: dict[str, Chain], joined_components: frozenset[str]) -> list[AadlProperty]:
+    """Return what else is known of end to end flows: Ocarina takes no property of another set at a flow itself."""
+    ways = {
+        key: [each.id for each in chain.through]
+        for key, chain in chains.items()
+        if not any(each.id in joined_components for each in chain.through)
+    }
+    return [
+        make_property(f"archgen::Flow_{name}", write_texts(f"{key}: {text}" for key, text in texts.items()))
         for name, texts in (
-            ("Titles", {key: chain.title for key, chain in written.items() if chain.title != title_from_id(key)}),
-            ("Ways", {key: ", ".join(each.id for each in chain.through) for key, chain in written.items()}),
-            ("Ids", {key: chain.id for key, chain in written.items() if chain.id != key}),
-        ):
-            if texts:
-                value = write_texts(f"{key}: {text}" for key, text in texts.items())
-                # Ocarina takes no property of another set at an end to end flow itself.
-                self._properties.append(make_property(f"archgen::Flow_{name}", value))
-        return flows
+            ("Titles", {key: chain.title for key, chain in chains.items() if chain.title != title_from_id(chain.id)}),
+            ("Ways", {key: ", ".join(way) for key, way in ways.items()}),
+            ("Ids", {key: chain.id for key, chain in chains.items() if chain.id != key}),
+        )
+        if texts
+    ]
 
 
 def _analyse(architecture: Architecture) -> Analysis | None:
@@ -207,8 +213,8 @@ def _analyse(architecture: Architecture) -> Analysis | None:
     return analyse_architecture(architecture)
 
 
-def _find_link_latencies(analysis: Analysis | None) -> dict[tuple[str, str, str, str], tuple[Fraction, Fraction]]:
-    """Return how long data takes on links, by the two ends and their nodes."""
+def _find_link_latencies(analysis: Analysis | None) -> dict[RouteEnds, tuple[Fraction, Fraction]]:
+    """Return how long data takes on links."""
     if analysis is None:
         return {}
     found = {}
@@ -217,7 +223,7 @@ def _find_link_latencies(analysis: Analysis | None) -> dict[tuple[str, str, str,
             nodes = (analysis.system.activities[arc.source].node, analysis.system.activities[arc.target].node)
             best, worst = (arc.best or 0) * analysis.system.tick, arc.worst * analysis.system.tick
             if can_be_written(worst):
-                found[arc.output, arc.input, *nodes] = (best, worst)
+                found[nodes[0], arc.output, nodes[1], arc.input] = (best, worst)
     return found
 
 

@@ -1,0 +1,1 @@
+"""Read definition files of components of the Orca Robotics project."""

@@ -1,0 +1,106 @@
+"""The programs that a package installs: entry points of setup.py and setup.cfg, and what CMake makes."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from archgen.importers.foreign.bounded_files import read_bounded
+from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.launch.python_parsing import PythonRefusedError, parse_python
+from archgen.importers.ros_package.import_account import ImportAccount
+from archgen.importers.ros_package.package_files import PackageFile, PackageManifest
+
+_MAX_BYTES = 1_000_000
+_MAX_NODES = 100_000
+_ENTRY_POINT = re.compile(r"\s*([A-Za-z0-9_.\-]+)\s*=\s*[A-Za-z_][\w.]*:[A-Za-z_]\w*\s*")
+_COMMENT = re.compile(r"#[^\n]*")
+_CMAKE_CALL = re.compile(
+    r"\b((?:ament_auto_)?add_executable|rclcpp_components_register_nodes?)\s*\(([^()]{1,2000})\)", re.IGNORECASE
+)
+_CMAKE_VARIABLE = re.compile(r"\bset\s*\(\s*(\w+)\s+\"?([A-Za-z0-9_.\-]+)\"?\s*\)")
+_CMAKE_USE = re.compile(r"\$\{(\w+)\}")
+_PROGRAM_NAME = re.compile(r"[A-Za-z0-9_.\-]+\Z")
+_CLASS_NAME = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)+\Z")
+_NO_NODES = frozenset({"IMPORTED", "ALIAS"})
+_TEST_WORDS = ("test", "benchmark", "example")
+
+
+def find_programs(
+    manifest: PackageManifest, files: Sequence[PackageFile], account: ImportAccount
+) -> dict[str, dict[str, Any]]:
+    """Return what a `node` says of each program of a package, by the program's name."""
+    programs: dict[str, dict[str, Any]] = {}
+    for file in files:
+        if file.path.parent != manifest.folder or file.path.name not in {"setup.py", "CMakeLists.txt"}:
+            continue
+        try:
+            text = read_bounded(file.path, _MAX_BYTES).decode("utf-8", "replace")
+        except ForeignFileError:
+            continue
+        found = _read_setup(text) if file.path.name == "setup.py" else _read_cmake(text, manifest.name)
+        for name, more in found:
+            if name not in programs:
+                account.count("plug-in" if "plugin" in more else "program")
+            programs[name] = {**programs.get(name, {}), "package": manifest.name, **more}
+    return programs
+
+
+def _read_setup(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the console scripts of a setup.py, read by its syntax tree and never run."""
+    try:
+        tree = parse_python(text)
+    except PythonRefusedError:
+        return
+    nodes = [tree]
+    seen = 0
+    pending: list[ast.AST] = list(nodes)
+    while pending and seen < _MAX_NODES:
+        node = pending.pop()
+        seen += 1
+        pending += list(ast.iter_child_nodes(node))
+        if isinstance(node, ast.Dict):
+            for key, value in zip(node.keys, node.values, strict=True):
+                if isinstance(key, ast.Constant) and key.value == "console_scripts":
+                    yield from _read_scripts(value)
+
+
+def _read_scripts(value: ast.expr) -> Iterator[tuple[str, dict[str, Any]]]:
+    items = value.elts if isinstance(value, ast.List | ast.Tuple) else ()
+    for item in items:
+        text = item.value if isinstance(item, ast.Constant) and isinstance(item.value, str) else ""
+        match = _ENTRY_POINT.fullmatch(text)
+        if match:
+            yield match[1], {"executable": match[1], "language": "python"}
+
+
+def _read_cmake(text: str, package: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    plain_text = _COMMENT.sub("", text)
+    variables = {"PROJECT_NAME": package, **dict(_CMAKE_VARIABLE.findall(plain_text))}
+    for match in _CMAKE_CALL.finditer(plain_text):
+        words = [_fill_variables(word.strip('"'), variables) for word in match[2].split()]
+        if match[1].lower().endswith("add_executable"):
+            is_program = bool(words) and _PROGRAM_NAME.match(words[0]) and not _NO_NODES & set(words)
+            if is_program and not any(word in words[0].lower() for word in _TEST_WORDS):
+                yield words[0], {"executable": words[0], "language": "cpp"}
+        else:
+            yield from _read_registration(words)
+
+
+def _fill_variables(word: str, variables: Mapping[str, str]) -> str:
+    """Return a word with the variables that are set once, as far as these are plain words."""
+    return _CMAKE_USE.sub(lambda match: variables.get(match[1], match[0]), word)
+
+
+def _read_registration(words: list[str]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the plug-ins that a call registers, with the program that holds one alone."""
+    executable = ""
+    if "EXECUTABLE" in words[:-1]:
+        executable = words[words.index("EXECUTABLE") + 1]
+    for word in words[1:]:
+        if _CLASS_NAME.match(word):
+            name = executable if _PROGRAM_NAME.match(executable) else word.rpartition("::")[2]
+            more = {"executable": executable} if _PROGRAM_NAME.match(executable) else {}
+            yield name, {"plugin": word, "kind": "composable", "language": "cpp", **more}

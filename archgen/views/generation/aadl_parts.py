@@ -1,0 +1,218 @@
+"""Groups and composed components as systems of AADL, and the ways that data takes through their borders."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Group
+from archgen.views.generation.aadl_ports import PortPart
+from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_words import (
+    AadlProperty,
+    NameSpace,
+    make_classifier,
+    make_item,
+    make_named_properties,
+    make_text_properties,
+)
+from archgen.views.generation.generation_context import write_place
+
+_Place = tuple[str, object]
+"""A port of a composed component with what it carries, or a node with the key of its port."""
+
+
+class SystemPart:
+    """A system: the launch of everything, a group, or a composed component; it grows as connections and flows are found."""
+
+    def __init__(
+        self, name: str, classifier: str, parent: SystemPart | None, element: Group | Component | None
+    ) -> None:
+        """Begin with nothing inside; `name` is what it is called in the system around it."""
+        self.name, self.classifier, self.parent, self.element = name, classifier, parent, element
+        self.names = NameSpace()
+        self.features: dict[_Place, str] = {}
+        self.feature_items: list[dict[str, Any]] = []
+        self.subcomponents: list[dict[str, Any]] = []
+        self.connections: list[dict[str, Any]] = []
+        self.flow_specs: list[dict[str, Any]] = []
+        self.flows: list[dict[str, Any]] = []
+        self.properties: list[AadlProperty] = []
+        self._joined: dict[tuple[str, str], str] = {}
+        self.access = ""
+        """The name of its access to the transformations, where something inside has it."""
+
+    @property
+    def path(self) -> tuple[SystemPart, ...]:
+        """The systems that lead here, from the outermost on."""
+        return (*(self.parent.path if self.parent else ()), self)
+
+    def name_inside(self, scope: SystemPart, name: str) -> str:
+        """Return how something of this system is named from a system around it: `group.arm.motor`."""
+        steps = self.path[len(scope.path) :]
+        return ".".join((*(each.name for each in steps), name))
+
+    def connect(self, name: str, text: str, properties: list[AadlProperty]) -> str:
+        """Add a connection; return its name."""
+        own_name = self.names.take_name(name)
+        self.connections.append(make_item(own_name, text, properties))
+        return own_name
+
+    def join_ends(self, name: str, kind: str, ends: tuple[str, str], properties: list[AadlProperty]) -> str:
+        """Join two ends that may be joined already; return the connection's name."""
+        if ends not in self._joined:
+            self._joined[ends] = self.connect(name, f"{kind} {ends[0]} -> {ends[1]}", properties)
+        return self._joined[ends]
+
+    def make_classifiers(self, properties: list[AadlProperty]) -> list[dict[str, Any]]:
+        """Return its type, with further properties, and its implementation."""
+        own_type = make_classifier("system", self.classifier, features=self.feature_items, flows=self.flow_specs)
+        own_type.update(properties=properties, place=write_place(self.element.at) if self.element else "")
+        implementation = make_classifier("system", f"{self.classifier}.impl")
+        implementation.update(
+            subcomponents=self.subcomponents,
+            connections=self.connections,
+            flows=self.flows,
+            properties=self.properties,
+        )
+        return [own_type, implementation]
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """How data gets from one process to another: out of systems, over a connection where the ways meet, and into others."""
+
+    outward: tuple[tuple[SystemPart, str, str], ...]
+    """Each system that it leaves, the innermost first, with the feature and the connection inside that leads there."""
+    scope: SystemPart
+    joint: str
+    inward: tuple[tuple[SystemPart, str, str], ...]
+    """Each system that it enters, the outermost first."""
+
+
+class SystemTree:
+    """All systems of a launch, made as something stands in them."""
+
+    def __init__(self, architecture: Architecture, package_name: str, root: SystemPart) -> None:
+        """Begin with the launch; `package_name` is that of the systems."""
+        self.root = root
+        self.parts: dict[str, SystemPart] = {}
+        """Groups and composed components by complete id."""
+        self._architecture = architecture
+        self._package_name = package_name
+        self._classifiers = NameSpace((root.classifier,))
+
+    def find_home(self, process: Process) -> tuple[SystemPart, str]:
+        """Return the system that a process stands in, and the component that it is there; nothing for one of several."""
+        components = [found for each in process.node.implements if (found := self._architecture.find_component(each))]
+        whole = self._find_whole(process)
+        if whole is not None:
+            return self._open_system(whole.parent or whole.group), whole.id
+        homes = dict.fromkeys(each.parent or each.group for each in components)
+        groups = dict.fromkeys(each.group for each in components)
+        home = next(iter(homes)) if len(homes) == 1 else next(iter(groups)) if len(groups) == 1 else None
+        system = self._open_system(home) if home else self.root
+        return system, components[0].id if len(components) == 1 else ""
+
+    def _find_whole(self, process: Process) -> Component | None:
+        """Return the composed component that a process is the only one of."""
+        for each in process.node.wholes:
+            shell = self._architecture.shells.get(each)
+            if shell and set(self._architecture.leaves_of(each)) == set(process.node.implements):
+                return shell
+        return None
+
+    def _open_system(self, element_id: str) -> SystemPart:
+        if element_id not in self.parts:
+            shell = self._architecture.shells.get(element_id)
+            element: Group | Component = shell or self._architecture.groups[element_id]
+            around = self._open_system(shell.parent or shell.group) if shell else self.root
+            own_id = element_id.rpartition(".")[2]
+            name = around.names.take_name(own_id)
+            classifier = self._classifiers.take_name(element_id.replace(".", "_"))
+            part = SystemPart(name, classifier, around, element)
+            item = make_item(
+                name, f"system {self._package_name}::{classifier}.impl", make_named_properties(name, own_id)
+            )
+            around.subcomponents.append(item)
+            self.parts[element_id] = part
+        return self.parts[element_id]
+
+    def join(
+        self,
+        source: tuple[Process, PortPart],
+        reader: tuple[Process, PortPart],
+        properties: list[AadlProperty],
+    ) -> Route:
+        """Join the ports of two processes, through the borders of all systems between them."""
+        (sender, output), (receiver, part) = source, reader
+        ways = [list(process.home.path) for process in (sender, receiver)]
+        shared = 0
+        while all(len(way) > shared for way in ways) and ways[0][shared] is ways[1][shared]:
+            shared += 1
+        end, outward = f"{sender.name_in_system}.{sender.features[output.key]}", []
+        for system in reversed(ways[0][shared:]):
+            feature, inner = self._cross(system, sender, output, end)
+            outward.append((system, feature, inner))
+            end = f"{system.name}.{feature}"
+        own_end, inward = f"{receiver.name_in_system}.{receiver.features[part.key]}", []
+        for system in reversed(ways[1][shared:]):
+            feature, inner = self._cross(system, receiver, part, own_end)
+            inward.append((system, feature, inner))
+            own_end = f"{system.name}.{feature}"
+        scope = ways[0][shared - 1]
+        name = f"{end}_to_{own_end.partition('.')[0]}".replace(".", "_")
+        joint = scope.join_ends(name, output.connection_kind, (end, own_end), properties)
+        return Route(tuple(outward), scope, joint, tuple(reversed(inward)))
+
+    def _cross(self, system: SystemPart, process: Process, part: PortPart, inner_end: str) -> tuple[str, str]:
+        """Return the feature of a system for a port inside, and the connection inside that leads there."""
+        shell_port = self._find_shell_port(system, part)
+        place = (shell_port or process.node.id, part.text if shell_port else part.key)
+        if place not in system.features:
+            wanted = shell_port or inner_end.replace(".", "_")
+            name = system.features[place] = system.names.take_name(wanted)
+            properties = make_named_properties(name, wanted) if shell_port else []
+            properties += make_text_properties(medium=part.port.medium if part.port.medium != "ros" else None)
+            system.feature_items.append(make_item(name, part.text, properties))
+        name = system.features[place]
+        ends = (inner_end, name) if part.is_output else (name, inner_end)
+        return name, system.join_ends(f"{name}_link", part.connection_kind, ends, [])
+
+    def _find_shell_port(self, system: SystemPart, part: PortPart) -> str | None:
+        """Return the port of a composed component that passes a port inside on."""
+        shell = system.element
+        if not isinstance(shell, Component):
+            return None
+        kind, ports = ("output", shell.outputs) if part.is_output else ("input", shell.inputs)
+        return next(
+            (name for name, port in ports.items() if part.port.id in self._architecture.leaf_ports_of(kind, port.id)),
+            None,
+        )
+
+    def give_access(self, process: Process, tf_name: str) -> None:
+        """Lead the access to the transformations from the outermost system to a process."""
+        name = tf_name
+        for system, inner in zip(process.home.path, process.home.path[1:], strict=False):
+            if not inner.access:
+                inner.access = inner.names.take_name("tf")
+                inner.feature_items.append(make_item(inner.access, "requires data access ros::tf"))
+                system.connect(f"{inner.name}_tf", f"data access {name} -> {inner.name}.{inner.access}", [])
+            name = inner.access
+        process.home.connect(f"{process.name_in_system}_tf", f"data access {name} -> {process.name_in_system}.tf", [])
+
+
+def list_system_properties(element: Group | Component) -> list[AadlProperty]:
+    """Return what a group or a composed component says of itself."""
+    own_id = element.id.rpartition(".")[2]
+    texts: Mapping[str, str | None] = {
+        "description": element.description,
+        "functionality": getattr(element, "functionality", None),
+        "owner": element.owner,
+    }
+    return [
+        *(each for each in make_named_properties(own_id, own_id, element.title)),
+        *make_text_properties(**texts),
+    ]

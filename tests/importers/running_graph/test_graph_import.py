@@ -1,0 +1,323 @@
+"""What the command-line tools of ROS print of a running robot becomes nodes that exist, and component types with their ports."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.running_graph.graph_import import read_ros_1_graph, read_ros_2_graph
+from archgen.pipeline import check_project
+from archgen.syntax.yaml_writer import write_yaml
+
+ROS_2 = """\
+/front/driver
+/planner
+/box
+$ ros2 node info /front/driver
+/front/driver
+  Subscribers:
+    /clock: rosgraph_msgs/msg/Clock
+    /parameter_events: rcl_interfaces/msg/ParameterEvent
+  Publishers:
+    /front/scan: sensor_msgs/msg/LaserScan
+    /rosout: rcl_interfaces/msg/Log
+  Service Servers:
+    /front/driver/change_state: lifecycle_msgs/srv/ChangeState
+    /front/driver/describe_parameters: rcl_interfaces/srv/DescribeParameters
+    /front/driver/reset: std_srvs/srv/Empty
+  Service Clients:
+
+  Action Servers:
+
+  Action Clients:
+
+$ ros2 param dump /front/driver
+/front/driver:
+  ros__parameters:
+    frame: "laser"
+    filter:
+      angles: [1.0, 2.5]
+    qos_overrides:
+      /parameter_events:
+        publisher: {depth: 1000}
+    use_sim_time: false
+$ ros2 node info /planner
+/planner
+  Subscribers:
+    /front/scan: sensor_msgs/msg/LaserScan
+  Publishers:
+    /planner/plan: nav_msgs/msg/Path
+  Service Servers:
+  Service Clients:
+    /front/driver/reset: std_srvs/srv/Empty
+  Action Servers:
+    /drive: nav2_msgs/action/NavigateToPose
+  Action Clients:
+
+/box
+  Service Servers:
+    /box/_container/load_node: composition_interfaces/srv/LoadNode
+$ ros2 component list
+/box
+  1  /planner
+$ ros2 topic list -t
+/front/scan [sensor_msgs/msg/LaserScan]
+/parameter_events [rcl_interfaces/msg/ParameterEvent]
+$ ros2 topic info -v /front/scan
+Type: sensor_msgs/msg/LaserScan
+
+Publisher count: 1
+
+Node name: driver
+Node namespace: /front
+Topic type: sensor_msgs/msg/LaserScan
+Topic type hash: RIHS01_0
+Endpoint type: PUBLISHER
+GID: 01.0f
+QoS profile:
+  Reliability: BEST_EFFORT
+  History (Depth): KEEP_LAST (5)
+  Durability: VOLATILE
+  Lifespan: Infinite
+  Deadline: 100000000 nanoseconds
+  Liveliness: AUTOMATIC
+  Liveliness lease duration: 9223372036.854775807 s
+
+Subscription count: 1
+
+Node name: planner
+Node namespace: /
+Topic type: sensor_msgs/msg/LaserScan
+Endpoint type: SUBSCRIPTION
+GID: 01.10
+QoS profile:
+  Reliability: BEST_EFFORT
+  History (Depth): UNKNOWN
+  Durability: VOLATILE
+
+$ ros2 service list -t
+/front/driver/reset [std_srvs/srv/Empty]
+"""
+ROS_2_NODES = {
+    "driver": {
+        "kind": "lifecycle",
+        "namespace": "/front",
+        "status": "existing",
+        "publishes": {
+            "scan": {
+                "topic": "/front/scan",
+                "message": "sensor_msgs/msg/LaserScan",
+                "qos": {
+                    "reliability": "best_effort",
+                    "history": "keep_last",
+                    "depth": 5,
+                    "durability": "volatile",
+                    "deadline": "100 ms",
+                },
+            }
+        },
+        "subscribes": {"clock": {"topic": "/clock", "message": "rosgraph_msgs/msg/Clock"}},
+        "serves": {"reset": {"name": "/front/driver/reset", "message": "std_srvs/srv/Empty"}},
+        "parameters": {"frame": "laser", "filter.angles": [1.0, 2.5], "use_sim_time": False},
+    },
+    "planner": {
+        "kind": "composable",
+        "status": "existing",
+        "publishes": {"plan": {"topic": "/planner/plan", "message": "nav_msgs/msg/Path"}},
+        "subscribes": {
+            "front_scan": {
+                "topic": "/front/scan",
+                "message": "sensor_msgs/msg/LaserScan",
+                "qos": {"reliability": "best_effort", "durability": "volatile"},
+            }
+        },
+        "serves": {"drive": {"name": "/drive", "message": "nav2_msgs/action/NavigateToPose"}},
+        "calls": {"front_driver_reset": {"name": "/front/driver/reset", "message": "std_srvs/srv/Empty"}},
+        "container": "box",
+    },
+}
+ROS_1 = """\
+--------------------------------------------------------------------------------
+Node [/front/driver]
+Publications:
+ * /front/scan [sensor_msgs/LaserScan]
+ * /rosout [rosgraph_msgs/Log]
+
+Subscriptions:
+ * /front/go [unknown type]
+
+Services:
+ * /front/driver/get_loggers
+ * /front/driver/reset
+
+
+contacting node http://pc:1234/ ...
+Pid: 42
+Connections:
+ * topic: /rosout
+    * to: /rosout
+    * direction: outbound (4 - 10.0.0.1:5) [10]
+    * transport: TCPROS
+
+--------------------------------------------------------------------------------
+Node [/planner]
+Publications:
+ * /drive/feedback [move_base_msgs/MoveBaseActionFeedback]
+ * /drive/result [move_base_msgs/MoveBaseActionResult]
+ * /drive/status [actionlib_msgs/GoalStatusArray]
+
+Subscriptions:
+ * /drive/cancel [actionlib_msgs/GoalID]
+ * /drive/goal [move_base_msgs/MoveBaseActionGoal]
+ * /front/scan [sensor_msgs/LaserScan]
+
+Services: None
+
+$ rosservice info /front/driver/reset
+Node: /front/driver
+URI: rosrpc://pc:4
+Type: std_srvs/Empty
+Args:
+$ rostopic list -v
+
+Published topics:
+ * /front/scan [sensor_msgs/LaserScan] 1 publisher
+
+Subscribed topics:
+ * /front/scan [sensor_msgs/LaserScan] 1 subscriber
+ * /front/go [std_msgs/Bool] 1 subscriber
+
+$ rosparam dump
+front:
+  driver: {rate: 5.0, deep: {a: 1}}
+robot_description: <robot/>
+rosdistro: 'noetic
+
+  '
+run_id: 1-2
+"""
+
+
+def read_text(text: str, tmp_path: Path, ros: int) -> ForeignImport:
+    """Read a dump."""
+    dump = tmp_path / "robot.txt"
+    # `rosnode` puts a blank behind its headings.
+    dump.write_text(text.replace("ons:\n", "ons: \n"), encoding="utf-8")
+    return read_ros_1_graph([dump]) if ros == 1 else read_ros_2_graph([dump])
+
+
+def check_slices(imported: ForeignImport, folder: Path, distro: str) -> list[str]:
+    """Return the errors of a project that is made of an import."""
+    folder.mkdir()
+    (folder / "archgen.yaml").write_text(f"archgen: 1\nproject: {{id: robot}}\nros: {{distro: {distro}}}\n")
+    for name, sections in imported.slices.items():
+        (folder / name).write_text(write_yaml(sections), encoding="utf-8")
+    checked = check_project(folder)
+    return [f"{finding.span}: {finding.message}" for finding in checked.findings if checked.has_errors]
+
+
+def test_a_graph_of_ros_2(tmp_path: Path) -> None:
+    imported = read_text(ROS_2, tmp_path, 2)
+    assert imported.slices["running_nodes.yaml"] == {"containers": {"box": {}}, "nodes": ROS_2_NODES}
+    assert imported.slices["running_types.yaml"]["component_types"]["driver"] == {
+        "inputs": {"clock": "rosgraph_msgs/msg/Clock"},
+        "outputs": {"scan": "sensor_msgs/msg/LaserScan", "reset": "std_srvs/srv/Empty"},
+    }
+    assert [note.message for note in imported.notes] == []
+    assert imported.taken == {
+        "QoS profile": 2,
+        "calls": 1,
+        "node": 3,
+        "parameter": 3,
+        "publishes": 3,
+        "serves": 5,
+        "subscribes": 3,
+        "topic or service": 3,
+    }
+    assert check_slices(imported, tmp_path / "project", "jazzy") == []
+
+
+def test_a_graph_of_ros_1(tmp_path: Path) -> None:
+    imported = read_text(ROS_1, tmp_path, 1)
+    nodes = imported.slices["running_nodes.yaml"]["nodes"]
+    assert nodes == {
+        "driver": {
+            "namespace": "/front",
+            "status": "existing",
+            "publishes": {"scan": {"topic": "/front/scan", "message": "sensor_msgs/msg/LaserScan"}},
+            "subscribes": {"go": {"topic": "/front/go", "message": "std_msgs/msg/Bool"}},
+            "serves": {"reset": {"name": "/front/driver/reset", "message": "std_srvs/srv/Empty"}},
+            "parameters": {"rate": 5.0, "deep": {"a": 1}},
+        },
+        "planner": {
+            "status": "existing",
+            "subscribes": {"front_scan": {"topic": "/front/scan", "message": "sensor_msgs/msg/LaserScan"}},
+            "serves": {"drive": {"name": "/drive", "message": "move_base_msgs/action/MoveBase"}},
+        },
+    }
+    assert imported.distro == "noetic"
+    assert [note.message for note in imported.notes] == ["1 parameters stand below no node: `/robot_description`"]
+    assert check_slices(imported, tmp_path / "project", "noetic") == []
+
+
+def test_types_fit_the_nodes_that_implement_them(tmp_path: Path) -> None:
+    imported = read_text(ROS_2, tmp_path, 2)
+    for node_id in ("driver", "planner"):
+        imported.slices["running_nodes.yaml"]["nodes"][node_id]["implements"] = f"g.{node_id}"
+    components = {
+        "driver": {"is": "driver", "inputs": {"clock": {"external": "The simulator"}}},
+        "planner": {"is": "planner", "inputs": {"front_scan": "driver.scan", "front_driver_reset": "driver.reset"}},
+    }
+    imported.slices["running_types.yaml"]["groups"] = {"g": {"components": components}}  # type: ignore[index]
+    assert check_slices(imported, tmp_path / "project", "jazzy") == []
+
+
+def test_topics_of_endpoints_are_found_by_node_and_type(tmp_path: Path) -> None:
+    text = "\n".join(line for line in ROS_2.splitlines() if not line.startswith("$"))
+    imported = read_text(text, tmp_path, 2)
+    node = imported.slices["running_nodes.yaml"]["nodes"]["driver"]
+    assert node["publishes"]["scan"]["qos"]["reliability"] == "best_effort"
+
+
+def test_a_bag_alone_gives_types(tmp_path: Path) -> None:
+    bag = "path: x.bag\ntopics:      /scan    12 msgs @ 5.0 Hz : sensor_msgs/LaserScan\n             /tf  1 msg     : tf2_msgs/TFMessage  (2 connections)\n"
+    assert read_text(bag, tmp_path, 1).slices == {
+        "recorded_types.yaml": {
+            "types": {
+                "Laser scan": {"message": "sensor_msgs/msg/LaserScan"},
+                "TF message": {"message": "tf2_msgs/msg/TFMessage"},
+            }
+        }
+    }
+    bag_2 = "Topic information: Topic: /scan | Type: sensor_msgs/msg/LaserScan | Count: 9 | Serialization Format: cdr\n"
+    assert list(read_text(bag_2, tmp_path, 2).slices["recorded_types.yaml"]["types"]) == ["Laser scan"]
+
+
+def test_lines_that_are_not_understood_are_noted(tmp_path: Path) -> None:
+    imported = read_text("/a\nwhat is this\n/t [strange]\n", tmp_path, 2)
+    assert [f"{note.span.line}: {note.message}" for note in imported.notes] == [
+        "2: it is not understood: `what is this`",
+        "3: `strange` of `/t` is no message of ROS 2",
+    ]
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+@pytest.mark.parametrize("data", [b"", b"\n\n", b"hello\n", b"\0\1", b"\xff" * 100, b"/" * 100_000, b"a: [" * 5_000])
+def test_what_is_no_dump_is_told(data: bytes, ros: int, tmp_path: Path) -> None:
+    dump = tmp_path / "robot.txt"
+    dump.write_bytes(data)
+    with pytest.raises(ForeignFileError) as caught:
+        (read_ros_1_graph if ros == 1 else read_ros_2_graph)([dump])
+    assert caught.value.message in {"there is no node in it", "it is no text"}
+
+
+@pytest.mark.parametrize("ros", [1, 2])
+def test_large_dumps_take_time_in_proportion(ros: int, tmp_path: Path) -> None:
+    if ros == 1:
+        parts = [f"Node [/n{n}]\nPublications: \n * /t{n} [std_msgs/String]\n" for n in range(5_000)]
+    else:
+        parts = [f"/n{n}\n  Publishers:\n    /t{n}: std_msgs/msg/String\n" for n in range(5_000)]
+    imported = read_text("".join(parts), tmp_path, ros)
+    assert imported.taken["node"] == 5_000
