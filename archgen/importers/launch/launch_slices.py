@@ -209,6 +209,8 @@ class SliceMaker:
                 hint["by_default"] = "off"
         if node.launch_arguments:
             hint["arguments"] = node.launch_arguments
+        if node.other_ways:
+            hint["other_ways"] = node.other_ways
         if node.written:
             hint["written"] = node.written
         if keeps_rest:
