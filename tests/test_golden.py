@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests import readable
+from tests.generators.middleware_projects import HEADLAMP
 from tests.generators.test_ros2_cpp import ROBOT
 from tests.running import RAMCIP, REVISION, ROOT, archgen, contents
 
@@ -67,7 +68,7 @@ def site(built: Path) -> Files:
 
 
 def neighbours(_: Path) -> Files:
-    names = ("d2", "graphml", "mermaid", "plantuml", "structurizr")
+    names = ("d2", "graphml", "mermaid", "plantuml", "structurizr", "xmi")
     return {name: archgen("export", name, "-C", "example_ramcip", cwd=ROOT).stdout for name in names}
 
 
@@ -94,6 +95,19 @@ def simulations(built: Path) -> Files:
     return texts
 
 
+def middlewares(built: Path) -> Files:
+    """Generate the headlamp's components for each middleware; a text for each, as above."""
+    texts: Files = {}
+    folder = built.parent / "headlamp"
+    folder.mkdir(exist_ok=True)
+    (folder / "archgen.yaml").write_text(HEADLAMP, encoding="utf-8")
+    for backend in ("openrtm", "orocos", "player"):
+        archgen("generate", backend, "-o", folder / backend, cwd=folder)
+        made = {name: data for name, data in contents(folder / backend).items() if not name.startswith(".")}
+        texts[f"{backend}.txt"] = b"".join(f"==== {name}\n".encode() + data for name, data in made.items())
+    return texts
+
+
 OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "check.txt": said("check", "example_ramcip"),
     "check.json": said("check", "example_ramcip", "--format", "json"),
@@ -109,6 +123,7 @@ OUTPUTS: dict[str, Callable[[Path], Files]] = {
     "neighbours": neighbours,
     "ros2_cpp": cpp_packages,
     "simulations": simulations,
+    "middlewares": middlewares,
 }
 
 

@@ -49,8 +49,9 @@ Made by `tools/make_ros_library_page.py` from the data in `ros_library/sources/`
 
 Each fact about a type of [the library](ros_library.md), which is its executable, a port, an operation or a parameter, has its source
 in `ros_library/sources/DISTRIBUTION.yaml`: the repository's address, the version, the commit with its date, what kind of text it is,
-the file and the line. A test refuses a fact without. Kinds are `source text` (code, build files and configuration of the package),
-`documentation` (what its people wrote about it) and `recording` (of a running node; none so far).
+the file and the line. `archgen explain ros.amcl --distro jazzy` shows them, and a test refuses a fact without. Kinds are `source text`
+(code, build files and configuration of the package), `documentation` (what its people wrote about it) and `recording` (of a running
+node; none so far).
 
 The version is the one that the distribution has released, as of ros/rosdistro 8468e88ccd of 2026-08-22. Where that was not at hand,
 an older one was read, and the released one stands behind it in brackets.

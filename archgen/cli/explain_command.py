@@ -1,4 +1,4 @@
-"""`archgen explain`: explain a rule."""
+"""`archgen explain`: explain a rule, or say where a component type that ships was read."""
 
 from __future__ import annotations
 
@@ -12,8 +12,17 @@ from archgen.diagnostics.suggestions import did_you_mean
 
 @click.command("explain")
 @click.argument("rule", required=False)
-def command(rule: str | None) -> None:
-    """Explain RULE: why it is there, a bad and a good example. Without RULE, list all rules."""
+@click.option(
+    "--distro", metavar="NAME", help="With `ros.TYPE`: the file and the line of each fact, for a distribution of ROS."
+)
+def command(rule: str | None, distro: str | None) -> None:
+    """Explain RULE: why it is there, a bad and a good example. Without RULE, list all rules.
+
+    For a component type that ships, such as `ros.amcl`, say where it was read.
+    """
+    if distro is not None or (rule is not None and "." in rule):
+        explain_sources(rule or "", distro)
+        return
     from archgen import pipeline
     from archgen.diagnostics.text_columns import align_rows, find_width
     from archgen.emit.terminal.findings_text import wants_colour
@@ -36,3 +45,24 @@ def command(rule: str | None) -> None:
         guess = did_you_mean(rule, rules)
         msg = f"there is no rule '{rule}'" + (f"; {guess}" if guess else "")
         raise click.UsageError(msg)
+
+
+def explain_sources(name: str, distro: str | None) -> None:
+    """Print where the facts about a shipped component type were read; raise UsageError where there is none of that name."""
+    from archgen.cli.type_sources import list_shipped_names, list_source_lines
+    from archgen.model.known_interfaces import KNOWN_DISTROS
+
+    names = list_shipped_names()
+    if name not in names:
+        msg = f"no component type named '{name}' ships with archgen"
+        guess = did_you_mean(name, names)
+        raise click.UsageError(f"{msg}; {guess}" if guess else msg)
+    if distro is not None and distro not in KNOWN_DISTROS:
+        msg = f"nothing ships for the distribution '{distro}'; there are {', '.join(KNOWN_DISTROS)}"
+        raise click.UsageError(msg)
+    lines = list(list_source_lines(name, distro))
+    if not lines:
+        msg = f"'{name}' does not ship for {distro}; `archgen explain {name}` says for which it does"
+        raise click.UsageError(msg)
+    for line in lines:
+        click.echo(line)

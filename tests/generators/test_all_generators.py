@@ -31,7 +31,7 @@ def _check_files(folder: Path) -> None:
         assert str(folder) not in text
         if path.endswith(".py"):
             ast.parse(text, path)
-        elif path.endswith((".xml", ".launch", ".xacro")):
+        elif path.endswith((".xml", ".launch", ".xacro", ".cpf")):
             assert "<!DOCTYPE" not in text
             ET.fromstring(text)  # noqa: S314 - just made
         elif path.endswith((".yaml", ".yml")):

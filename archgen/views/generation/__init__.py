@@ -66,6 +66,12 @@ def _make_structure(context: GenerationContext) -> GeneratedView:
     return structure_view.make_view(context)
 
 
+def _make_middleware(context: GenerationContext) -> GeneratedView:
+    from archgen.views.generation import middleware_view
+
+    return middleware_view.make_view(context)
+
+
 def _make_aadl(context: GenerationContext) -> GeneratedView:
     from archgen.views.generation import aadl_view
 
@@ -82,6 +88,7 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
     "simulation": _make_simulation,
+    "middleware": _make_middleware,
     "aadl": _make_aadl,
 }
 """The functions that make the views, by name. Modules are imported for the views that a backend asks for."""

@@ -96,7 +96,7 @@ def _list_parameters(context: GenerationContext, component: Component) -> Iterat
 def _find_value_fault(value: object) -> tuple[str, str] | None:
     """Return what is wrong with a value, and what to do about it; None where nothing is."""
     if not isinstance(value, list):
-        return _find_text_fault(value) if isinstance(value, str) else None
+        return find_text_fault(value) if isinstance(value, str) else None
     if any(isinstance(each, str) and '"' in each for each in value):
         return "has a double quote in a list, where texts stand in double quotes", "write it without"
     if any(isinstance(each, list | dict) for each in value):
@@ -104,7 +104,8 @@ def _find_value_fault(value: object) -> tuple[str, str] | None:
     return next(filter(None, map(_find_value_fault, value)), None)
 
 
-def _find_text_fault(text: str) -> tuple[str, str] | None:
+def find_text_fault(text: str) -> tuple[str, str] | None:
+    """Return what is wrong with a text that is to stand on one line, and what to do about it; None where nothing is."""
     if any(unicodedata.category(character) in _LINE_BREAKING for character in text):
         return "has a line break or a control character, and stands on one line of a file", "write it without"
     if _SUBSTITUTION_MARK in text:

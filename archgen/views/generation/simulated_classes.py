@@ -10,6 +10,7 @@ from archgen.diagnostics.source_span import Span, first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_snake_name
 from archgen.model.component import Component, Input, Output
+from archgen.views.generation.class_words import find_type_words
 from archgen.views.generation.generation_context import GenerationContext, write_place
 from archgen.views.generation.java_names import JAVA_CLASS_NAMES
 from archgen.views.generation.name_clashes import find_name_clashes
@@ -77,15 +78,11 @@ class SimulatedClass:
 
 def name_class(architecture: Architecture, component: Component) -> ClassName:
     """Return the class of a component: instances of one type have one, and so have the same parts of them."""
-    parts: list[str] = []
-    around: Component | None = component
-    while around is not None:
-        if around.component_type is not None:
-            type_name = around.type_name if not around.component_type.endswith(">") else around.component_type
-            return ClassName("types", " ".join([type_name.replace("<", " of "), *reversed(parts)]))
-        parts.append(around.name)
-        around = architecture.shells.get(around.parent or "")
-    return ClassName(make_identifier_in("java", make_snake_name(component.group)), " ".join(reversed(parts)))
+    type_words = find_type_words(architecture, component)
+    if type_words is not None:
+        return ClassName("types", type_words)
+    names = [component.name, *(each.name for each in architecture.list_around(component))]
+    return ClassName(make_identifier_in("java", make_snake_name(component.group)), " ".join(reversed(names)))
 
 
 def collect_classes(context: GenerationContext, types: SimulatedTypes) -> dict[str, SimulatedClass]:

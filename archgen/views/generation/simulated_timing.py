@@ -14,15 +14,26 @@ from archgen.views.generation.generation_context import GenerationContext, tell_
 _NANOSECONDS = 10**9
 
 
+def find_timing(context: GenerationContext, component: Component) -> Timing:
+    """Return the timing of a component: what its node says of it, else its own."""
+    node = context.nodes_by_component.get(component.id)
+    return (node.timing.get(component.id) if node else None) or component.timing or Timing()
+
+
+def find_period(timing: Timing) -> Fraction | None:
+    """Return the written period in ns, which may follow from the rate; None where there is none."""
+    period = timing.period.value if timing.period else None
+    if period is None and timing.rate and timing.rate.value:
+        return Fraction(_NANOSECONDS) / timing.rate.value
+    return period
+
+
 def record_activation(
     context: GenerationContext, component: Component, input_names: Sequence[str]
 ) -> tuple[dict[str, object], Diagnostic | None]:
     """Return when a component is active; `input_names` are its inputs for messages. Times are nanoseconds."""
-    node = context.nodes_by_component.get(component.id)
-    timing = (node.timing.get(component.id) if node else None) or component.timing or Timing()
-    period = timing.period.value if timing.period else None
-    if period is None and timing.rate and timing.rate.value:
-        period = Fraction(_NANOSECONDS) / timing.rate.value
+    timing = find_timing(context, component)
+    period = find_period(timing)
     mode, finding = _choose_mode(timing, period, component, input_names)
     trigger = timing.trigger
     written = (

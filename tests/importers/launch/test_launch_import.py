@@ -461,6 +461,7 @@ ROS_1 = """\
   <machine name="base" address="10.0.0.2"/>
   <group ns="$(arg side)">
     <remap from="image" to="/image"/>
+    <remap from="~map" to="map"/>
     <node pkg="cam" type="driver.py" name="camera" machine="base" args="-v" respawn="true">
       <param name="rate" value="30"/>
       <rosparam>{size: [640, 480], mode: {auto: true}}</rosparam>
@@ -493,7 +494,7 @@ def test_files_of_ros_1_are_read(tmp_path: Path) -> None:
         "executable": "driver.py",
         "host": "base",
         "arguments": ["-v"],
-        "remaps": {"image": "/image"},
+        "remaps": {"image": "/image", "~/map": "map"},
         "parameters": {
             "rate": 30,
             "size": [640, 480],
@@ -506,7 +507,7 @@ def test_files_of_ros_1_are_read(tmp_path: Path) -> None:
     assert (nodes["filter"]["kind"], nodes["filter"]["container"]) == ("nodelet", "manager")
     assert sections["nodes"]["rviz"]["hints"]["launch"]["by_default"] == "off"
     assert messages_of(imported) == [
-        "not taken: test:18: a test is no part of the robot",
+        "not taken: test:19: a test is no part of the robot",
         "not taken: param:4: `/camera/gain` stands on the parameter server and below no node of the files",
         "not taken: param:5: `/nobody/x` stands on the parameter server and below no node of the files",
     ]
