@@ -10,7 +10,12 @@ from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node
 from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.aadl_behaviours import Behaviour
-from archgen.views.generation.aadl_hints import list_function_properties, list_source_properties, read_aadl_hints
+from archgen.views.generation.aadl_hints import (
+    find_thread_name,
+    list_function_properties,
+    list_source_properties,
+    read_aadl_hints,
+)
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
@@ -137,7 +142,7 @@ class Process:
         own_words = self.node.id if is_only else f"{self.node.id}_{component.name}"
         classifier = package_names.take_name(f"{kind}_{own_words}")
         self.thread_classifiers += behaviour.make_classifiers(classifier)
-        name = self.threads[component.id] = self.names.take_name(component.name)
+        name = self.threads[component.id] = self.names.take_name(find_thread_name(hints) or component.name)
         properties = make_text_properties(component=None if is_only else component.id)
         self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
         for part in behaviour.parts:
@@ -191,6 +196,7 @@ class Process:
         properties += make_text_properties(
             description=element.description,
             functionality=component.functionality if component else None,
+            role=behaviours[0].further_role if component else None,
             owner=component.owner if component else node.owner,
             package_name=node.package,
             executable_name=node.executable,
