@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node
 from archgen.model.path_resolver import title_from_id
@@ -73,6 +74,7 @@ class Process:
         self.connections: list[dict[str, Any]] = []
         self.flows: list[dict[str, Any]] = []
         self.thread_classifiers: list[dict[str, Any]] = []
+        self._architecture = architecture
         self._endpoints = endpoints
         self._subcomponents: list[dict[str, Any]] = []
         self._properties: list[AadlProperty] = []
@@ -184,6 +186,12 @@ class Process:
         name = f"{self.features[output.key]}_to_{self.features[reader.key]}"
         self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
 
+    def _find_own_owner(self, component: Component | None) -> str | None:
+        """Return who owns its component, where that is not who owns the group."""
+        owner = component.owner if component else self.node.owner
+        group = self._architecture.groups.get(component.group) if component else None
+        return owner if group is None or group.owner != owner else None
+
     def make_classifiers(self) -> list[dict[str, Any]]:
         """Return its threads, its type and its implementation."""
         node = self.node
@@ -197,7 +205,7 @@ class Process:
             description=element.description,
             functionality=component.functionality if component else None,
             role=behaviours[0].further_role if component else None,
-            owner=component.owner if component else node.owner,
+            owner=self._find_own_owner(component),
             package_name=node.package,
             executable_name=node.executable,
             node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
