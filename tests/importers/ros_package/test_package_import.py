@@ -195,7 +195,8 @@ def check_types(imported: ForeignImport, folder: Path) -> list[str]:
     (folder / "archgen.yaml").write_text("archgen: 1\nproject: {id: lift}\nros: {distro: jazzy}\n")
     for name, sections in imported.slices.items():
         (folder / name).write_text(write_yaml(sections))
-    return [finding.message for finding in check_project(folder).findings if finding.severity.name == "ERROR"]
+    checked = check_project(folder)
+    return [finding.message for finding in checked.findings if checked.has_errors]
 
 
 def test_messages_that_archgen_knows_are_only_named(tmp_path: Path) -> None:
