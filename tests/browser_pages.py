@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from playwright.sync_api import BrowserContext, Page, Request
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Request
 
 OpenPage = Callable[..., Page]
 _AXE = Path(__file__).parent / "judges" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+def launch_chromium(playwright: Playwright) -> Browser:
+    """Start Chromium: the one without windows where it is installed, since a page costs a third of the time there."""
+    names = ("chromium-headless-shell", "chromium", "chromium-browser")
+    chromium = next((path for name in names if (path := shutil.which(name))), None)
+    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
+    # Many others may run at the same time, which makes everything late and nothing wrong.
+    return playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"], timeout=600_000)
 
 
 @contextmanager

@@ -119,13 +119,11 @@ def browser() -> Iterator[Browser]:
     # Few tests need it, and importing it takes longer than most of them.
     from playwright.sync_api import expect, sync_playwright
 
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
+    from tests.browser_pages import launch_chromium
+
     with sync_playwright() as playwright:
         # Many others may run at the same time, which makes everything late and nothing wrong.
         expect.set_options(timeout=120_000)
-        started = playwright.chromium.launch(
-            executable_path=chromium, args=["--no-sandbox", "--disable-gpu"], timeout=600_000
-        )
+        started = launch_chromium(playwright)
         yield started
         started.close()

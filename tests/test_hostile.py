@@ -23,6 +23,7 @@ from playwright.sync_api import Dialog, sync_playwright
 from archgen.cli import main as verbs
 from archgen.cli.list_command import LISTABLE_KINDS
 from tests import hostile
+from tests.browser_pages import launch_chromium
 from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
 from tests.running import archgen, contents, made_once
@@ -201,12 +202,10 @@ def test_the_packed_file_holds_the_texts_as_they_were(kind: str, project: Path, 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["markup"], indirect=True)
 def test_no_script_runs_in_a_browser(project: Path) -> None:
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium, "this test needs Chromium (Debian: `chromium`)"
     seen: list[str] = []
     pages = [path for ending in (".html", ".svg") for path, _ in files(project, ending)]
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        browser = launch_chromium(playwright)
         page = browser.new_page()
         page.on("dialog", dialogs(seen))
         page.on("request", lambda request: seen.extend([] if local(request.url) else [request.url]))

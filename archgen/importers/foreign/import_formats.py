@@ -48,6 +48,12 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             "archgen.importers.xmi:read_xmi",
         ),
         ImportFormat(
+            "nodl",
+            "interfaces of nodes in the Node Definition Language, version 1 (XML) and 2 (YAML, JSON)",
+            (".nodl.yaml", ".nodl.yml", ".nodl.json", ".nodl.xml"),
+            "archgen.importers.nodl.nodl_import:read_nodl",
+        ),
+        ImportFormat(
             "launch",
             "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
             (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),

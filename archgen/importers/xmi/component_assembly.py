@@ -162,9 +162,7 @@ class ComponentAssembly:
         return group_id
 
     def _read_ports(self, facts: ClassFacts) -> None:
-        if facts.device or facts.element in self._sorting.parts:
-            return
-        if facts.element.tag == "ownedAttribute":
+        if facts.element in self._sorting.parts:
             return
         ports = [self._uses.make_port(each) for each in list_children(facts.element, "Port")]
         for port in ports:
@@ -179,14 +177,15 @@ class ComponentAssembly:
             if other.base is not None:
                 realized[id(other.base)] |= {get_name(each) for each in list_children(other.element, "Port")}
         for facts in (*self.types.values(), *self.components):
-            if facts.element in self._sorting.parts or facts.device:
+            if facts.element in self._sorting.parts:
                 self.features[facts.element] = ClassFeatures()
                 continue
             parts = {inner.element for inner in facts.inside}
             names = {port.name for port in facts.ports} | realized[id(facts)]
             self.features[facts.element] = read_features(self._index, self._ledger, facts.element, names, parts)
             kind = "Class" if get_kind(facts.element) == "AssociationClass" else ""
-            self._ledger.take(facts.element, kind)
+            if not facts.device:
+                self._ledger.take(facts.element, kind)
 
     def find_port(self, facts: ClassFacts, element: XmlElement) -> PortFacts | None:
         """Return the port of a component that an element of it or of one of its types stands for."""

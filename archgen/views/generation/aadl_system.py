@@ -84,7 +84,11 @@ class SystemWriter:
         ]
         project = self._architecture.project
         own_words = make_text_properties(
-            id=project.id, title=project.title, description=project.description, version=project.version
+            id=project.id,
+            title=project.title,
+            description=project.description,
+            version=project.version,
+            distro=self._architecture.distro,
         )
         for part in self._tree.parts.values():
             if part.element is not None:
@@ -178,16 +182,26 @@ class SystemWriter:
             else:
                 written.setdefault(place[0], {})[place[1]] = chain
         for system, chains in written.items():
-            system.properties += _list_flow_words(chains)
+            system.properties += _list_flow_words(chains, self._list_joined_components())
+
+    def _list_joined_components(self) -> frozenset[str]:
+        """Return the components that share a process: whoever reads it takes the process for a component around them."""
+        shared = (process.behaviours for process in self._processes.values() if len(process.behaviours) > 1)
+        return frozenset(component for behaviours in shared for component in behaviours)
 
 
-def _list_flow_words(chains: dict[str, Chain]) -> list[AadlProperty]:
+def _list_flow_words(chains: dict[str, Chain], joined_components: frozenset[str]) -> list[AadlProperty]:
     """Return what else is known of end to end flows: Ocarina takes no property of another set at a flow itself."""
+    ways = {
+        key: [each.id for each in chain.through]
+        for key, chain in chains.items()
+        if not any(each.id in joined_components for each in chain.through)
+    }
     return [
         make_property(f"archgen::Flow_{name}", write_texts(f"{key}: {text}" for key, text in texts.items()))
         for name, texts in (
             ("Titles", {key: chain.title for key, chain in chains.items() if chain.title != title_from_id(chain.id)}),
-            ("Ways", {key: ", ".join(each.id for each in chain.through) for key, chain in chains.items()}),
+            ("Ways", {key: ", ".join(way) for key, way in ways.items()}),
             ("Ids", {key: chain.id for key, chain in chains.items() if chain.id != key}),
         )
         if texts

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from archgen.model.selector_parser import SELECTOR_KEYS
 from archgen.views.explorer import make_explorer_map
 from archgen.views.lookup import make_lookup
 from archgen.views.shapes import Page, Section
+from tests.browser_pages import launch_chromium
 from tests.selector_cases import (
     COMPOSED_FINDINGS,
     COMPOSED_ROBOT,
@@ -82,10 +82,8 @@ def composed(derived: Callable[[str], Architecture]) -> Architecture:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+        browser = launch_chromium(playwright)
         yield browser
         browser.close()
 

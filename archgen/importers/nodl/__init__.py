@@ -1,0 +1,1 @@
+"""Files of the Node Definition Language: component types with ports and parameters."""
