@@ -170,11 +170,13 @@ class _ModelImport:
         title = next((find_own_text(system.scope, (), "title") for system in groups.systems), "")
         if not title and len(self._names.packages) == 1:
             title = next(iter(self._names.packages.values())).name
+        distro = next((find_own_text(system.scope, (), "distro") for system in groups.systems), "")
         return ForeignImport(
             {name: section for name, section in slices.items() if section},
             {name: count for name, count in taken.items() if count},
             self._notes.list_notes(),
             title,
+            distro,
         )
 
     def _build_type(self, structure: Structure, builder: ComponentBuilder) -> Body:

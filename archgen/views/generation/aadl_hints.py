@@ -32,6 +32,15 @@ def list_source_properties(hints: Mapping[str, Any]) -> list[AadlProperty]:
     return found
 
 
+def find_thread_name(hints: Mapping[str, Any]) -> str | None:
+    """Return what the only thread of a process was called."""
+    threads = hints.get("threads")
+    if not isinstance(threads, Mapping) or len(threads) != 1:
+        return None
+    name = next(iter(threads))
+    return name if isinstance(name, str) else None
+
+
 def list_function_properties(hints: Mapping[str, Any], component_name: str) -> list[AadlProperty]:
     """Return headers and entry of the function that a component's thread calls, in terms of that thread."""
     threads = hints.get("threads")

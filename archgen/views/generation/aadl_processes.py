@@ -6,11 +6,17 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node
 from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.aadl_behaviours import Behaviour
-from archgen.views.generation.aadl_hints import list_function_properties, list_source_properties, read_aadl_hints
+from archgen.views.generation.aadl_hints import (
+    find_thread_name,
+    list_function_properties,
+    list_source_properties,
+    read_aadl_hints,
+)
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
@@ -68,6 +74,7 @@ class Process:
         self.connections: list[dict[str, Any]] = []
         self.flows: list[dict[str, Any]] = []
         self.thread_classifiers: list[dict[str, Any]] = []
+        self._architecture = architecture
         self._endpoints = endpoints
         self._subcomponents: list[dict[str, Any]] = []
         self._properties: list[AadlProperty] = []
@@ -137,7 +144,7 @@ class Process:
         own_words = self.node.id if is_only else f"{self.node.id}_{component.name}"
         classifier = package_names.take_name(f"{kind}_{own_words}")
         self.thread_classifiers += behaviour.make_classifiers(classifier)
-        name = self.threads[component.id] = self.names.take_name(component.name)
+        name = self.threads[component.id] = self.names.take_name(find_thread_name(hints) or component.name)
         properties = make_text_properties(component=None if is_only else component.id)
         self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
         for part in behaviour.parts:
@@ -179,6 +186,12 @@ class Process:
         name = f"{self.features[output.key]}_to_{self.features[reader.key]}"
         self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
 
+    def _find_own_owner(self, component: Component | None) -> str | None:
+        """Return who owns its component, where that is not who owns the group."""
+        owner = component.owner if component else self.node.owner
+        group = self._architecture.groups.get(component.group) if component else None
+        return owner if group is None or group.owner != owner else None
+
     def make_classifiers(self) -> list[dict[str, Any]]:
         """Return its threads, its type and its implementation."""
         node = self.node
@@ -191,7 +204,8 @@ class Process:
         properties += make_text_properties(
             description=element.description,
             functionality=component.functionality if component else None,
-            owner=component.owner if component else node.owner,
+            role=behaviours[0].further_role if component else None,
+            owner=self._find_own_owner(component),
             package_name=node.package,
             executable_name=node.executable,
             node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,

@@ -84,7 +84,11 @@ class SystemWriter:
         ]
         project = self._architecture.project
         own_words = make_text_properties(
-            id=project.id, title=project.title, description=project.description, version=project.version
+            id=project.id,
+            title=project.title,
+            description=project.description,
+            version=project.version,
+            distro=self._architecture.distro,
         )
         for part in self._tree.parts.values():
             if part.element is not None:

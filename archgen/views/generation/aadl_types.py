@@ -101,7 +101,7 @@ class TypeBook:
             ),
         ]
         if flow == "topic" and size and size.value <= _GREATEST_SIZE and size.value.denominator == 1:
-            properties.append(make_property("Data_Size", f"{size.value} Bytes"))
+            properties.append(make_property("Data_Size", _write_size(int(size.value))))
         place = write_place(declared.at)
         if flow != "topic":
             if declared.message and flow_of(declared.message) == flow and not declared.has_content:
@@ -140,6 +140,14 @@ class TypeBook:
             ),
         ]
         return make_item(name, f"data {classifier}{field.array if is_fixed else ''}", properties)
+
+
+def _write_size(size: int) -> str:
+    """Return a size (B) in the largest unit in which it is whole."""
+    for unit, factor in (("GByte", 10**9), ("MByte", 10**6), ("KByte", 1000)):
+        if size and size % factor == 0:
+            return f"{size // factor} {unit}"
+    return f"{size} Bytes"
 
 
 def _record_shape(
