@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Container
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
@@ -15,13 +15,13 @@ _PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 MAX_TYPE_LENGTH = 200
 
 
-def choose_id(element: XmlElement, kind: str, taken: Collection[str], name: str = "") -> str:
+def choose_id(element: XmlElement, kind: str, taken: Container[str], name: str = "") -> str:
     """Return a free id for an element: the one that archgen exported it from, else one made from its name."""
     own_id = get_id(element)
     if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken:
         return last_word
     wanted = make_id(name or get_name(element) or get_kind(element), kind)
-    return make_unique_id(wanted, frozenset(taken))
+    return make_unique_id(wanted, taken)
 
 
 def say_title(name: str, element_id: str) -> dict[str, object]:

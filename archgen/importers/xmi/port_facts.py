@@ -30,13 +30,15 @@ class PortFacts:
     is_port: bool = True
     input_id: str = ""
     output_id: str = ""
+    is_told: bool = False
+    """Whether a stereotype of SysML says which way its data goes."""
     is_joined: bool = False
     """Whether a connector says what it is connected with."""
 
     @property
     def is_decided(self) -> bool:
         """Whether something says which way its data goes."""
-        return bool(self.provided or self.required)
+        return bool(self.provided or self.required) or self.is_told
 
 
 class InterfaceUses:
@@ -107,6 +109,8 @@ class InterfaceUses:
         facts.required = list(dict.fromkeys(facts.required))
         facts.is_input = bool(facts.required)
         facts.is_output = bool(facts.provided) or not facts.required
+        if not facts.is_decided and (direction := self._index.flow_directions.get(element)):
+            facts.is_told, facts.is_input, facts.is_output = True, direction == "in", direction == "out"
         return facts
 
     def _add_by_type(self, element: XmlElement, facts: PortFacts) -> None:

@@ -53,6 +53,8 @@ class UmlIndex:
         for position, document in enumerate(documents):
             for model in document.models:
                 self._add_elements(position, model)
+        self.flow_directions = self._read_flow_directions()
+        """`in` or `out` of the ports that a stereotype of SysML gives a direction."""
 
     def _add_elements(self, position: int, model: XmlElement) -> None:
         stack = [model]
@@ -68,6 +70,16 @@ class UmlIndex:
                     self._parents[child] = element
                     stack.append(child)
         self.doubled.sort(key=lambda each: (self._document_of[each], each.line, each.column))
+
+    def _read_flow_directions(self) -> dict[XmlElement, str]:
+        directions: dict[XmlElement, str] = {}
+        for position, document in enumerate(self._documents):
+            for stereotype in document.root.children if document.root not in document.models else ():
+                direction = stereotype.attributes.get("direction", "")
+                port = self._by_id.get((position, stereotype.attributes.get("base_Port", "")))
+                if stereotype.tag == "FlowPort" and direction in {"in", "out"} and port is not None:
+                    directions[port] = direction
+        return directions
 
     def get_span(self, element: XmlElement) -> Span:
         """Return where an element is written."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.importers.xmi import read_xmi
-from tests.importers.xmi.uml_models import merge_sections, read_model, tell_notes
+from tests.importers.xmi.uml_models import merge_sections, read_model, tell_notes, write_model
 
 
 def read_components(folder: Path, contents: str) -> dict[str, Any]:
@@ -106,6 +106,29 @@ def test_magicdraw_tells_the_names_of_what_lies_in_other_files(tmp_path: Path) -
         encoding="utf-8",
     )
     assert merge_sections(read_xmi([file]))["component_types"]["k"]["parameters"] == {"gain": {"type": "float"}}
+
+
+def test_flow_ports_of_sysml_say_which_way_data_goes(tmp_path: Path) -> None:
+    ports = [("a", "out"), ("b", "in"), ("c", "inout")]
+    blocks = "".join(
+        f'<packagedElement xmi:type="uml:Class" xmi:id="{name}" name="{name}"><ownedAttribute xmi:type="uml:Port" '
+        f'xmi:id="{name}port" name="x"/></packagedElement>'
+        for name, _ in ports
+    )
+    flows = "".join(
+        f'<sysml:FlowPort xmi:id="f{name}" base_Port="{name}port" direction="{way}"/>' for name, way in ports
+    )
+    text = write_model(blocks).replace("</xmi:XMI>", f"{flows}</xmi:XMI>")
+    file = tmp_path / "lab.xmi"
+    file.write_text(
+        text.replace("<xmi:XMI ", '<xmi:XMI xmlns:sysml="http://www.omg.org/spec/SysML" '), encoding="utf-8"
+    )
+    components = merge_sections(read_xmi([file]))["groups"]["lab"]["components"]
+    assert {name: sorted(each.keys() & {"inputs", "outputs"}) for name, each in components.items()} == {
+        "a": ["outputs"],
+        "b": ["inputs"],
+        "c": ["outputs"],
+    }
 
 
 def test_xsi_type_says_what_an_element_is(tmp_path: Path) -> None:
