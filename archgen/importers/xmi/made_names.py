@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container
+from collections.abc import Set as AbstractSet
+from typing import cast
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
@@ -21,7 +23,8 @@ def choose_id(element: XmlElement, kind: str, taken: Container[str], name: str =
     if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken:
         return last_word
     wanted = make_id(name or get_name(element) or get_kind(element), kind)
-    return make_unique_id(wanted, taken)
+    # A mapping answers `in` as a set does; a copy for each id would take time with the square of the model.
+    return make_unique_id(wanted, cast("AbstractSet[str]", taken))
 
 
 def say_title(name: str, element_id: str) -> dict[str, object]:
