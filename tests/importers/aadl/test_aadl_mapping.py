@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from archgen.diagnostics.diagnostic import Severity
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_text
 from archgen.syntax.yaml_writer import write_yaml
@@ -18,7 +19,7 @@ def map_package(folder: Path, body: str) -> dict[str, Any]:
     imported = import_package(folder, body)
     sections = merge_slices(imported)
     findings = check_text("archgen: 1\n" + write_yaml(sections))
-    assert [finding.message for finding in findings if finding.severity == "error"] == []
+    assert [finding.message for finding in findings if finding.effective_severity is Severity.ERROR] == []
     return drop_hints(sections)
 
 
