@@ -32,7 +32,12 @@ _CONFLICT_HELP = {
 @click.option(
     "--overwrite", metavar="PATH", multiple=True, help="Take the new file in place of one that was changed by hand."
 )
-@click.option("--keep", metavar="PATH", multiple=True, help="Keep a file of your own for good, here and later.")
+@click.option(
+    "--keep",
+    metavar="PATH",
+    multiple=True,
+    help="Take a file over as it stands, changed or not: archgen never touches it again.",
+)
 @click.option("--dry-run", is_flag=True, help="Say what would be done with each file, and do nothing.")
 @shared_options.level_option
 @shared_options.revision_option

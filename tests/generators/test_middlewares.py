@@ -308,6 +308,22 @@ groups:
         assert compile_middleware(tmp_path / "w", "player", tmp_path) == ""
 
 
+def test_the_example_of_the_page(tmp_path: Path) -> None:
+    (example,) = re.findall(r"```yaml\n(types:.*?)```", PAGE, re.DOTALL)
+    text = (
+        "archgen: 1\nproject: {id: p}\ngroups: {g: {components: {a: {outputs: {at: Position}}, b: {inputs: {at: a.at}, outputs: {}}}}}\n"
+        f"{example}nodes: {{a: {{implements: g.a, host: arm_pc}}}}\n"
+    )
+    project = write_project(tmp_path / "p", text)
+    for middleware in MIDDLEWARES:
+        assert generate(project, tmp_path / "w", middleware) == []
+    files = {path: data.decode() for path, data in contents(tmp_path / "w").items()}
+    assert "RTT::OutputPort<KDL::Frame> at_output_;" in files["orocos/include/p/g_a.hpp"]
+    assert "RTC::OutPort<RTC::TimedPose2D> at_output_;" in files["openrtm/include/p/g_a.hpp"]
+    assert 'provides ["at:::position2d:0"]' in files["player/arm_pc.cfg"]
+    assert 'requires ["at_0:10.0.0.2:6665:position2d:0"]' in files["player/no_host.cfg"]
+
+
 def test_an_interface_without_commands_is_not_commanded(tmp_path: Path) -> None:
     text = (
         "archgen: 1\ntypes: {Scan: {hints: {player: {interface: laser}}}, Say: {hints: {player: {interface: speech}}}}\n"

@@ -115,6 +115,8 @@ class _Planner:
         found = self.disk.read(path)
         if found.exists and entry.is_own:
             self.steps.append(FileStep(path, "yours", "nothing that is generated needs it any more"))
+        elif found.exists and path in self.choices.kept:
+            self.steps.append(FileStep(path, "left", "it is no longer made, and kept: it is yours now"))
         elif found.digest in entry.digests:
             self.removals.append(path)
             self.steps.append(FileStep(path, "removed"))
@@ -136,14 +138,14 @@ class _Planner:
         elif self._is_users_own(file, entry):
             words = _find_missing_words(file, self.disk.read_data(file.path)) if file.expected_words else ()
             self._keep_own(file, entry, digest, f"it lacks {', '.join(words)}" if words else "")
+        elif file.path in self.choices.kept and not (entry and file.path in self.choices.overwritten):
+            self._keep_own(file, entry, digest, "")
         elif found.digest == digest:
             self._keep_same(file, entry, digest, found)
         elif found.digest in self.known_digests[fold_path(file.path)] or (
             entry and file.path in self.choices.overwritten
         ):
             self._write(file, entry, digest, found, "changed")
-        elif file.path in self.choices.kept:
-            self._keep_own(file, entry, digest, "")
         else:
             self._keep(file, entry, "edited" if entry else "foreign")
 

@@ -424,3 +424,18 @@ def test_paths_that_are_refused(paths: list[str], problem: str | None) -> None:
     found = list(find_path_problems(made))
     assert len(found) == (problem is not None)
     assert problem is None or problem in found[0]
+
+
+def test_a_file_that_nobody_edited_is_taken_over_and_given_back(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1", b="1", c="1"))
+    kept = UserChoices(kept=("a", "c"))
+    assert verbs(generate(tmp_path, files(a="2", b="2"), choices=kept)) == {"a": "yours", "b": "changed", "c": "left"}
+    assert [(tmp_path / name).read_text() for name in "abc"] == ["1", "2", "1"]
+    assert verbs(generate(tmp_path, files(a="3", b="3"))) == {"a": "yours", "b": "changed"}
+    assert (tmp_path / "a").read_text() == "1"
+    assert verbs(generate(tmp_path, files(a="3"), choices=UserChoices(overwritten=("a",)))) == {
+        "a": "changed",
+        "b": "removed",
+    }
+    assert verbs(generate(tmp_path, files(a="4"))) == {"a": "changed"}
+    assert (tmp_path / "c").read_text() == "1"

@@ -1,4 +1,7 @@
-"""Run an architecture in logical time, without middleware: the same inputs give the same trace. Made by archgen."""
+"""Run an architecture in logical time, without middleware: the same inputs give the same trace.
+
+Made by archgen.
+"""
 
 from .assembly import Assembly
 from .command import run_command

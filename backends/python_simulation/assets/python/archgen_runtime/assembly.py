@@ -39,7 +39,7 @@ class Assembly:
         ]
 
     def sort_readers(self):
-        """Bring the readers of each output into the order of the model: what is sent arrives in it."""
+        """Bring the readers of each output into the order of the model, in which data arrives."""
         inputs = [port for component in self.components for port in component.inputs]
         ranks = {port: rank for rank, port in enumerate(inputs)}
         for component in self.components:

@@ -10,7 +10,10 @@ from .simulation import Simulation
 
 
 def run_command(assembly, words=None):
-    """Run what `assembly` makes, print the trace, and return the exit status: 1 if the run went wrong."""
+    """Run what `assembly` makes, print the trace, and return the exit status.
+
+    It is 1 if the run went wrong.
+    """
     parser = argparse.ArgumentParser()
     parser.add_argument("scenario", nargs="?")
     parser.add_argument("--until", default="1s")
@@ -18,7 +21,8 @@ def run_command(assembly, words=None):
     try:
         simulation = Simulation(assembly(), sys.stdout)
         if options.scenario is not None:
-            apply_scenario(Path(options.scenario).read_bytes().decode("utf-8"), options.scenario, simulation)
+            text = Path(options.scenario).read_bytes().decode("utf-8")
+            apply_scenario(text, options.scenario, simulation)
         simulation.run(read_time(options.until))
     except SimulationError as error:
         sys.stdout.flush()

@@ -36,7 +36,7 @@ def _apply_line(line, simulation):
 
 
 def read_time(text):
-    """Return a time with its unit, such as `0.5s`, in whole nanoseconds; without a unit it is nanoseconds."""
+    """Return a time such as `0.5s` in whole nanoseconds; without a unit it is in them."""
     parts = _TIME.fullmatch(text)
     if parts is None:
         raise SimulationError(f"a time is a number with ns, us, ms or s, not {write_value(text)}")

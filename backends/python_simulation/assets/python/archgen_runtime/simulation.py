@@ -2,6 +2,7 @@
 
 import heapq
 from collections import deque
+from functools import partial
 
 from .errors import SimulationError
 from .values import read_value, write_value
@@ -30,7 +31,8 @@ class Simulation:
             self._inputs.update((port.id, port) for port in component.inputs)
             self._outputs.update((port.id, port) for port in component.outputs)
             if component.timing.mode == "once":
-                heapq.heappush(self._agenda, (0, _CLOCK, order, lambda each=component: self._activate(each)))
+                activate = partial(self._activate, component)
+                heapq.heappush(self._agenda, (0, _CLOCK, order, activate))
             elif component.timing.mode == "periodic":
                 self._add_timer(component, 0, order)
 

@@ -5,7 +5,10 @@ import dataclasses
 
 @dataclasses.dataclass(frozen=True)
 class Timing:
-    """When a component is active: `mode` is `periodic`, `once`, `any`, `all`, `match` or `never`; times are nanoseconds."""
+    """When a component is active, with times in nanoseconds.
+
+    `mode` is `periodic`, `once`, `any`, `all`, `match` or `never`.
+    """
 
     mode: str
     period_ns: int = 0

@@ -97,9 +97,9 @@ def _make_record_kind(find_class):
         for key in given:
             if key not in fields:
                 raise SimulationError(f"{name} has no field {write_value(key)}")
-        return find_class()(
-            **{fields[key].name: fields[key].metadata["kind"].read(each, key) for key, each in given.items()}
-        )
+        kinds = {key: fields[key].metadata["kind"] for key in given}
+        read = {fields[key].name: kinds[key].read(given[key], key) for key in given}
+        return find_class()(**read)
 
     return Kind("record", check, read)
 
@@ -127,7 +127,10 @@ def _declare(kind, default, name):
 
 
 def whole(default=0, name=None):
-    """Declare a whole number of 64 bits; `name` is what the model calls the field, if Python calls it otherwise."""
+    """Declare a whole number of 64 bits.
+
+    `name` is what the model calls the field, if Python calls it otherwise.
+    """
     return _declare(_WHOLE, default, name)
 
 
@@ -200,7 +203,11 @@ def read_value(written, kind):
             raise SimulationError("the value is nested too deeply")
     try:
         read = json.loads(
-            written, parse_int=_Token, parse_float=_Token, parse_constant=_Token, object_pairs_hook=_join_pairs
+            written,
+            parse_int=_Token,
+            parse_float=_Token,
+            parse_constant=_Token,
+            object_pairs_hook=_join_pairs,
         )
     except json.JSONDecodeError as error:
         raise SimulationError(f"character {error.pos + 1} of the value: {error.msg}") from None
@@ -215,7 +222,10 @@ def _join_pairs(pairs):
 
 
 def write_value(value):
-    """Return a value as JSON of printable ASCII on one line. A number has the fewest digits that give it back."""
+    """Return a value as JSON of printable ASCII on one line.
+
+    A number has the fewest digits that give it back.
+    """
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):
@@ -226,9 +236,8 @@ def write_value(value):
         return json.dumps(value).replace("\x7f", "\\u007f")
     if isinstance(value, (list, tuple)):
         return f"[{','.join(write_value(each) for each in value)}]"
-    fields = (
-        f"{write_value(_name_of(each))}:{write_value(getattr(value, each.name))}" for each in dataclasses.fields(value)
-    )
+    names = {each.name: _name_of(each) for each in dataclasses.fields(value)}
+    fields = (f"{write_value(names[key])}:{write_value(getattr(value, key))}" for key in names)
     return "{" + ",".join(fields) + "}"
 
 
