@@ -9,7 +9,7 @@ from archgen.importers.aadl.aadl_tree import AadlName, Path
 from archgen.importers.aadl.property_values import Scope, read_count, read_text, read_texts
 
 _ESCAPED_BYTES = re.compile(r"(?:%[0-9A-Fa-f]{2})+")
-_COMPONENT_KEYS = ("title", "description", "functionality", "owner")
+_COMPONENT_KEYS = ("title", "description", "functionality", "owner", "role")
 _NODE_KEYS = {"package": "package_name", "executable": "executable_name"}
 
 

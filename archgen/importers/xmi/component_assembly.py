@@ -12,6 +12,7 @@ from archgen.importers.xmi.made_names import choose_id
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
+from archgen.model.element_ids import make_id
 
 _HARDWARE = frozenset({"Node", "ExecutionEnvironment"})
 
@@ -144,7 +145,9 @@ class ComponentAssembly:
             facts = stack.pop()
             if facts.sort == "component":
                 self.components.append(facts)
-            taken: set[str] = set()
+            # A port and a component inside share no name: what is told outside is the port's.
+            outer = (facts, *facts.list_bases())
+            taken = {make_id(get_name(port), "port") for each in outer for port in list_children(each.element, "Port")}
             for inner in facts.inside:
                 inner.id = choose_id(inner.element, "component", taken)
                 taken.add(inner.id)

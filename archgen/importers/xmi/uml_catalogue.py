@@ -138,7 +138,11 @@ class _CatalogueWalk:
         self.catalogue.packages[feature] = package
         for child in feature.children:
             kind = get_kind(child)
-            if kind in self._lists and child.tag not in _SILENT_TAGS and "xmi:idref" not in child.attributes:
+            if child.tag in _TOOL_TAGS:
+                self._tool_parts[child.tag] += 1
+                self._first_tool_part.setdefault(child.tag, child)
+            is_reference = "xmi:idref" in child.attributes or "href" in child.attributes
+            if kind in self._lists and child.tag not in _SILENT_TAGS and not is_reference:
                 self._lists[kind].append(child)
                 self.catalogue.packages[child] = package
                 self.visit_contents(child, package)
