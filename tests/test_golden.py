@@ -68,7 +68,7 @@ def site(built: Path) -> Files:
 
 
 def neighbours(_: Path) -> Files:
-    names = ("d2", "graphml", "mermaid", "plantuml", "structurizr")
+    names = ("d2", "graphml", "mermaid", "plantuml", "structurizr", "xmi")
     return {name: archgen("export", name, "-C", "example_ramcip", cwd=ROOT).stdout for name in names}
 
 

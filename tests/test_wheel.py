@@ -101,6 +101,7 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
         "_data/backends/wiki/templates/home.md.j2",
         "_data/ros_library/distributions.yaml",
         "_data/ros_library/ros_2.yaml",
+        "_data/ros_library/sources/jazzy.yaml",
         "_data/ros_type_mapper.yaml",
         "_data/start/archgen.yaml.j2",
         "_data/start/gitattributes",

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
 
 
+_TYPES_BACKEND = "xmi"
+
+
 @click.command("export")
 @click.argument("name", shell_complete=shared_options.complete_files)
 @click.option(
@@ -48,13 +51,16 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products.output_options import OutputOptions
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    # The selector's word without a value: the component types of a project or a library, and nothing else.
+    types_only = name == _TYPES_BACKEND and select is not None and select.strip() == "type:"
     output_options = OutputOptions(
-        command_support.select_or_exit(checked_project, select),
+        None if types_only else command_support.select_or_exit(checked_project, select),
         select or "",
         level,
         revision,
         warn=command_support.print_warning,
         trusted_revision=command_support.find_trusted_revision(project, trust),
+        types_only=types_only,
     )
     with command_support.explain_write_errors():
         content = project_outputs.render_exported(checked_project, output_options, name)

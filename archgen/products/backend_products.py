@@ -60,6 +60,18 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
     return files or file_tree.make_file_tree(())
 
 
+def _make_uml(inputs: ProductInputs) -> Mapping[str, object]:
+    from archgen.views.uml import make_uml_view
+
+    checked_project, selection = inputs.checked_project, inputs.options.selection
+    return make_uml_view(
+        checked_project.architecture,
+        checked_project.pack_project().data,
+        selection.components if selection else None,
+        types_only=inputs.options.types_only,
+    )
+
+
 def make_backend_views(
     inputs: ProductInputs, backend: Backend, context: GenerationContext
 ) -> tuple[Mapping[str, object], tuple[Diagnostic, ...]]:
@@ -71,6 +83,7 @@ def make_backend_views(
         "graphs": lambda: tuple(graph for graph in inputs.views.drawings.values() if isinstance(graph, Graph)),
         "sequences": lambda: tuple(each for each in inputs.views.drawings.values() if isinstance(each, SequenceChart)),
         "record": lambda: resolved_record.make_record(inputs.views.lookup),
+        "uml": lambda: _make_uml(inputs),
         "tables": lambda: statistics_tables.make_statistics_tables(inputs.views.lookup.architecture),
     }
     views = {name: shapes[name]() for name in backend.views if name in shapes}

@@ -39,5 +39,7 @@ class OutputOptions:
     """Whether the site has a picture of each component and group; None: as `drawing_set.list_undrawn_kinds` says."""
     depth: int = 0
     """How many levels of composed components pictures open."""
+    types_only: bool = False
+    """Whether only the component types are asked for: `--select type:` of an export that has them."""
     changes: SiteChanges | None = None
     """What changed since an earlier version, where the site is to show it."""

@@ -21,7 +21,9 @@ nodes: {b: {implements: b, subscribes: {x: {topic: x, message: std_msgs/msg/Empt
 SHIPPED = find_backends(ROOT / "docs")[0]
 """The folder has none of its own."""
 GENERATORS = [name for name, each in SHIPPED.items() if each.makes == "workspace"]
-OF_OTHER_TOOLS = [name for name, each in SHIPPED.items() if each.makes == "workspace" or each.views == ("structure",)]
+OF_OTHER_TOOLS = [
+    name for name, each in SHIPPED.items() if each.makes == "workspace" or each.views in {("structure",), ("uml",)}
+]
 """Generators and models for other tools, which are more and more."""
 COMPONENT_FILES = '[{template: t.j2, path: "{{ item.title }}.txt", for_each: graphs, only: {kind: component}}]'
 BACKENDS = {
@@ -146,11 +148,11 @@ def test_each_verb_names_the_right_one_for_others(
         (("generate", "coed"), "there is no text backend `coed`; did you mean `code`?"),
         (
             ("export", "zzz"),
-            "there is no text backend `zzz`; there are d2, graphml, mermaid, plantuml, reqif, structurizr, table",
+            "there is no text backend `zzz`; there are d2, graphml, mermaid, plantuml, reqif, structurizr, xmi, table",
         ),
         (
             ("export", "report"),
-            "there is no text backend `report`; there are d2, graphml, mermaid, plantuml, reqif, structurizr, table",
+            "there is no text backend `report`; there are d2, graphml, mermaid, plantuml, reqif, structurizr, xmi, table",
         ),
     ],
 )
@@ -264,7 +266,7 @@ def test_a_selector_does_not_go_with_backends(run: Run, robot: Path) -> None:
     ("words", "names"),
     [
         ("generate c", ["code"]),
-        ("export ", ["d2", "graphml", "mermaid", "plantuml", "reqif", "structurizr", "table"]),
+        ("export ", ["d2", "graphml", "mermaid", "plantuml", "reqif", "structurizr", "xmi", "table"]),
         ("build --backend p", ["pages"]),
         ("build --only report,p", ["report,packed", "report,pages"]),
     ],

@@ -117,8 +117,8 @@ def test_nodes_are_processes_with_the_threads_of_the_library(lab: CheckedProject
     assert "thread callback_listener extends" not in nodes  # it reads two types
     assert "thread call_pub_both_relay extends ros::call_pub" in nodes
     assert "thread service_provider_both_server extends ros::service_provider (service => subprogram" in nodes
-    assert find_line(nodes, r"^\s+Period => ") == "Period => 10 ms applies to talker;"
-    assert "Compute_Execution_Time => 1 ms .. 2 ms applies to talker;" in nodes
+    assert find_line(nodes, r"^\s+Period => ") == "Period => 10 ms applies to publisher;"
+    assert "Compute_Execution_Time => 1 ms .. 2 ms applies to publisher;" in nodes
     assert 'topic_properties::Default_Name => "/out_chat";' in nodes
     assert 'topic_properties::Name => "/chatter";' in files["aadl/lab.aadl"]
     assert "Queue_Size => 7 applies to listener.chatter_chatter;" in nodes
@@ -175,8 +175,8 @@ def test_what_was_imported_from_aadl_goes_back(lab: CheckedProject, tmp_path: Pa
     files = write_files(lab, tmp_path)
     nodes = files["aadl/lab_nodes.aadl"]
     assert 'Source_Text => ("talker.schema.json") applies to internal_state;' in nodes
-    assert 'Source_Text => ("talker.h") applies to talker.function;' in nodes
-    assert 'Source_Name => "talk" applies to talker.function;' in nodes
+    assert 'Source_Text => ("talker.h") applies to publisher.function;' in nodes
+    assert 'Source_Name => "talk" applies to publisher.function;' in nodes
     assert 'Source_Text => ("talker.json");' in nodes
     assert "talker_tf: data access tf -> talker.tf;" in files["aadl/lab.aadl"]
 

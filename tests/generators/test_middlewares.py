@@ -25,6 +25,7 @@ from tests.generators.middleware_projects import (
     write_project,
 )
 from tests.generators.player_configuration import read_configuration
+from tests.generators.simulation.random_robots import make_robot
 from tests.hostile import TEXTS
 from tests.running import ROOT, contents
 
@@ -202,6 +203,14 @@ def test_examples_compile(example: str, middleware: str, tmp_path: Path) -> None
     assert compile_middleware(tmp_path / "w", middleware, tmp_path) == ""
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_random_robots_have_files_that_can_be_read(seed: int, tmp_path: Path) -> None:
+    project = write_project(tmp_path / "p", make_robot(seed).text)
+    for middleware in MIDDLEWARES:
+        assert generate(project, tmp_path / "w", middleware) == []
+    _read_all(tmp_path / "w")
+
+
 ODD_LEFT_OUT = ["`auto.void a.b` and `auto.void a.B` give the same parameter `aB`"]
 
 
@@ -306,6 +315,22 @@ groups:
     assert not any("evil" in text for text in files.values())
     if HAS_COMPILER:
         assert compile_middleware(tmp_path / "w", "player", tmp_path) == ""
+
+
+def test_the_example_of_the_page(tmp_path: Path) -> None:
+    (example,) = re.findall(r"```yaml\n(types:.*?)```", PAGE, re.DOTALL)
+    text = (
+        "archgen: 1\nproject: {id: p}\ngroups: {g: {components: {a: {outputs: {at: Position}}, b: {inputs: {at: a.at}, outputs: {}}}}}\n"
+        f"{example}nodes: {{a: {{implements: g.a, host: arm_pc}}}}\n"
+    )
+    project = write_project(tmp_path / "p", text)
+    for middleware in MIDDLEWARES:
+        assert generate(project, tmp_path / "w", middleware) == []
+    files = {path: data.decode() for path, data in contents(tmp_path / "w").items()}
+    assert "RTT::OutputPort<KDL::Frame> at_output_;" in files["orocos/include/p/g_a.hpp"]
+    assert "RTC::OutPort<RTC::TimedPose2D> at_output_;" in files["openrtm/include/p/g_a.hpp"]
+    assert 'provides ["at:::position2d:0"]' in files["player/arm_pc.cfg"]
+    assert 'requires ["at_0:10.0.0.2:6665:position2d:0"]' in files["player/no_host.cfg"]
 
 
 def test_an_interface_without_commands_is_not_commanded(tmp_path: Path) -> None:

@@ -84,7 +84,7 @@ def export(checked_project: CheckedProject, backend: str, selector: str = "", le
 
 
 def test_every_neighbour_is_tried() -> None:
-    assert FILES == ["d2", "graphml", "mermaid", "plantuml", "structurizr"]
+    assert FILES == ["d2", "graphml", "mermaid", "plantuml", "structurizr", "xmi"]
 
 
 def test_the_view_holds_both_levels(lab: CheckedProject) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tree import Property
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
@@ -43,6 +44,7 @@ _TAKEN_PROPERTIES = frozenset(
         "scheduling_protocol",
         "latency",
         "transmission_time",
+        "actual_latency",
         "topic_properties::name",
         "topic_properties::default_name",
         "sei::bandwidthcapacity",
@@ -119,8 +121,8 @@ class _ModelImport:
         self._names, self._notes, self._used = names, notes, UsedProperties()
         self._resolver = ClassifierResolver(names, notes)
         self._types = DataTypes(self._resolver, notes, self._used)
-        mapper = PortMapper(self._resolver, self._types, notes)
-        self._finder = StructureFinder(self._resolver, mapper, notes)
+        mapper = PortMapper(self._resolver, self._types, self._used, notes)
+        self._finder = StructureFinder(self._resolver, mapper, self._used, notes)
 
     def make_import(self) -> ForeignImport:
         """Return the slices, what was taken, and the notes."""
@@ -152,23 +154,29 @@ class _ModelImport:
             if base := roots.find_base_id(structure):
                 component_types[type_id] = _subtract_base(component_types[type_id], base, component_types)
         bodies = {name: body for name, body in groups.groups.items() if body["components"]}
+        owners = sorted({owner for part in (bodies, component_types) for owner in _list_owners(part)})
         slices: dict[str, Mapping[str, Any]] = {
+            "partners.yaml": _make_slice(partners={owner: {} for owner in owners}),
             "types.yaml": _make_slice(types=self._types.types),
             "component_types.yaml": _make_slice(component_types=component_types),
             "groups.yaml": _make_slice(groups=bodies),
             "nodes.yaml": _make_slice(nodes=nodes.nodes),
-            "hosts.yaml": _make_slice(hosts=hardware.hosts, links=hardware.links),
+            "hosts.yaml": _make_slice(hosts=hardware.hosts, containers=hardware.containers, links=hardware.links),
             "chains.yaml": _make_slice(chains=chains.chains),
         }
         taken = self._count_taken(roots, data_count)
         taken |= {"processor": len(hardware.hosts), "bus": len(hardware.links), "end to end flow": len(chains.chains)}
         self._tell_left()
-        title = next(iter(self._names.packages.values())).name if len(self._names.packages) == 1 else ""
+        title = next((find_own_text(system.scope, (), "title") for system in groups.systems), "")
+        if not title and len(self._names.packages) == 1:
+            title = next(iter(self._names.packages.values())).name
+        distro = next((find_own_text(system.scope, (), "distro") for system in groups.systems), "")
         return ForeignImport(
             {name: section for name, section in slices.items() if section},
             {name: count for name, count in taken.items() if count},
             self._notes.list_notes(),
             title,
+            distro,
         )
 
     def _build_type(self, structure: Structure, builder: ComponentBuilder) -> Body:
@@ -235,6 +243,14 @@ def _list_associations(known: KnownClassifier) -> list[Property]:
     return found
 
 
+def _list_owners(bodies: Mapping[str, Body]) -> Iterator[str]:
+    """Yield the owners of groups and components, to any depth."""
+    for body in bodies.values():
+        if "owner" in body:
+            yield body["owner"]
+        yield from _list_owners(body.get("components", {}))
+
+
 def _make_slice(**sections: Mapping[str, Any]) -> dict[str, Any]:
     return {key: section for key, section in sections.items() if section}
 
@@ -242,7 +258,23 @@ def _make_slice(**sections: Mapping[str, Any]) -> dict[str, Any]:
 def _subtract_base(body: Body, base_id: str, component_types: Mapping[str, Body]) -> Body:
     """Return a component type as made from another one: what it says otherwise than that."""
     base = component_types[base_id]
+    if _adds_inside(body, _write_whole(base, component_types)):
+        # A part was refined to one that has more: what is made from a type adds nothing inside of its parts.
+        return body
     return {"is": base_id, **_subtract(body, _write_whole(base, component_types))}
+
+
+def _adds_inside(body: Body, base: Body) -> bool:
+    """Whether a part of both has ports or parts here that it has not in the base."""
+    for name, part in body.get("components", {}).items():
+        known = base.get("components", {}).get(name)
+        if known is None:
+            continue
+        if any(part.get(key, {}).keys() - known.get(key, {}).keys() for key in ("inputs", "outputs", "components")):
+            return True
+        if _adds_inside(part, known):
+            return True
+    return False
 
 
 def _write_whole(body: Body, component_types: Mapping[str, Body]) -> Body:

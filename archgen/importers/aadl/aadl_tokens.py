@@ -31,16 +31,13 @@ class Token(NamedTuple):
     kind: str
     text: str
     offset: int
+    word: str
+    """The text by which it is compared: words of AADL count in any case."""
 
     @property
     def end(self) -> int:
         """Return the offset behind its last character."""
         return self.offset + len(self.text)
-
-    @property
-    def word(self) -> str:
-        """Return the text by which it is compared: words of AADL count in any case."""
-        return self.text.lower() if self.kind == "name" else self.text
 
 
 class AadlText:
@@ -66,23 +63,24 @@ def scan_tokens(text: str) -> Iterator[Token]:
     while offset < size:
         match = match_token(text, offset)
         if match is None:
-            yield Token("stray", text[offset], offset)
+            yield Token("stray", text[offset], offset, text[offset])
             offset += 1
             continue
         kind = match.lastgroup or ""
         if kind == "annex":
             end = text.find("**}", offset + 3)
             if end < 0:
-                yield Token(OPEN_ANNEX, "{**", offset)
+                yield Token(OPEN_ANNEX, "{**", offset, "{**")
                 break
-            yield Token(kind, text[offset : end + 3], offset)
+            yield Token(kind, text[offset : end + 3], offset, "")
             offset = end + 3
             continue
         if kind != "blank":
-            yield Token(kind, match.group(), offset)
+            token_text = match.group()
+            yield Token(kind, token_text, offset, token_text.lower() if kind == "name" else token_text)
         offset = match.end()
     while True:
-        yield Token(END, "", size)
+        yield Token(END, "", size, "")
 
 
 def read_text(token: Token) -> str:

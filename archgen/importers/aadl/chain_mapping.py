@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.importers.aadl.aadl_tree import Flow, Path
+from archgen.importers.aadl.archgen_words import find_own_texts
 from archgen.importers.aadl.component_bodies import Body
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, read_text, read_time_range
+from archgen.importers.aadl.property_values import Scope, read_time_range
 from archgen.importers.aadl.robot_groups import LaunchedSystem
 from archgen.importers.aadl.structures import Structure
 from archgen.model.element_ids import make_id, make_unique_id
@@ -35,8 +36,9 @@ class ChainMapper:
     def _add_chain(
         self, system: LaunchedSystem, structure: Structure, scope: Scope, ids: tuple[str, ...], flow: Flow
     ) -> None:
-        through: list[str] = []
-        for step in flow.steps:
+        own_ways = find_own_texts(scope, (), "flow_ways")
+        through = own_ways[flow.name].split(", ") if flow.name in own_ways else []
+        for step in () if through else flow.steps:
             for reference in _name_step(system, structure, ids, step):
                 if not through or through[-1] != reference:
                     through.append(reference)
@@ -44,14 +46,14 @@ class ChainMapper:
             words = f"flow {flow.name} leads through fewer than two components"
             self._notes.add("end to end flow", words, flow.span)
             return
-        wanted = read_text(scope.value((flow.name.lower(),), "archgen::id")) or make_id(flow.name, "chain")
-        chain_id = make_unique_id(wanted, self.chains.keys())
+        own_id = find_own_texts(scope, (), "flow_ids").get(flow.name, "")
+        chain_id = make_unique_id(make_id(own_id or flow.name, "chain"), self.chains.keys())
         body: Body = {"through": through}
-        if title := read_text(scope.value((flow.name.lower(),), "archgen::title")):
+        if title := find_own_texts(scope, (), "flow_titles").get(flow.name):
             body["title"] = title
         lowest, highest = read_time_range(scope.value((flow.name.lower(),), "latency"))
         body |= {"deadline": highest} if highest else {}
-        hints = {"name": flow.name} if flow.name != chain_id else {}
+        hints = {"name": flow.name} if flow.name != chain_id and not own_id else {}
         if lowest and lowest != highest and not lowest.startswith("0 "):
             hints["shortest"] = lowest
         self.chains[chain_id] = {**body, "hints": {"aadl": hints}} if hints else body

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tree import AadlValue, Classifier, Package, PropertySet
 
+LIBRARY_PACKAGES = frozenset({"cnc", "ros"})
 STANDARD_SETS = frozenset(
     [
         "aadl_project",
@@ -38,6 +39,11 @@ class KnownClassifier:
         return "::".join(filter(None, [self.package.name, self.classifier.name]))
 
     @property
+    def is_of_library(self) -> bool:
+        """Whether it is of the libraries of components and of nodes of ROS: its name says what it has."""
+        return self.package.name.lower() in LIBRARY_PACKAGES
+
+    @property
     def key(self) -> str:
         """Return the complete name as it is compared."""
         return self.full_name.lower()
@@ -52,6 +58,11 @@ class ClassifierNames:
     known: dict[str, KnownClassifier] = field(default_factory=dict)
     repeated: list[tuple[str, Span, Span]] = field(default_factory=list)
     """What is declared again, where, and where it was first."""
+
+    @property
+    def is_own(self) -> bool:
+        """Whether an export of archgen's made the model: then names in AADL follow from the ids, and are not kept."""
+        return "archgen" in self.property_sets
 
     def add_packages(self, packages: Iterable[Package]) -> None:
         """Add packages; the same package in several files is one (its public part may stand apart)."""

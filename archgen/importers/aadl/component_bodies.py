@@ -6,9 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.archgen_words import find_own_text, read_component_words
 from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure, keep_thread
 from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.port_mapping import MappedPort
 from archgen.importers.aadl.property_values import Scope, read_count, read_text
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved
 from archgen.importers.aadl.structures import Structure, StructuredPart, Wire
@@ -37,7 +39,7 @@ class ComponentBuilder:
         if self._count > MAX_COMPONENTS:
             raise TooManyPartsError
         resolved, ports = structure.resolved, structure.ports
-        hints: Body = {"classifier": resolved.known.full_name}
+        hints: Body = {} if self._resolver.names.is_own else {"classifier": resolved.known.full_name}
         body: Body = {}
         inputs, outputs = ports.make_section(is_input=True), ports.make_section(is_input=False)
         if structure.parts:
@@ -47,41 +49,48 @@ class ComponentBuilder:
             body |= self._describe_leaf(structure, scope, hints)
         body |= {"inputs": inputs} if inputs else {}
         body |= {"outputs": outputs} if outputs else {}
+        if not (inputs or outputs or structure.parts):
+            # AADL says that it has none; without them nothing would declare it.
+            body |= {"inputs": {}, "outputs": {}}
         if not structure.parts:
-            add_port_hints(body, ports, body.get("timing", {}))
+            add_port_hints(body, ports, body.get("timing", {}), is_own=self._resolver.names.is_own)
         if resolved.category == "device":
             body["tags"] = ["device"]
             for port_body in outputs.values():
-                port_body["medium"] = "physical"
+                port_body.setdefault("medium", "physical")
         own_scope = Scope(self._resolver, scope.used, resolved)
         hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
-        body["hints"] = {"aadl": hints}
+        body |= {"hints": {"aadl": hints}} if hints else {}
         self._wire_inside(structure, body, scope)
-        return body | _read_own_words(scope)
+        return body | read_component_words(scope)
 
     def build_instance(self, part: StructuredPart, scope_around: Scope) -> Body:
         """Return the body of a part: an instance of a component type, or all of it."""
         structure = part.structure
         scope = scope_around.go_into(part.part, structure.resolved if structure else None)
         name = part.part.written.name
-        names = {"name": name} if name != part.id else {}
+        own_id = find_own_text(scope_around, (part.name,), "id")
+        names = {"name": name} if name != part.id and not own_id else {}
         if structure is None:
             self._count += 1
             known = {"classifier": part.part.use.full_name} if part.part.use.name else {}
             tags = {"tags": ["device"]} if part.part.category == "device" else {}
-            return {**tags, "hints": {"aadl": {**names, **known}}} if names or known else tags
+            # Nothing is known of it but what it is called.
+            stub: Body = {"title": name, **tags}
+            return {**stub, "hints": {"aadl": {**names, **known}}} if names or known else stub
         if type_id := self._find_type(structure):
             hints = {"hints": {"aadl": names}} if names else {}
             return {"is": type_id, **self.build_overlay(structure, scope.only_around()), **hints}
         body = self.build_body(structure, scope)
-        body["hints"]["aadl"] = {**names, **body["hints"]["aadl"]}
+        if names:
+            body.setdefault("hints", {})["aadl"] = {**names, **body.get("hints", {}).get("aadl", {})}
         return body
 
     def build_overlay(self, structure: Structure, scope: Scope) -> Body:
         """Return what is written around an instance of its parts and threads."""
         if not scope.says_anything():
             return {}
-        body: Body = _read_own_words(scope)
+        body: Body = read_component_words(scope)
         for part in structure.parts.values():
             if part.structure:
                 inner = self.build_overlay(part.structure, scope.go_into(part.part, None))
@@ -97,14 +106,15 @@ class ComponentBuilder:
         thread = self._resolver.resolve(structure.thread.use) if structure.thread else None
         timing = map_timing(scope, path, self._notes)
         if structure.thread:
-            hints["threads"] = {structure.thread.written.name: keep_thread(scope, path, thread)}
+            if kept := keep_thread(scope, path, thread):
+                hints["threads"] = {structure.thread.written.name: kept}
             triggering = {port.id for port in structure.ports.ports if _is_triggered(structure, thread, port.id)}
         else:
             triggering = {p.id for p in structure.ports.ports if p.is_input and p.kind.startswith("event")}
         if resolved.category == "thread":
             thread = resolved
             hints |= keep_thread(scope, (), resolved)
-        add_trigger(timing, structure.ports, triggering)
+        add_trigger(timing, structure.ports, triggering, is_own=self._resolver.names.is_own)
         if thread and (role := find_role(thread)) and fits_role(role, structure.ports):
             body["role"] = role
         return {**body, "timing": timing} if timing else body
@@ -116,7 +126,8 @@ class ComponentBuilder:
             if consumer.part is None:
                 add_source(body["outputs"][consumer.port.id], reference)
             else:
-                add_source(reach_port(body["components"][consumer.part.id], "inputs", consumer.port.id), reference)
+                port_body = reach_port(body["components"][consumer.part.id], "inputs", consumer.port.id)
+                join_input(port_body, reference, producer.port, consumer.port)
         set_media(structure, body.get("components", {}), scope, self._notes)
 
 
@@ -125,6 +136,15 @@ def add_source(port_body: Body, reference: str) -> None:
     sources = port_body.setdefault("from", [])
     if reference not in sources:
         sources.append(reference)
+
+
+def join_input(port_body: Body, reference: str, producer: MappedPort, consumer: MappedPort) -> None:
+    """Add a source to an input; a type that its sources have as well need not be written."""
+    add_source(port_body, reference)
+    if producer.type_name != consumer.type_name:
+        port_body |= {"type": consumer.type_name} if consumer.type_name else {}
+    elif len(port_body["from"]) == 1:
+        port_body.pop("type", None)
 
 
 def reach_port(body: Body, section: str, port_id: str) -> Body:
@@ -201,20 +221,17 @@ def _is_triggered(structure: Structure, thread: Resolved | None, port_id: str) -
 
 
 def _keep_connection_names(structure: Structure, scope: Scope) -> Body:
-    names = {
-        connection.name: f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
-        for connection in {id(wire.connection): wire.connection for wire in structure.wires}.values()
-        if connection.name
-        and (
-            scope.find((connection.name.lower(),), "topic_properties::name")
-            or scope.find((connection.name.lower(),), "actual_connection_binding")
-        )
-    }
+    names = (
+        {}
+        if scope.resolver.names.is_own
+        else {
+            connection.name: f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
+            for connection in {id(wire.connection): wire.connection for wire in structure.wires}.values()
+            if connection.name
+            and (
+                scope.find((connection.name.lower(),), "topic_properties::name")
+                or scope.find((connection.name.lower(),), "actual_connection_binding")
+            )
+        }
+    )
     return {"connections": names} if names else {}
-
-
-def _read_own_words(scope: Scope) -> Body:
-    """Return what archgen's own properties say: title and description."""
-    title = read_text(scope.value((), "archgen::title"))
-    description = read_text(scope.value((), "archgen::description"))
-    return {**({"title": title} if title else {}), **({"description": description} if description else {})}

@@ -6,9 +6,10 @@ import re
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import AadlLink, AadlList, AadlName
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text, read_texts
+from archgen.importers.aadl.property_values import Scope, UsedProperties, read_size, read_text, read_texts
 from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, Resolved, Use
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
@@ -46,6 +47,8 @@ class DataTypes:
             return ""
         if use.known is None:
             return _name_unknown(use.name, kind)
+        if use.known.is_of_library and use.known.classifier.name.lower().startswith("untyped"):
+            return ""
         name = self._name_known(use.known, kind)
         values = [self.name_use(value) for value in use.bindings.values()]
         return f"{name}<{', '.join(values)}>" if values and all(values) else name
@@ -54,10 +57,17 @@ class DataTypes:
         """Take all data that are types of the model; return how many."""
         count = 0
         for known in self._resolver.names.known.values():
-            if known.classifier.category == "data" and not _is_library_data(known) and not self._is_shadowed(known):
+            if known.classifier.category == "data" and not (
+                _is_library_data(known) or self._is_shadowed(known) or self._is_part(known)
+            ):
                 count += 1
                 self._name_known(known, "msg")
         return count
+
+    def _is_part(self, known: KnownClassifier | None) -> bool:
+        """Whether an export of archgen's wrote data as the request or the answer of a call: the message says it."""
+        resolved = self._resolver.resolve(Use(known.full_name, known)) if known else None
+        return resolved is not None and bool(find_own_text(Scope(self._resolver, self._used, resolved), (), "part_of"))
 
     def _is_shadowed(self, known: KnownClassifier) -> bool:
         """Whether a type is told by its only implementation."""
@@ -71,35 +81,41 @@ class DataTypes:
         is_only = self._only_implementations.get(type_key) is known
         if key in self._names:
             return self._names[key]
-        resolved = self._resolver.resolve(Use(known.full_name, known))
-        body: dict[str, Any] = {}
-        message = _make_message(known.full_name, kind)
-        name = known.classifier.name.partition(".")[0]
+        resolved = self._resolver.resolve(Use(known.full_name, known)) or Resolved(known)
+        scope = Scope(self._resolver, self._used, resolved)
+        own_kind = find_own_text(scope, (), "flow_kind") or kind
+        own_message = find_own_text(scope, (), "message_name") or _make_message(known.full_name, own_kind)
+        name = find_own_text(scope, (), "id") or known.classifier.name.partition(".")[0]
         if known.classifier.is_implementation and not is_only:
             name = known.classifier.name.replace(".", " ")
         if name in self._taken_names:
             name = f"{name} ({known.package.name.replace('::', ' ')})"[:200]
         self._names[key] = name
-        if resolved is not None:
-            body = self._describe(resolved, kind)
-        if message:
-            if not body:
-                # The message says all that the model says.
-                self._names[key] = message
-                return message
-            body = {"message": message, **body}
+        body = self._describe(resolved, scope, kind)
+        if own_message and not body:
+            # The message says all that the model says.
+            self._names[key] = own_message
+            return own_message
+        message = own_message or _find_message(resolved, own_kind)
+        body = {**({"message": message} if message else {}), **body}
         self._taken_names.add(name)
         if known.package.name.lower() not in _BASE_PACKAGES:
-            body.setdefault("hints", {"aadl": {}})["aadl"] = {
-                "classifier": known.full_name,
-                **body.get("hints", {}).get("aadl", {}),
-            }
-            self.types[name] = body
+            self._add_type(known, name, body)
         return name
 
-    def _describe(self, resolved: Resolved, kind: str) -> dict[str, Any]:
-        scope = Scope(self._resolver, self._used, resolved)
+    def _add_type(self, known: KnownClassifier, name: str, body: dict[str, Any]) -> None:
+        if not self._resolver.names.is_own:
+            hints = body.get("hints", {}).get("aadl", {})
+            body = {**body, "hints": {"aadl": {"classifier": known.full_name, **hints}}}
+        self.types[name] = body
+
+    def _describe(self, resolved: Resolved, scope: Scope, kind: str) -> dict[str, Any]:
         body: dict[str, Any] = {}
+        for key, word in (("comment", "description"), ("status", "status"), ("version", "version")):
+            if text := find_own_text(scope, (), word):
+                body[key] = text
+        if size := read_size(scope.value((), "data_size", "source_data_size")):
+            body["size"] = size
         if prototypes := [use.name for use in resolved.prototypes.values() if use.category == UNBOUND]:
             body["generic"] = prototypes
         if kind == "srv":
@@ -118,7 +134,7 @@ class DataTypes:
     def _describe_call(self, resolved: Resolved) -> dict[str, Any]:
         parts: dict[str, dict[str, Any]] = {"request": {}, "response": {}}
         for port in resolved.ports.values():
-            if port.kind == "parameter":
+            if port.kind == "parameter" and not self._is_part(port.use.known):
                 name = self._name_field(port.use)
                 for word, part in (("in", "request"), ("out", "response")):
                     if word in port.direction.split() and name:
@@ -132,11 +148,21 @@ class DataTypes:
         words = [re.sub(r"\W", "_", text).upper() for text in read_texts(scope.value((), "data_model::enumerators"))]
         return list(dict.fromkeys(word for word in words if word and word[0].isalpha()))
 
-    def _read_fields(self, resolved: Resolved, scope: Scope) -> dict[str, str]:
-        fields: dict[str, str] = {}
-        for part in resolved.parts.values():
-            if part.category == "data" and (type_name := self._name_field(part.use)):
-                fields[_fold_field_name(part.written.name)] = type_name + _write_dimensions(part.written.dimensions)
+    def _read_fields(self, resolved: Resolved, scope: Scope) -> dict[str, Any]:
+        fields: dict[str, Any] = {}
+        for name, part in resolved.parts.items():
+            if part.category != "data":
+                continue
+            type_name = self._name_field(part.use) + _write_dimensions(part.written.dimensions)
+            own_words = {
+                key: text
+                for key, word in (("default", "default_value"), ("unit", "unit_name"), ("comment", "description"))
+                if (text := find_own_text(scope, (name,), word))
+            }
+            type_name = find_own_text(scope, (name,), "field_type") or type_name
+            field_name = find_own_text(scope, (name,), "id") or _fold_field_name(part.written.name)
+            if type_name:
+                fields[field_name] = {"type": type_name, **own_words} if own_words else type_name
         if not fields:
             names = read_texts(scope.value((), "data_model::element_names"))
             base = scope.value((), "data_model::base_type")
@@ -165,11 +191,19 @@ class DataTypes:
 
 def _is_library_data(known: KnownClassifier) -> bool:
     name = known.classifier.name.lower().partition(".")[0]
-    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS
+    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or known.is_of_library
 
 
 def _name_unknown(name: str, kind: str) -> str:
     return _make_message(name, kind) or name.rpartition("::")[2].partition(".")[0]
+
+
+def _find_message(resolved: Resolved, kind: str) -> str:
+    """Return the message of ROS that a type is made from, or nothing."""
+    entries = (resolved.known, *resolved.ancestors)
+    # What is in none of the files is told by its name.
+    names = [*(entry.full_name for entry in entries[1:]), *(entry.classifier.extends for entry in entries)]
+    return next((found for name in names if (found := _make_message(name, kind))), "")
 
 
 def _make_message(full_name: str, kind: str) -> str:

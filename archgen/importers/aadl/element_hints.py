@@ -6,7 +6,6 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Connection, Path, Property
-from archgen.importers.aadl.classifier_names import KnownClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_text, read_texts, read_time_range
 from archgen.importers.aadl.resolved_classifiers import Part, Resolved
@@ -25,7 +24,8 @@ def keep_sources(scope: Scope, path: Path) -> dict[str, Any]:
 
 def keep_thread(scope: Scope, path: Path, thread: Resolved | None) -> dict[str, Any]:
     """Return the hints of a thread: what it is made from, its functions with header and entry."""
-    hints: dict[str, Any] = {"classifier": thread.known.full_name} if thread else {}
+    is_own = scope.resolver.names.is_own
+    hints: dict[str, Any] = {"classifier": thread.known.full_name} if thread and not is_own else {}
     functions: dict[str, dict[str, Any]] = {}
     for name, part in thread.parts.items() if thread else ():
         if part.category == "subprogram" and (sources := keep_sources(scope, (*path, name))):
@@ -44,13 +44,21 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
     hints: dict[str, Any] = {}
     if resolved.annexes:
         hints["annexes"] = list(resolved.annexes)
-    library_ports = {name for name, port in resolved.ports.items() if _is_of_library(port.owner)}
-    if accesses := {key: dict(value) for key, value in structure.ports.accesses.items() if key not in library_ports}:
-        hints["access"] = accesses
+    library_ports = {name for name, port in resolved.ports.items() if port.owner.is_of_library}
+    used_ports = {
+        end[0].lower() for connection in structure.access_connections.values() for end in _list_own_ends(connection)
+    }
+    kept_ports = {
+        key: dict(value)
+        for key, value in structure.ports.accesses.items()
+        if key not in library_ports or (key in used_ports and not resolved.known.is_of_library)
+    }
+    if kept_ports and not (scope.resolver.names.is_own and resolved.category != "process"):
+        hints["access"] = kept_ports
     library_names = {
         connection.name
         for known in resolved.ancestors
-        if _is_of_library(known)
+        if known.is_of_library
         for connection in known.classifier.connections
     }
     joined = {
@@ -60,10 +68,10 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
             "kind": connection.kind,
         }
         for connection in structure.access_connections.values()
-        if connection.kind != "parameter"
-        and connection.name not in library_names
-        and not _is_of_library(resolved.known)
+        if connection.kind != "parameter" and connection.name not in library_names and not resolved.known.is_of_library
     }
+    if scope.resolver.names.is_own:
+        return hints | _keep_data(structure, scope, notes)
     if joined:
         hints["access_connections"] = joined
     if flows := _keep_flows(structure, scope):
@@ -71,9 +79,9 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
     return hints | _keep_data(structure, scope, notes)
 
 
-def _is_of_library(known: KnownClassifier) -> bool:
-    """Whether a classifier is of the paper's libraries: its name says what it has."""
-    return known.package.name.lower() in {"cnc", "ros"}
+def _list_own_ends(connection: Connection) -> list[Path]:
+    """Return the ends of a connection that are features of what it stands in."""
+    return [end for end in (connection.source, connection.target) if len(end) == 1]
 
 
 def _name_connection(connection: Connection) -> str:
@@ -99,14 +107,15 @@ def _keep_data(structure: Structure, scope: Scope, notes: NoteList) -> dict[str,
     for name, part in structure.resolved.parts.items():
         classifier = part.use.full_name
         if part.category == "data" and is_internal_state(part):
-            state = (
+            state: dict[str, Any] = (
                 {} if classifier.lower() in {"cnc::internal_state", "internal_state"} else {"classifier": classifier}
             )
             association = scope.find((name,), "source_text")
             if association and (texts := read_texts(association.value)):
                 state = {"schema": texts[0], **state}
                 check_schema_file(texts[0], association, notes)
-            hints["internal_state"] = state
+            if state:
+                hints["internal_state"] = state
         elif part.category in {"data", "memory"}:
             key = "data" if part.category == "data" else "memories"
             sources = keep_sources(scope, (name,))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.importers.aadl.aadl_tree import AadlNumber, AadlRange, AadlRecord, AadlValue, Path
+from archgen.importers.aadl.archgen_words import find_own_count, find_own_text
 from archgen.importers.aadl.bus_names import name_bus_medium
 from archgen.importers.aadl.component_bodies import Body
 from archgen.importers.aadl.element_hints import keep_sources
@@ -14,7 +15,6 @@ from archgen.importers.aadl.property_values import (
     Scope,
     read_bandwidth,
     read_references,
-    read_text,
     read_time_range,
     read_word,
     write_number,
@@ -25,6 +25,8 @@ from archgen.importers.aadl.structures import Structure
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.port_media import MEDIUM_NAMES
 
+_LIBRARY_BUSES = frozenset({"ros::topics", "ros::services"})
+"""The buses of the library to which all topics and services are bound."""
 _BUSES = frozenset({"bus", "virtual bus"})
 _SCHEDULING = {
     "edf": "edf",
@@ -47,6 +49,7 @@ class HardwareMapper:
     def __init__(self, resolver: ClassifierResolver, notes: NoteList) -> None:
         """Look up by `resolver`."""
         self.hosts: dict[str, Body] = {}
+        self.containers: dict[str, Body] = {}
         self.links: dict[str, Body] = {}
         self._resolver, self._notes = resolver, notes
 
@@ -58,8 +61,15 @@ class HardwareMapper:
         host_ids: dict[Path, str] = {}
         for path, hardware in tree.parts.items():
             category = hardware.part.category
+            if find_own_text(hardware.scope, (), "container"):
+                continue
             if category == "processor" or (category == "virtual processor" and path not in tree.bindings):
                 host_ids[path] = self._add_host(path, hardware)
+        for path, hardware in tree.parts.items():
+            if container := find_own_text(hardware.scope, (), "container"):
+                self._add_container(container, hardware, host_ids.get(tree.bindings.get(path, ()), ""))
+                system.containers[path] = container
+        self._bind_containers(tree, system)
         hosts = {path: host for path in system.instances if (host := self._find_host(tree, path, host_ids, system))}
         for path, hardware in tree.parts.items():
             if hardware.part.category in _BUSES:
@@ -67,26 +77,46 @@ class HardwareMapper:
                 names = [name for _, name in tree.bound_connections.get(path, [])]
                 if len(ends) > 1:
                     self._add_link(hardware, ends, names)
-                else:
+                elif hardware.part.use.full_name.lower() not in _LIBRARY_BUSES:
                     # A link is between two; what joins less is kept as a hint of the group.
                     system.lone_buses[hardware.part.written.name] = _keep_bus(hardware, names)
         return hosts
 
+    def _add_container(self, container: str, hardware: HardwarePart, host: str) -> None:
+        body: Body = {"host": host} if host else {}
+        for key in ("title", "scheduling"):
+            if text := find_own_text(hardware.scope, (), key):
+                body[key] = text
+        threads = find_own_count(hardware.scope, (), "threads")
+        self.containers[container] = body if threads is None else {**body, "threads": threads}
+
+    @staticmethod
+    def _bind_containers(tree: HardwareTree, system: LaunchedSystem) -> None:
+        """Remember which programs run in containers: these say on which host."""
+        for path in system.instances:
+            if container := system.containers.get(tree.bindings.get(path, ())):
+                system.contained[path] = container
+
     def _add_host(self, path: Path, hardware: HardwarePart) -> str:
         name = hardware.part.written.name
-        wanted = make_id(name, "host")
+        own_id = find_own_text(hardware.scope, (), "id")
+        wanted = make_id(own_id or name, "host")
         host_id = make_unique_id(
             wanted if wanted not in self.hosts else make_id("_".join(path), "host"), self.hosts.keys()
         )
-        hints: Body = {"name": name} if name != host_id else {}
-        if hardware.part.use.name:
+        hints: Body = {"name": name} if name != host_id and not own_id else {}
+        if hardware.part.use.name and not self._resolver.names.is_own:
             hints["classifier"] = hardware.part.use.full_name
         if hardware.part.category != "processor":
             hints["category"] = hardware.part.category
         hints |= keep_sources(hardware.scope, ())
         body: Body = {}
-        if title := read_text(hardware.scope.value((), "archgen::title")):
-            body["title"] = title
+        for key in ("title", "description", "scheduling"):
+            if text := find_own_text(hardware.scope, (), key):
+                body[key] = text
+        cores = find_own_count(hardware.scope, (), "cores")
+        if cores is not None:
+            body["cores"] = cores
         protocol = hardware.scope.find((), "scheduling_protocol")
         word = read_word(hardware.scope.value((), "scheduling_protocol"))
         if word in _SCHEDULING:
@@ -116,15 +146,18 @@ class HardwareMapper:
 
     def _add_link(self, hardware: HardwarePart, ends: list[str], connection_names: list[str]) -> None:
         part, scope = hardware.part, hardware.scope
-        link_id = make_unique_id(make_id(part.written.name, "link"), self.links.keys())
+        own_id = find_own_text(scope, (), "id")
+        link_id = make_unique_id(make_id(own_id or part.written.name, "link"), self.links.keys())
         body: Body = {"connects": ends} if ends else {}
-        if title := read_text(scope.value((), "archgen::title")):
+        if title := find_own_text(scope, (), "title"):
             body["title"] = title
-        medium = name_bus_medium(part)
-        body |= {"protocol": medium} if medium in MEDIUM_NAMES else {}
+        medium = find_own_text(scope, (), "protocol") or name_bus_medium(part)
+        is_known = medium in MEDIUM_NAMES and not self._resolver.names.is_own
+        body |= {"protocol": medium} if is_known or find_own_text(scope, (), "protocol") else {}
         body |= _read_speed(scope)
-        names: Body = {"name": part.written.name} if part.written.name != link_id else {}
-        hints = {**names, **_keep_bus(hardware, connection_names)}
+        hints = {} if self._resolver.names.is_own else _keep_bus(hardware, connection_names)
+        if part.written.name != link_id and not own_id:
+            hints = {"name": part.written.name, **hints}
         self.links[link_id] = {**body, "hints": {"aadl": hints}} if hints else body
 
 
@@ -184,11 +217,11 @@ def _read_speed(scope: Scope) -> Body:
     lowest, highest = read_time_range(scope.value((), "latency"))
     if highest:
         body["latency"] = {"best": lowest or highest, "worst": highest}
-    bandwidth = read_bandwidth(
-        scope.value((), "archgen::bandwidth", "sei::bandwidthcapacity", "bus_properties::bandwidth")
+    bandwidth = find_own_text(scope, (), "bandwidth") or read_bandwidth(
+        scope.value((), "sei::bandwidthcapacity", "bus_properties::bandwidth")
     )
     transmission = scope.value((), "transmission_time")
-    if bandwidth is None and isinstance(transmission, AadlRecord):
+    if not bandwidth and isinstance(transmission, AadlRecord):
         slowest = next((value for name, value in transmission.fields.items() if name.lower() == "perbyte"), None)
         bandwidth = _read_byte_time(slowest)
     return {**body, "bandwidth": bandwidth} if bandwidth else body

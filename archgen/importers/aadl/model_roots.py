@@ -62,7 +62,7 @@ class ModelRoots:
         for root in self.roots:
             self._count_uses(root)
         for known in known_classifiers:
-            if known.classifier.category in _TYPE_CATEGORIES:
+            if known.classifier.category in _TYPE_CATEGORIES and not known.is_of_library:
                 self._add_unused(known, implemented, extended_keys)
         for structure in list(self._used_structures.values()):
             self._name_type(structure)

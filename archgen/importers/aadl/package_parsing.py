@@ -11,6 +11,9 @@ from archgen.importers.aadl.feature_parsing import CATEGORIES, accept_one_of
 from archgen.importers.aadl.property_parsing import parse_definition, parse_property
 from archgen.importers.aadl.token_cursor import AadlSyntaxError, SyntaxFault, TokenCursor
 
+_MAX_NAME_TOKENS = 50
+"""No name of a package is longer."""
+
 
 @dataclass(slots=True)
 class ParsedText:
@@ -96,7 +99,7 @@ def _parse_package(cursor: TokenCursor, parsed: ParsedText) -> None:
 def _is_package_end(cursor: TokenCursor, package: Package) -> bool:
     """Whether the `end` that stands here is the package's: by its name, or by what comes behind it."""
     distance, name = 1, cursor.peek().word
-    while cursor.peek(distance + 1).text in {"::", "."}:
+    while distance < _MAX_NAME_TOKENS and cursor.peek(distance + 1).text in {"::", "."}:
         name += cursor.peek(distance + 1).text + cursor.peek(distance + 2).word
         distance += 2
     following = cursor.peek(distance + 2)

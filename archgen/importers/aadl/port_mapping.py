@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.archgen_words import find_own_text, is_marked, read_port_words
 from archgen.importers.aadl.data_types import DataTypes
 from archgen.importers.aadl.import_notes import NoteList
+from archgen.importers.aadl.property_values import Scope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Port, Resolved
 from archgen.model.element_ids import make_id, make_unique_id
 
@@ -35,8 +37,11 @@ class MappedPort:
 class MappedPorts:
     """The ports of a classifier, and the accesses that are kept as hints."""
 
+    scope: Scope
     ports: list[MappedPort] = field(default_factory=list)
     accesses: dict[str, dict[str, str]] = field(default_factory=dict)
+    internal: list[Port] = field(default_factory=list)
+    """What a node has that is no port of a component."""
     by_path: dict[Path, list[MappedPort]] = field(default_factory=dict)
     groups: dict[Path, list[MappedPort]] = field(default_factory=dict)
     """All ports in a feature group, by the group's path."""
@@ -46,24 +51,32 @@ class MappedPorts:
         section: dict[str, dict[str, Any]] = {}
         for port in self.ports:
             if port.is_input == is_input:
-                hints = {"name": port.written_name} if port.written_name != port.id else {}
-                body = {"type": port.type_name} if port.type_name else {}
-                section[port.id] = {**body, "hints": {"aadl": hints}} if hints else body
+                own_id = find_own_text(self.scope, port.path, "id")
+                hints = {"name": port.written_name} if port.written_name != port.id and not own_id else {}
+                body: dict[str, Any] = {"type": port.type_name} if port.type_name else {}
+                body |= read_port_words(self.scope, port.path)
+                if section.get(port.id, body).get("type") != body.get("type"):
+                    # One input of several types: its sources tell them.
+                    body.pop("type", None)
+                    section[port.id].pop("type", None)
+                section[port.id] = section.get(port.id, {}) | body
+                if hints:
+                    section[port.id]["hints"] = {"aadl": hints}
         return section
 
 
 class PortMapper:
     """Maps the features of classifiers, each classifier once."""
 
-    def __init__(self, resolver: ClassifierResolver, types: DataTypes, notes: NoteList) -> None:
+    def __init__(self, resolver: ClassifierResolver, types: DataTypes, used: UsedProperties, notes: NoteList) -> None:
         """Name types by `types`."""
-        self._resolver, self._types, self._notes = resolver, types, notes
+        self._resolver, self._types, self._used, self._notes = resolver, types, used, notes
         self._mapped: dict[int, MappedPorts] = {}
 
     def map_ports(self, resolved: Resolved) -> MappedPorts:
         """Return the ports of a classifier."""
         if id(resolved) not in self._mapped:
-            mapped = MappedPorts()
+            mapped = MappedPorts(Scope(self._resolver, self._used, resolved))
             used: tuple[set[str], set[str]] = (set(), set())
             for port in resolved.ports.values():
                 self._add_port(mapped, port, (), used, is_inverse=False)
@@ -89,12 +102,16 @@ class PortMapper:
             self._notes.add_counted(port.kind, words, written.span)
             return []
         is_call = port.kind == "subprogram access"
+        if is_marked(mapped.scope, path, "is_internal"):
+            mapped.internal.append(port)
+            return []
         directions = port.direction.split()
         added = []
         for word in [_OPPOSITE[word] for word in directions] if is_inverse else directions:
             is_input = word in {"in", "requires"}
-            wanted = make_id("_".join((*prefix, written.name)), "port")
-            port_id = make_unique_id(wanted, used[is_input])
+            own_id = find_own_text(mapped.scope, path, "id")
+            # Features with one id of archgen's are one input, which reads several types.
+            port_id = own_id or make_unique_id(make_id("_".join((*prefix, written.name)), "port"), used[is_input])
             used[is_input].add(port_id)
             type_name = self._types.name_use(port.use, "srv" if is_call else "msg")
             added.append(

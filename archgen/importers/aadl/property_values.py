@@ -209,6 +209,14 @@ def read_time_range(value: AadlValue | None) -> tuple[str | None, str | None]:
     return single, single
 
 
+def read_size(value: AadlValue | None) -> str | None:
+    """Return a size of data as the language writes it, or None."""
+    units = {"bytes": "B", "kbyte": "kB", "mbyte": "MB", "gbyte": "GB"}
+    if not isinstance(value, AadlNumber) or value.value < 0 or value.unit.lower() not in units:
+        return None
+    return write_number(value.value, units[value.unit.lower()])
+
+
 def read_bandwidth(value: AadlValue | None) -> str | None:
     """Return data a second as the language writes it, or None."""
     if not isinstance(value, AadlNumber) or value.value <= 0:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from archgen.importers.aadl.aadl_tree import Path
-from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, add_source, reach_port, set_media
+from archgen.importers.aadl.archgen_words import find_own_text, read_component_words
+from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, join_input, reach_port, set_media
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.port_mapping import MappedPort
-from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text
+from archgen.importers.aadl.property_values import Scope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.structures import End, Structure, StructuredPart
 from archgen.model.element_ids import make_id, make_unique_id
@@ -53,6 +54,10 @@ class LaunchedSystem:
     topics: dict[PortPlace, list[str]] = field(default_factory=dict)
     senders: dict[PortPlace, list[PortPlace]] = field(default_factory=dict)
     """Who sends what an input reads, by connections that name a topic."""
+    containers: dict[Path, str] = field(default_factory=dict)
+    """Virtual processors that are containers, by id."""
+    contained: dict[Path, str] = field(default_factory=dict)
+    """In which container a program runs."""
     lone_buses: dict[str, Body] = field(default_factory=dict)
     """What is kept of buses that join fewer than two."""
     groups: dict[str, str] = field(default_factory=dict)
@@ -92,7 +97,7 @@ class GroupBuilder:
                 system.frames.append(frame)
         if loose := [part for part in parts if part not in grouped]:
             name = root.resolved.known.classifier.name.partition(".")[0]
-            wanted = read_text(scope.value((), "archgen::id")) or make_id(name, "group")
+            wanted = make_id(find_own_text(scope, (), "id") or name, "group")
             frame = Frame(self._open_group(wanted, root.resolved.known.classifier.name, root, scope), root, scope, ())
             self._add_components(frame, loose)
             system.frames.append(frame)
@@ -113,14 +118,16 @@ class GroupBuilder:
 
     def _open_group(self, wanted_id: str, name: str, structure: Structure, scope: Scope) -> str:
         group_id = make_unique_id(wanted_id, self.groups.keys())
-        names = {"name": name} if name != group_id else {}
-        hints = {**names, "classifier": structure.resolved.known.full_name}
+        hints: Body = {}
+        if not self._resolver.names.is_own:
+            hints = {"name": name} if name != group_id else {}
+            hints["classifier"] = structure.resolved.known.full_name
         own_scope = Scope(self._resolver, self._used, structure.resolved)
         hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
-        title, description = (read_text(scope.value((), f"archgen::{key}")) for key in ("title", "description"))
-        body: Body = {"title": title} if title else {}
-        body |= {"description": description} if description else {}
-        self.groups[group_id] = {**body, "hints": {"aadl": hints}, "components": {}}
+        kept = {"hints": {"aadl": hints}} if hints else {}
+        # What archgen says of the launch as a whole is the project's.
+        words = read_component_words(scope) if scope.layers else {}
+        self.groups[group_id] = {**words, **kept, "components": {}}
         return group_id
 
     def _add_components(self, frame: Frame, parts: list[StructuredPart]) -> None:
@@ -137,7 +144,8 @@ class GroupBuilder:
             to_here = consumer.part is not None and consumer.part.id in frame.bodies
             if from_here and to_here and producer.part and consumer.part:
                 reference = f"{frame.group_id}.{producer.part.id}.{producer.port.id}"
-                add_source(reach_port(frame.bodies[consumer.part.id], "inputs", consumer.port.id), reference)
+                body = reach_port(frame.bodies[consumer.part.id], "inputs", consumer.port.id)
+                join_input(body, reference, producer.port, consumer.port)
             elif is_root and to_here and producer.part is None and consumer.part:
                 body = reach_port(frame.bodies[consumer.part.id], "inputs", consumer.port.id)
                 body["external"] = producer.port.written_name
@@ -154,7 +162,7 @@ class GroupBuilder:
             bodies = _list_bodies(wire.consumer, frames, root_frame, is_input=True)
             for body in bodies:
                 for reference in references:
-                    add_source(body, reference)
+                    join_input(body, reference, wire.producer.port, wire.consumer.port)
                 if wire.producer.part is None:
                     body["external"] = wire.producer.port.written_name
             if wire.consumer.part is None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import AadlText, Connection, Path
+from archgen.importers.aadl.aadl_tree import Connection, Path
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
+from archgen.importers.aadl.property_values import Scope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
 from archgen.model.element_ids import make_id, make_unique_id
 
@@ -82,9 +84,9 @@ class Structure:
 class StructureFinder:
     """Finds how classifiers are built, each once."""
 
-    def __init__(self, resolver: ClassifierResolver, mapper: PortMapper, notes: NoteList) -> None:
+    def __init__(self, resolver: ClassifierResolver, mapper: PortMapper, used: UsedProperties, notes: NoteList) -> None:
         """Look up by `resolver`, map ports by `mapper`."""
-        self._resolver, self._mapper, self._notes = resolver, mapper, notes
+        self._resolver, self._mapper, self._used, self._notes = resolver, mapper, used, notes
         self._found: dict[int, Structure] = {}
         self._open: list[Resolved] = []
 
@@ -98,7 +100,12 @@ class StructureFinder:
 
     def _build(self, resolved: Resolved) -> Structure:
         found = Structure(resolved, self._mapper.map_ports(resolved))
-        parts = [part for part in resolved.parts.values() if part.category in COMPONENT_CATEGORIES]
+        # What each node has from the library, such as its main thread, is no behaviour of its own.
+        parts = [
+            part
+            for part in resolved.parts.values()
+            if part.category in COMPONENT_CATEGORIES and not part.owner.is_of_library
+        ]
         if resolved.category == "process" and len(parts) == 1 and parts[0].category == "thread":
             found.thread = parts[0]
             self._join_thread(found, parts[0])
@@ -127,9 +134,14 @@ class StructureFinder:
             self._notes.add_counted(
                 "array of subcomponents", "an array of subcomponents is taken as one", part.written.span, fate="noted"
             )
-        part_id = make_unique_id(make_id(_read_own_id(around, part) or part.written.name, "part"), used_ids)
+        part_id = make_unique_id(make_id(self._read_own_id(around, part) or part.written.name, "part"), used_ids)
         used_ids.add(part_id)
         return StructuredPart(part_id, part, structure)
+
+    def _read_own_id(self, around: Resolved, part: Part) -> str:
+        """Return the id that an export of archgen's wrote at a part, or nothing."""
+        scope = Scope(self._resolver, self._used, around)
+        return find_own_text(scope, (part.written.name.lower(),), "id")
 
     def _join_thread(self, found: Structure, thread: Part) -> None:
         """Find which port of the thread stands behind which of the process."""
@@ -175,14 +187,6 @@ class StructureFinder:
         if ".".join(port_path) in ports.accesses:
             return None
         return [((), End(part, port)) for port in ports.by_path.get(port_path, ())]
-
-
-def _read_own_id(around: Resolved, part: Part) -> str:
-    """Return the id that an export of archgen's wrote at a part, or nothing."""
-    found = around.properties.get(((part.written.name.lower(),), "archgen::id"))
-    associations = [association for association in part.written.properties if association.name.lower() == "archgen::id"]
-    values = [found[0].value] if found else [association.value for association in associations]
-    return next((value.text for value in values if isinstance(value, AadlText)), "")
 
 
 def _join_ends(

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.archgen_words import find_own_text, read_node_words
 from archgen.importers.aadl.component_bodies import Body, map_node_ports, name_use_section
 from archgen.importers.aadl.element_hints import keep_sources
 from archgen.importers.aadl.model_roots import ModelRoots
+from archgen.importers.aadl.port_mapping import MappedPort
 from archgen.importers.aadl.property_values import Scope, read_text
 from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, drill
 from archgen.importers.aadl.structures import End, Structure, StructuredPart
@@ -83,9 +85,11 @@ class NodeWriter:
             if not instance.structure.is_node:
                 continue
             body = self._describe_node(system, instance, fed)
-            if host := hosts.get(instance.path):
+            if container := system.contained.get(instance.path):
+                body["container"] = container
+            elif host := hosts.get(instance.path):
                 body["host"] = host
-            wanted = read_text(instance.scope.value((), "archgen::node")) or instance.ids[-1]
+            wanted = find_own_text(instance.scope, (), "node") or instance.ids[-1]
             if wanted in self.nodes:
                 wanted = "_".join(instance.ids)
             node_id = make_unique_id(make_id(wanted, "node"), self.nodes.keys())
@@ -94,37 +98,45 @@ class NodeWriter:
     def _describe_node(self, system: LaunchedSystem, instance: Instance, fed: set[PortPlace]) -> Body:
         scope = instance.scope
         default_uses = map_node_ports(instance.structure, scope, is_type=False)
-        written_uses = (
-            map_node_ports(instance.structure, scope.only_around(), is_type=False)
-            if instance.is_of_type
-            else default_uses
-        )
+        written_uses = default_uses
+        if instance.is_of_type:
+            written_uses = map_node_ports(instance.structure, scope.only_around(), is_type=False)
         body: Body = {}
         for port in instance.structure.ports.ports:
             section = name_use_section(is_input=port.is_input, is_call=port.is_call)
             use = dict(written_uses.get(section, {}).get(port.id, {}))
-            default_name = default_uses.get(section, {}).get(port.id, {}).get("own_name")
-            key = "name" if port.is_call else "topic"
             use.pop("own_name", None)
-            place = (instance.path, port.is_input, port.id)
-            topics = system.topics.get(place, [])
-            if place in fed:
-                # A reader's topic is its producer's, unless that has several.
-                senders = system.senders.get(place, [])
-                if not any(len(system.topics.get(sender, [])) > 1 for sender in senders):
-                    topics = []
-            if topics:
-                use[key] = topics[0] if len(topics) == 1 or port.is_call else topics
-                if default_name and topics != [default_name] and len(topics) == 1:
-                    use["own_name"] = default_name
-            elif default_name and place in fed:
-                use["own_name"] = default_name
-            elif default_name:
-                use[key] = default_name
+            default_name = default_uses.get(section, {}).get(port.id, {}).get("own_name", "")
+            use |= _name_topic(
+                system, instance, port, default_name, is_fed=(instance.path, port.is_input, port.id) in fed
+            )
             if use:
                 body.setdefault(section, {})[port.id] = use
+        body |= read_node_words(scope)
         around = keep_sources(scope.only_around(), ())
         return {**body, "hints": {"aadl": around}} if around else body
+
+
+def _name_topic(
+    system: LaunchedSystem, instance: Instance, port: MappedPort, default_name: str, *, is_fed: bool
+) -> Body:
+    """Return the topic or name of a port, and what the program itself calls it."""
+    key = "name" if port.is_call else "topic"
+    place = (instance.path, port.is_input, port.id)
+    topics = system.topics.get(place, [])
+    has_choice = any(len(system.topics.get(sender, [])) > 1 for sender in system.senders.get(place, []))
+    # A reader's topic is its producer's, unless that has several.
+    if is_fed and not has_choice:
+        return {"own_name": default_name} if default_name and default_name not in topics else {}
+    if not topics and not default_name:
+        return {}
+    use: Body = {key: topics if len(topics) > 1 and not port.is_call else (topics or [default_name])[0]}
+    if default_name and len(topics) == 1 and topics != [default_name]:
+        use["own_name"] = default_name
+    if use[key] == "/" + "/".join((*instance.ids, port.id)):
+        # It is so where nothing is written.
+        del use[key]
+    return use
 
 
 def _find_fed_ports(system: LaunchedSystem) -> set[PortPlace]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPorts
 from archgen.importers.aadl.property_values import Scope, read_count, read_duration, read_time_range, read_word
@@ -43,7 +44,10 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
         words = f"a thread that is dispatched as `{protocol or 'this'}` has no behaviour here"
         notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
     period = read_duration(scope.inherited_value(path, "period"))
-    if period and protocol in {"periodic", ""}:
+    rate = find_own_text(scope, path, "rate")
+    if rate:
+        timing["rate"] = rate
+    elif period and protocol in {"periodic", ""}:
         timing["period"] = period
     elif period:
         found = next(filter(None, (scope.find(path[:size], "period") for size in range(len(path), -1, -1))), None)
@@ -55,27 +59,29 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
             timing[key] = text
     lowest, highest = read_time_range(scope.value(path, "compute_execution_time"))
     timing |= {"wcet": highest} if highest else {}
-    timing |= {"bcet": lowest} if lowest and lowest != highest else {}
+    # From 0 on says no more than up to.
+    timing |= {"bcet": lowest} if lowest and lowest != highest and not lowest.startswith("0 ") else {}
     priority = read_count(scope.inherited_value(path, "priority"))
     return timing if priority is None else {**timing, "priority": priority}
 
 
-def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str]) -> None:
-    """Say what fires a thread that an event fires, where not all of its inputs do."""
-    if timing.get("behaviour") != "event":
+def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str], *, is_own: bool) -> None:
+    """Say what fires a thread that an event fires, where not all of its inputs do; `is_own`: archgen wrote the model."""
+    if timing.get("behaviour") != "event" and not (is_own and "behaviour" not in timing and triggering_ids):
         return
-    inputs = [port for port in ports.ports if port.is_input and not port.is_call]
+    inputs = list(dict.fromkeys(port.id for port in ports.ports if port.is_input and not port.is_call))
     if not triggering_ids and any(port.is_call and not port.is_input for port in ports.ports):
         timing["behaviour"] = "on_demand"
     elif triggering_ids and len(triggering_ids) < len(inputs):
-        timing["trigger"] = [port.id for port in inputs if port.id in triggering_ids]
+        timing["trigger"] = [port_id for port_id in inputs if port_id in triggering_ids]
 
 
-def add_port_hints(body: dict[str, Any], ports: MappedPorts, timing: dict[str, Any]) -> None:
+def add_port_hints(body: dict[str, Any], ports: MappedPorts, timing: dict[str, Any], *, is_own: bool) -> None:
     """Keep the kind of each port where it is not the usual one (docs/aadl.md, Hints)."""
     behaviour, trigger = timing.get("behaviour"), timing.get("trigger")
     for port in ports.ports:
-        if port.is_call:
+        # Of a model that archgen wrote, what triggers tells the kinds of inputs.
+        if port.is_call or (is_own and port.is_input and port.kind != "event port"):
             continue
         triggers = behaviour is None or (behaviour == "event" and (trigger is None or port.id in trigger))
         usual = "event data port" if port.is_input and triggers else "data port"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import islice
@@ -128,7 +129,7 @@ class TokenCursor:
         self.source = source
         self.faults: list[SyntaxFault] = []
         self._tokens = scan_tokens(source.text)
-        self._ahead: list[Token] = []
+        self._ahead: deque[Token] = deque()
         self._depth = 0
         self.last_end = 0
         self.token = next(self._tokens)
@@ -144,7 +145,7 @@ class TokenCursor:
         """Go on by a token, and return the one that was left."""
         token = self.token
         self.last_end = token.offset + len(token.text)
-        self.token = self._ahead.pop(0) if self._ahead else next(self._tokens)
+        self.token = self._ahead.popleft() if self._ahead else next(self._tokens)
         return token
 
     def at(self, *words: str) -> bool:

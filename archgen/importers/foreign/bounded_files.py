@@ -36,7 +36,7 @@ def read_bounded(path: Path, max_bytes: int = MAX_MODEL_BYTES) -> bytes:
             words = "it is a folder, or no plain file" if path.exists() else "there is no such file"
             raise ForeignFileError(words, Span.of_file(str(path)), "name the file of the model")
         with path.open("rb") as stream:
-            return _read_part(str(path), stream, max_bytes)
+            return _read_part(str(path), stream, max_bytes, max_bytes)
     except OSError as error:
         words = f"it cannot be read ({error.strerror})"
         raise ForeignFileError(words, Span.of_file(str(path)), "look at its rights") from None
@@ -53,7 +53,7 @@ def read_archive_members(path: Path, endings: tuple[str, ...]) -> Iterator[tuple
             for member in archive.infolist():
                 if member.filename.lower().endswith(endings):
                     with archive.open(member) as stream:
-                        data = _read_part(f"{path} [{member.filename}]", stream, bytes_left)
+                        data = _read_part(f"{path} [{member.filename}]", stream, bytes_left, MAX_MODEL_BYTES)
                     bytes_left -= len(data)
                     yield member.filename, data
     except ARCHIVE_DAMAGE as error:
@@ -64,10 +64,10 @@ def read_archive_members(path: Path, endings: tuple[str, ...]) -> Iterator[tuple
         raise ForeignFileError(words, Span.of_file(str(path)), "look at its rights") from None
 
 
-def _read_part(name: str, stream: IO[bytes], max_bytes: int) -> bytes:
+def _read_part(name: str, stream: IO[bytes], max_bytes: int, told_bytes: int) -> bytes:
     # One byte more than allowed: what a zip file says of its sizes may be a lie.
     data = stream.read(max_bytes + 1)
     if len(data) > max_bytes:
-        words = f"it is larger than {MAX_MODEL_BYTES // 1_000_000} MB"
+        words = f"it is larger than {told_bytes // 1_000_000} MB"
         raise ForeignFileError(words, Span.of_file(name), "export the model in parts")
     return data

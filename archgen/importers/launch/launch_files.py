@@ -33,7 +33,7 @@ class LaunchFiles:
     def __init__(self, paths: Sequence[Path]) -> None:
         self.roots = list(dict.fromkeys(_find_root(path) for path in paths))
         self._packages: dict[str, Path] | None = None
-        self._folders = 0
+        self._walked: dict[Path, list[tuple[Path, list[str]]]] = {}
 
     def list_launch_files(self) -> list[Path]:
         """Return the launch files of all packages and folders, by path."""
@@ -105,7 +105,10 @@ class LaunchFiles:
         return self._packages.get(name)
 
     def _walk(self, root: Path) -> list[tuple[Path, list[str]]]:
+        if root in self._walked:
+            return self._walked[root]
         found: list[tuple[Path, list[str]]] = []
+        self._walked[root] = found
         for folder, folders, names in os.walk(root):
             path = Path(folder)
             folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in _SKIPPED)

@@ -89,9 +89,13 @@ def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
         kept[node.full_name] = winner
         is_same = (winner.package, winner.executable, winner.plugin) == (loser.package, loser.executable, loser.plugin)
         if not is_same or winner.form != loser.form:
-            words = f" (only {' and '.join(dict.fromkeys(loser.conditions))})" if loser.conditions else ""
-            message = f"another action starts `{loser.full_name}`, too: this one{words} is left out"
-            run.add_note(loser.word, message, loser.span)
+            conditions = list(dict.fromkeys(loser.conditions))
+            words = f" (only {' and '.join(conditions)})" if conditions else ""
+            message = f"another action starts `{loser.full_name}`, too: this one{words} is kept as a hint"
+            run.add_note(loser.word, message, loser.span, fate="noted")
+            way = {key: getattr(loser, key) for key in ("package", "executable", "plugin")}
+            way |= {"container": loser.container_name, "conditions": conditions}
+            winner.other_ways += [{key: value for key, value in way.items() if value}, *loser.other_ways]
     for node in nodes:
         # What a container that is left out would load is loaded by the one of its name.
         if node.container is not None:

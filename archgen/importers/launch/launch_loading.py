@@ -5,14 +5,13 @@ from __future__ import annotations
 import posixpath
 from pathlib import Path
 
-from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_entities import read_xml_entities, read_yaml_entities
 from archgen.importers.launch.launch_files import MAX_LAUNCH_BYTES
 from archgen.importers.launch.launch_run import LaunchRun
-from archgen.importers.launch.python_launch import read_python_launch
+from archgen.importers.launch.python_launch import read_python_launch, read_text
 from archgen.importers.launch.ros_1_entities import Ros1EntityReader, is_ros_1_launch
 from archgen.importers.launch.ros_2_entities import Ros2EntityReader
 
@@ -28,26 +27,15 @@ def load_included(path: Path, run: LaunchRun) -> list[LaunchAction]:
 
 def load_actions(path: Path, run: LaunchRun) -> list[LaunchAction]:
     """Return the actions of a file. Raise ForeignFileError."""
-    data = read_bounded(path, MAX_LAUNCH_BYTES)
     name = run.files.show_path(path)
-    own_name = run.files.name_file(path)
-    folder = posixpath.dirname(own_name)
+    folder = posixpath.dirname(run.files.name_file(path))
     run.context.is_ros_1 = False
     if path.name.lower().endswith(".py"):
-        return read_python_launch(name, own_name, _decode(name, data), run)
+        return read_python_launch(path, run)
     if path.name.lower().endswith((".yaml", ".yml")):
-        return Ros2EntityReader(folder).read_launch(read_yaml_entities(name, _decode(name, data)))
-    root = read_xml_entities(name, data)
+        return Ros2EntityReader(folder).read_launch(read_yaml_entities(name, read_text(name, path)))
+    root = read_xml_entities(name, read_bounded(path, MAX_LAUNCH_BYTES))
     if is_ros_1_launch(root, path.name):
         run.context.is_ros_1 = True
         return Ros1EntityReader(folder).read_launch(root)
     return Ros2EntityReader(folder).read_launch(root)
-
-
-def _decode(name: str, data: bytes) -> str:
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        words = "it is no UTF-8"
-        raise ForeignFileError(words, Span(name, line, 1, line, 2), "save it as UTF-8") from None

@@ -66,7 +66,7 @@ class SliceMaker:
         if full_name in self._container_ids:
             return
         namespace, _, name = full_name.rpartition("/")
-        fault = find_node_name_fault(name) or (find_name_fault(namespace, ros_1=True) if namespace else None)
+        fault = find_node_name_fault(name) or (find_name_fault(namespace) if namespace else None)
         if fault:
             self._run.add_note(node.word, f"the container `{full_name}` is no name of ROS: {fault}", node.span)
             return
@@ -154,7 +154,7 @@ class SliceMaker:
             else:
                 names["name"] = node.name
         if node.namespace.strip("/"):
-            fault = find_name_fault(node.namespace, ros_1=True)
+            fault = find_name_fault(node.namespace)
             if fault:
                 self._run.add_note(node.word, f"`{node.namespace}` is no namespace: {fault}", node.span)
             else:
@@ -163,13 +163,9 @@ class SliceMaker:
 
     def _write_remaps(self, node: LaunchedNode) -> dict[str, str]:
         remaps: dict[str, str] = {}
-        for own_name, name in node.remaps.items():
+        for own_name, name in [(_write_private(each), _write_private(other)) for each, other in node.remaps.items()]:
             fault = next(
-                (
-                    fault
-                    for each in (own_name, name)
-                    if (fault := find_name_fault(each, ros_1=True) or _find_bare(each))
-                ),
+                (fault for each in (own_name, name) if (fault := find_name_fault(each) or _find_bare(each))),
                 None,
             )
             if fault:
@@ -209,6 +205,8 @@ class SliceMaker:
                 hint["by_default"] = "off"
         if node.launch_arguments:
             hint["arguments"] = node.launch_arguments
+        if node.other_ways:
+            hint["other_ways"] = node.other_ways
         if node.written:
             hint["written"] = node.written
         if keeps_rest:
@@ -247,6 +245,11 @@ def _nest_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
             return {name: value for name, value in parameters.items() if value is not None}
         place[leaf] = {**place[leaf], **value} if leaf in place else value
     return tree
+
+
+def _write_private(name: str) -> str:
+    """Return a name; a private one of ROS 1 (`~map`) as both generations write it."""
+    return f"~/{name[1:]}" if name.startswith("~") and name[1:2] not in {"", "/"} else name
 
 
 def _find_bare(name: str) -> str | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_values import LaunchValue
@@ -47,7 +48,8 @@ class LaunchedNode:
     """The launch arguments that were filled in, with their values."""
     written: dict[str, str] = field(default_factory=dict)
     """What stood where an argument was filled in, by the key: `$(var use_sim_time)`."""
-    notes: list[str] = field(default_factory=list)
+    other_ways: list[dict[str, Any]] = field(default_factory=list)
+    """What else may start it, by other conditions."""
 
     @property
     def full_name(self) -> str:

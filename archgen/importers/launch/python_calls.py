@@ -35,6 +35,7 @@ _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 _FIRST_ARGUMENT = {
     "FindExecutable": "name",
+    "PathSubstitution": "path",
     "TextSubstitution": "text",
     "ParameterFile": "param_file",
     "Path": "path",
@@ -88,12 +89,19 @@ class CallReader(MethodReader):
             return reader(arguments, node)
         if name in _FIRST_ARGUMENT and (arguments.positional or arguments.named):
             return arguments.get(0, _FIRST_ARGUMENT[name], *arguments.named)
+        if function.name in {"sys.path.append", "sys.path.insert"} and arguments.positional:
+            self.add_module_folder(arguments.positional[-1])
+            return None
         action = make_action(self, name, arguments, node)
         if action is not None:
             return action
         if function.name.partition(".")[0] in LAUNCH_MODULES and ".actions" in function.name:
             return self._finish_action(LaunchAction("unread", name, self.place(node)))
         return self.quote(node)
+
+    def add_module_folder(self, folder: LaunchValue) -> None:
+        """Look for modules in a folder, too; by the reader of the whole file."""
+        raise NotImplementedError
 
     def _finish_action(self, action: LaunchAction) -> LaunchAction:
         action.conditions += self.conditions

@@ -10,7 +10,14 @@ from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue, join_values
 from archgen.importers.launch.python_operators import MAX_ITEMS, combine_values, compare_values
-from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName, NameScope
+from archgen.importers.launch.python_values import (
+    BoundMethod,
+    CallArguments,
+    FunctionValue,
+    ImportedName,
+    ModuleValue,
+    NameScope,
+)
 
 MAX_STEPS = 300_000
 MAX_DEPTH = 60
@@ -87,6 +94,9 @@ class ExpressionReader:
         owner = self.evaluate(node.value, scope)
         if isinstance(owner, ImportedName):
             return ImportedName(f"{owner.name}.{node.attr}")
+        if isinstance(owner, ModuleValue):
+            is_known, value = owner.scope.find(node.attr)
+            return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
         if isinstance(owner, UnknownValue):
             return self.quote(node)
         if node.attr in {"parent", "name"} and isinstance(owner, str | Substitution):
@@ -229,45 +239,6 @@ class ExpressionReader:
     def _read_namedexpr(self, node: ast.NamedExpr, scope: NameScope) -> LaunchValue:
         scope.values[node.target.id] = value = self.evaluate(node.value, scope)
         return value
-
-    def _read_listcomp(self, node: ast.ListComp, scope: NameScope) -> LaunchValue:
-        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
-        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
-
-    def _read_generatorexp(self, node: ast.GeneratorExp, scope: NameScope) -> LaunchValue:
-        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
-        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
-
-    def _read_dictcomp(self, node: ast.DictComp, scope: NameScope) -> LaunchValue:
-        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
-        if scopes is None:
-            return self.quote(node)
-        pairs = [(self.evaluate(node.key, each), self.evaluate(node.value, each)) for each in scopes]
-        return dict(pairs) if all(isinstance(key, str | int) for key, _ in pairs) else self.quote(node)
-
-    def _walk_generators(
-        self, generators: list[ast.comprehension], scope: NameScope, depth: int
-    ) -> list[NameScope] | None:
-        """Return a scope for each round of a comprehension; None where that is not known."""
-        if depth == len(generators):
-            return [scope]
-        generator = generators[depth]
-        items = list_items(self.evaluate(generator.iter, scope))
-        if items is None:
-            return None
-        found: list[NameScope] = []
-        for item in items:
-            inner = NameScope(scope)
-            self.assign(generator.target, item, inner)
-            verdicts = [self.judge(self.evaluate(test, inner)) for test in generator.ifs]
-            if None in verdicts:
-                return None
-            if all(verdicts):
-                inner_scopes = self._walk_generators(generators, inner, depth + 1)
-                if inner_scopes is None or len(found) + len(inner_scopes) > MAX_ITEMS or not self.count_step():
-                    return None
-                found += inner_scopes
-        return found
 
     def assign(self, target: ast.expr, value: LaunchValue, scope: NameScope) -> None:
         """Give a value to a name, to several names, or to a place in a list or dict."""

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import ast
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from archgen.importers.launch.launch_actions import LaunchAction
-from archgen.importers.launch.launch_values import UnknownValue
+from archgen.importers.launch.launch_files import MAX_LAUNCH_BYTES
+from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
 from archgen.importers.launch.python_calls import CallReader
 from archgen.importers.launch.python_parsing import PythonRefusedError, parse_python
-from archgen.importers.launch.python_values import CallArguments, FunctionValue, NameScope
+from archgen.importers.launch.python_values import CallArguments, FunctionValue, ModuleValue, NameScope
 
 if TYPE_CHECKING:
     from archgen.importers.launch.launch_run import LaunchRun
@@ -19,24 +22,66 @@ if TYPE_CHECKING:
 _ENTRY = "generate_launch_description"
 
 
-def read_python_launch(file: str, own_name: str, text: str, run: LaunchRun) -> list[LaunchAction]:
+def read_python_launch(path: Path, run: LaunchRun) -> list[LaunchAction]:
     """Return the actions of a file. Raise ForeignFileError for what is no Python, or no launch file."""
+    file, text = run.files.show_path(path), read_text(run.files.show_path(path), path)
+    return _FileReader(path, text, run, {}).read_file(_parse_file(file, text))
+
+
+def read_text(file: str, path: Path) -> str:
+    """Return the text of a file. Raise ForeignFileError."""
+    data = read_bounded(path, MAX_LAUNCH_BYTES)
     try:
-        tree = parse_python(text)
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        words = "it is no UTF-8"
+        raise ForeignFileError(words, Span(file, line, 1, line, 2), "save it as UTF-8") from None
+
+
+def _parse_file(file: str, text: str) -> ast.Module:
+    try:
+        return parse_python(text)
     except PythonRefusedError as error:
         span = Span(file, error.line, error.column, error.line, error.column + 1)
         raise ForeignFileError(error.message, span, "archgen reads launch files as Python 3 does") from None
-    reader = _FileReader(file, own_name, text, run)
-    return reader.read_file(tree)
 
 
 class _FileReader(CallReader):
     """Reads one file."""
 
-    def __init__(self, file: str, own_name: str, text: str, run: LaunchRun) -> None:
-        super().__init__(file, own_name, text.splitlines())
+    def __init__(self, path: Path, text: str, run: LaunchRun, modules: dict[Path, NameScope]) -> None:
+        super().__init__(run.files.show_path(path), run.files.name_file(path), text.splitlines())
+        self._path = path
         self._run = run
-        self._made: list[LaunchAction] = []
+        self._folders: list[str] = []
+        self._modules = modules
+        """The modules beside the file that were read, for all of them together."""
+
+    def add_module_folder(self, folder: LaunchValue) -> None:
+        """Look for modules in a folder, too."""
+        text = self._run.context.resolve(folder)
+        if isinstance(text, str):
+            self._folders.append(text)
+
+    def load_module(self, name: str) -> ModuleValue | None:
+        """Return a module that lies beside the file."""
+        if not name.isidentifier():
+            return None
+        texts = [f"{folder}/{name}.py" for folder in (self._path.parent.as_posix(), *self._folders)]
+        path = next((found for text in texts if (found := self._run.files.find_file(text)) is not None), None)
+        if path is None:
+            return None
+        if path not in self._modules:
+            self._modules[path] = scope = NameScope(values={"__file__": path.as_posix(), "__name__": name})
+            try:
+                text = read_text(self._run.files.show_path(path), path)
+                tree = _parse_file(self._run.files.show_path(path), text)
+            except ForeignFileError as error:
+                self._run.add_note("import", error.message, error.span)
+            else:
+                _FileReader(path, text, self._run, self._modules).run_block(tree.body, scope)
+        return ModuleValue(name, self._modules[path])
 
     def place(self, node: ast.AST) -> Span:
         """Return where a part of the file stands."""

@@ -8,15 +8,16 @@ from typing import Any, Literal
 
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
-from archgen.importers.launch.python_expressions import MAX_DEPTH, ExpressionReader, list_items
-from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, NameScope
+from archgen.importers.launch.python_comprehensions import ComprehensionReader
+from archgen.importers.launch.python_expressions import MAX_DEPTH, list_items
+from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
 Ending = Literal["", "return", "break", "continue"]
 """How a block ended."""
 _MAX_FUNCTIONS = 20
 
 
-class StatementReader(ExpressionReader):
+class StatementReader(ComprehensionReader):
     """Follows statements. What a function may return stands in its scope."""
 
     def __init__(self, file: str, lines: list[str]) -> None:
@@ -27,6 +28,10 @@ class StatementReader(ExpressionReader):
 
     def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
         """Note what is taken otherwise than it is written; by the reader of the whole file."""
+        raise NotImplementedError
+
+    def load_module(self, name: str) -> ModuleValue | None:
+        """Return a module that lies beside the file; by the reader of the whole file."""
         raise NotImplementedError
 
     def run_block(self, statements: list[ast.stmt], scope: NameScope) -> Ending:
@@ -77,17 +82,22 @@ class StatementReader(ExpressionReader):
     def _run_import(self, statement: ast.Import, scope: NameScope) -> Ending:
         for alias in statement.names:
             name = alias.name if alias.asname else alias.name.partition(".")[0]
-            scope.values[alias.asname or name] = ImportedName(name)
+            scope.values[alias.asname or name] = self.load_module(name) or ImportedName(name)
         return ""
 
     def _run_importfrom(self, statement: ast.ImportFrom, scope: NameScope) -> Ending:
+        module = self.load_module(statement.module or "")
         for alias in statement.names:
+            is_known, value = module.scope.find(alias.name) if module else (False, None)
             if alias.name != "*":
-                scope.values[alias.asname or alias.name] = ImportedName(f"{statement.module or ''}.{alias.name}")
+                imported = ImportedName(f"{statement.module or ''}.{alias.name}")
+                scope.values[alias.asname or alias.name] = value if is_known else imported
+            elif module:
+                scope.values |= module.scope.values
         return ""
 
     def _run_functiondef(self, statement: ast.FunctionDef, scope: NameScope) -> Ending:
-        scope.values[statement.name] = FunctionValue(statement, scope)
+        scope.values[statement.name] = FunctionValue(statement, scope, self)
         return ""
 
     def _run_return(self, statement: ast.Return, scope: NameScope) -> Ending:
@@ -168,6 +178,8 @@ class StatementReader(ExpressionReader):
         """Return what a function of the file gives."""
         if self._functions >= _MAX_FUNCTIONS or not self.count_step():
             return self.quote(node)
+        if isinstance(function.reader, StatementReader) and function.reader is not self:
+            return function.reader.call_from(self, function, arguments)
         scope = NameScope(function.scope)
         self._bind_arguments(function, arguments, scope)
         self._functions += 1
@@ -182,6 +194,15 @@ class StatementReader(ExpressionReader):
             # Several conditions that are not known led to several ends: what they start is taken together.
             return [item for value in returned for item in (value if isinstance(value, list | tuple) else [value])]
         return returned[0] if returned else None
+
+    def call_from(self, caller: StatementReader, function: FunctionValue, arguments: CallArguments) -> LaunchValue:
+        """Return what a function of this module gives that another file calls."""
+        before = self.context, self.conditions, self._functions
+        self.context, self.conditions, self._functions = caller.context, caller.conditions, caller._functions
+        try:
+            return self.call_function(function, arguments, function.definition)
+        finally:
+            self.context, self.conditions, self._functions = before
 
     def _bind_arguments(self, function: FunctionValue, arguments: CallArguments, scope: NameScope) -> None:
         declared = function.definition.args
@@ -214,6 +235,9 @@ def _merge_values(first: LaunchValue, second: LaunchValue, test: UnknownValue) -
     if isinstance(first, list) and isinstance(second, list):
         seen = {id(item) for item in first}
         return [*first, *(item for item in second if id(item) not in seen)]
+    if isinstance(first, LaunchAction) and isinstance(second, LaunchAction):
+        # Each of them knows when it counts.
+        return [first, second]
     if isinstance(first, LaunchAction | UnknownValue) and second is None:
         return first
     is_plain = isinstance(first, str | int | float | bool) and type(first) is type(second)

@@ -42,9 +42,18 @@ class NameScope:
 
 @dataclass(slots=True, eq=False)
 class FunctionValue:
-    """A function of the file."""
+    """A function of the file, or of a module beside it: then `reader` knows that one's lines."""
 
     definition: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+    scope: NameScope
+    reader: object = None
+
+
+@dataclass(slots=True, eq=False)
+class ModuleValue:
+    """A module that lies beside the launch file."""
+
+    name: str
     scope: NameScope
 
 

@@ -42,7 +42,9 @@ def read_message(
     else:
         for number, part_name in enumerate(interface.part_names):
             data[_PART_KEYS[part_name]] = _write_fields(interface, number)
-    return {key: value for key, value in data.items() if value or key == "fields"}, definition.diagnostics
+    return {
+        key: value for key, value in data.items() if value or key not in {"comment", "constants"}
+    }, definition.diagnostics
 
 
 _PART_KEYS = {

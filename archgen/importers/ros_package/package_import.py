@@ -195,6 +195,11 @@ class _PackageReader:
             if not _PARAMETER_NAME.match(value.name) or len(value.name) > MAX_NAME_LENGTH:
                 words = f"`{value.name}` is no name of a parameter"
                 self._account.add_note("parameter", words, value.name_at)
+            elif isinstance(value.value, list | tuple) and any(
+                isinstance(item, dict | list | tuple) for item in value.value
+            ):
+                words = f"`{value.name}` is no value that a parameter of ROS can have"
+                self._account.add_note("parameter", words, value.name_at)
             elif value.value is not None:
                 values[value.name] = value.value
         return values

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.import_ledger import ImportLedger, call
-from archgen.importers.xmi.made_names import choose_id, name_parameter, name_type, say_title
+from archgen.importers.xmi.made_names import choose_id, name_parameter, name_type
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
 
@@ -60,7 +60,11 @@ def _read_property(
     elif not name:
         ledger.leave(element, f"{call(element)} is not taken: it has no name")
     elif name.lower() == _PERIOD_NAME and (text := uml_values.read_default(index, element)) is not None:
-        timing = uml_values.read_period(text)
+        default = element.find("defaultValue")
+        # archgen keeps the words of a period as the literal's name.
+        words = get_name(default) if default is not None else ""
+        timing = uml_values.read_period(words) if words else None
+        timing = uml_values.read_period(text) if timing is None else timing
         if timing is None:
             ledger.leave(
                 element, f"`{text[:60]}` of `{name}` is no period in seconds", "write a number, such as `0.02`"
@@ -117,7 +121,7 @@ def _add_default(
     text = uml_values.read_default(index, element)
     if text is None:
         return
-    words = [each for each in text.strip().strip("[]{}").split(",") if each.strip()] if is_list else [text]
+    words = [word for each in text.strip().strip("[]{}").split(",") if (word := each.strip())] if is_list else [text]
     try:
         values = [uml_values.convert_value(each, kind) for each in words]
     except ValueError:
@@ -137,7 +141,8 @@ def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, 
         ledger.leave(element, f"{call(element)} is not taken: it has no name")
         return
     operation_id = choose_id(element, "operation", features.operations)
-    operation: dict[str, object] = say_title(name, operation_id)
+    # Code calls an operation by its id where it has no other name.
+    operation: dict[str, object] = {} if name == operation_id else {"title": name}
     request: dict[str, object] = {}
     answers: dict[str, object] = {}
     for parameter in list_children(element, "Parameter"):

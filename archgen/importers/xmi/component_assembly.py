@@ -12,6 +12,7 @@ from archgen.importers.xmi.made_names import choose_id
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
+from archgen.model.element_ids import make_id
 
 _HARDWARE = frozenset({"Node", "ExecutionEnvironment"})
 
@@ -144,7 +145,9 @@ class ComponentAssembly:
             facts = stack.pop()
             if facts.sort == "component":
                 self.components.append(facts)
-            taken: set[str] = set()
+            # A port and a component inside share no name: what is told outside is the port's.
+            outer = (facts, *facts.list_bases())
+            taken = {make_id(get_name(port), "port") for each in outer for port in list_children(each.element, "Port")}
             for inner in facts.inside:
                 inner.id = choose_id(inner.element, "component", taken)
                 taken.add(inner.id)
@@ -162,9 +165,7 @@ class ComponentAssembly:
         return group_id
 
     def _read_ports(self, facts: ClassFacts) -> None:
-        if facts.device or facts.element in self._sorting.parts:
-            return
-        if facts.element.tag == "ownedAttribute":
+        if facts.element in self._sorting.parts:
             return
         ports = [self._uses.make_port(each) for each in list_children(facts.element, "Port")]
         for port in ports:
@@ -179,14 +180,15 @@ class ComponentAssembly:
             if other.base is not None:
                 realized[id(other.base)] |= {get_name(each) for each in list_children(other.element, "Port")}
         for facts in (*self.types.values(), *self.components):
-            if facts.element in self._sorting.parts or facts.device:
+            if facts.element in self._sorting.parts:
                 self.features[facts.element] = ClassFeatures()
                 continue
             parts = {inner.element for inner in facts.inside}
             names = {port.name for port in facts.ports} | realized[id(facts)]
             self.features[facts.element] = read_features(self._index, self._ledger, facts.element, names, parts)
             kind = "Class" if get_kind(facts.element) == "AssociationClass" else ""
-            self._ledger.take(facts.element, kind)
+            if not facts.device:
+                self._ledger.take(facts.element, kind)
 
     def find_port(self, facts: ClassFacts, element: XmlElement) -> PortFacts | None:
         """Return the port of a component that an element of it or of one of its types stands for."""

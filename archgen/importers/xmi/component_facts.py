@@ -131,7 +131,7 @@ class ClassSorting:
 
     def _sort_classes(self) -> None:
         classes = self._catalogue.classes
-        part_types = self._find_part_types()
+        assemblies, part_types = self._find_parts()
         realizing = set(self._realizers.values())
         generals = set(self._generals.values())
         data_uses = self._count_data_uses()
@@ -153,6 +153,10 @@ class ClassSorting:
                 is_data = data_uses[element] and element not in component_family and not own_id.startswith(OWN_PREFIX)
                 has_methods = bool(list_children(element, "Operation"))
                 sort = "data" if is_data and not has_methods else "component_type"
+                is_free = not (is_true(element, "isAbstract") or data_uses[element] or element in generals | realizing)
+                if is_free and element in assemblies and not own_id.startswith(OWN_PREFIX):
+                    # What only puts parts together, and is no part itself, is there once: the system.
+                    sort = "component"
             self.facts[element] = ClassFacts(element, sort)
         for element, facts in self.facts.items():
             base = self._realizers.get(element) or self._generals.get(element)
@@ -169,14 +173,15 @@ class ClassSorting:
                 self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
 
-    def _find_part_types(self) -> set[XmlElement]:
-        """Return the classes with ports that stand as parts in others."""
-        return {
-            reference.element
+    def _find_parts(self) -> tuple[set[XmlElement], set[XmlElement]]:
+        """Return the classes that have parts with ports, and the classes of these parts."""
+        pairs = [
+            (owner, reference.element)
             for owner in self._catalogue.classes
             for part in list_children(owner, "Property")
             if (reference := self._index.find_reference(part, "type")) and reference.element in self._with_ports
-        }
+        ]
+        return {owner for owner, _ in pairs}, {part for _, part in pairs if part is not None}
 
     def _find_family(self, members: set[XmlElement]) -> set[XmlElement]:
         """Return classes with all that they are made from and all that is made from them."""

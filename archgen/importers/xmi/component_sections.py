@@ -154,7 +154,12 @@ class ComponentSections:
             if type_id not in self._made_types:
                 body |= _keep_values(features)
             return body | make_hints(facts.element)
-        if get_kind(facts.element) == "Component" and facts.base is None and not features.list_sections():
+        if (
+            get_kind(facts.element) == "Component"
+            and not _is_exported(facts)
+            and facts.base is None
+            and not features.list_sections()
+        ):
             words = f"no class realizes {call(facts.element)}: it has no parameters and no operations"
             self._ledger.note(facts.element, words)
         body |= self._write_ports(facts.ports, facts, is_type=False)
@@ -172,15 +177,18 @@ class ComponentSections:
         inputs: dict[str, object] = {}
         outputs: dict[str, object] = {}
         for port in ports:
-            port_type = self._find_type(port, facts)
             sources = [] if is_type else self._wiring.sources.get(facts, {}).get(port, [])
+            port_type = self._find_type(port, facts, is_fed=bool(sources))
             is_given = is_type and not any(port is each for each in facts.ports)
             hints = {} if is_given else self._make_hints(port, is_fed=bool(sources))
+            texts = {} if is_given or not port.is_port else read_description(self._index, port.element)
             if port.is_input:
-                inputs[port.input_id] = port_type | _write_sources(sources) | (hints if not port.is_output else {})
+                inputs[port.input_id] = port_type | _write_sources(sources) | ({} if port.is_output else texts | hints)
             if port.is_output:
                 given = list_inner_references(self._wiring, facts, port)
-                outputs[port.output_id] = (port_type if not given else {}) | _write_sources(given) | hints
+                outputs[port.output_id] = (
+                    (port_type if port.type_name or not given else {}) | _write_sources(given) | texts | hints
+                )
         return _leave_out_empty(inputs=inputs, outputs=outputs)
 
     def _write_instance_ports(self, facts: ClassFacts) -> dict[str, object]:
@@ -198,10 +206,13 @@ class ComponentSections:
                 outputs[port.output_id] = hints
         return _leave_out_empty(inputs=inputs, outputs=outputs)
 
-    def _find_type(self, port: PortFacts, facts: ClassFacts) -> dict[str, object]:
+    def _find_type(self, port: PortFacts, facts: ClassFacts, *, is_fed: bool) -> dict[str, object]:
         features = [self._assembly.features[each.element] for each in (facts, *facts.list_bases())]
         known = next((each.data_types[port.name] for each in features if each.data_types.get(port.name)), "")
-        name = known or port.type_name or self._uses.find_data_type(port)
+        name = known or port.type_name
+        if not name and not (is_fed and not port.is_output):
+            # What an input reads says its type; the interface does where nobody provides it.
+            name = self._uses.find_data_type(port)
         return {"type": find_field_type(name) or name_type(name)} if name else {}
 
     @staticmethod
@@ -219,7 +230,9 @@ class ComponentSections:
 
 
 def _is_own(key: XmlElement | str) -> bool:
-    return isinstance(key, XmlElement) and (get_id(key).startswith(OWN_PREFIX) or get_kind(key) != "Interface")
+    return isinstance(key, XmlElement) and (
+        get_id(key).startswith(f"{OWN_PREFIX}made_interface.") or get_kind(key) != "Interface"
+    )
 
 
 def _list_keys(ports: Iterable[PortFacts]) -> set[PortKey]:
@@ -248,3 +261,7 @@ def _keep_values(features: ClassFeatures) -> dict[str, object]:
 
 def _leave_out_empty(**sections: dict[str, object]) -> dict[str, object]:
     return {key: value for key, value in sections.items() if value}
+
+
+def _is_exported(facts: ClassFacts) -> bool:
+    return get_id(facts.element).startswith(OWN_PREFIX)

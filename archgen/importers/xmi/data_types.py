@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
-from archgen.importers.xmi.import_ledger import ImportLedger, call, make_hints
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
 from archgen.importers.xmi.made_names import name_type
 from archgen.importers.xmi.uml_catalogue import read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
 from archgen.model.element_ids import make_id
+
+_UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
+"""Ids of types that archgen wrote because something names them: nobody declares them."""
+_MESSAGE = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*(?:/msg)?/[A-Z][A-Za-z0-9_]*\Z")
 
 
 class DataTypes:
@@ -21,7 +26,7 @@ class DataTypes:
         self._elements: dict[str, XmlElement] = {}
         for element in elements:
             name = name_type(get_name(element))
-            if get_kind(element) == "PrimitiveType" and uml_values.find_parameter_type(name):
+            if uml_values.find_field_type(name) or get_id(element).startswith(_UNDECLARED):
                 continue
             if not name or name in self._elements:
                 why = "there is another one of this name" if name else "it has no name"
@@ -31,26 +36,24 @@ class DataTypes:
         self._fields = {name: self._read_fields(each) for name, each in self._elements.items()}
         self._drop_unknown_fields()
 
-    def _read_fields(self, element: XmlElement) -> dict[str, str] | None:
+    def _read_fields(self, element: XmlElement) -> dict[str, dict[str, object]] | None:
         """Return the fields of a type; None where it has none, or one whose type is not known."""
-        fields: dict[str, str] = {}
+        fields: dict[str, dict[str, object]] = {}
         for child in list_children(element, "Property"):
             name = make_id(get_name(child), "field") if get_name(child) else ""
-            type_name = uml_values.find_type_name(self._index, child)
-            known = uml_values.find_field_type(type_name) or (name_type(type_name) if type_name else "")
-            is_known = uml_values.find_field_type(type_name) is not None or known in self._elements
-            if not name or name in fields or not is_known:
-                why = (
-                    "it has no name"
-                    if not name
-                    else "there is another one"
-                    if name in fields
-                    else "its type is not known"
-                )
+            written = uml_values.find_type_name(self._index, child)
+            primitive = uml_values.find_field_type(written)
+            known = primitive or (name_type(written) if written else "")
+            is_known = primitive is not None or known in self._elements or _MESSAGE.match(known) is not None
+            problem = "it has no name" if not name else "there is another one" if name in fields else ""
+            if problem or not is_known:
+                why = problem or "its type is not known"
                 words = f"the fields of `{get_name(element)[:80]}` are not taken: of `{get_name(child)[:80]}` {why}"
                 self._ledger.leave(child, words)
                 return None
-            fields[name] = known + ("[]" if uml_values.is_many(child) else "")
+            texts = read_description(self._index, child)
+            comment = texts.get("comment") or texts.get("description")
+            fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
         return fields or None
 
     def _drop_unknown_fields(self) -> None:
@@ -70,10 +73,11 @@ class DataTypes:
             for name in dropped:
                 self._fields[name] = None
 
-    def _is_whole(self, fields: dict[str, str]) -> bool:
-        for written in fields.values():
-            inner = self._elements.get(written.removesuffix("[]"))
-            if inner is not None and get_kind(inner) != "Enumeration" and not self._fields[written.removesuffix("[]")]:
+    def _is_whole(self, fields: dict[str, dict[str, object]]) -> bool:
+        for field in fields.values():
+            name = _name_inner(field)
+            inner = self._elements.get(name)
+            if inner is not None and get_kind(inner) != "Enumeration" and not self._fields[name]:
                 return False
         return True
 
@@ -81,8 +85,8 @@ class DataTypes:
         seen: set[str] = set()
         stack = [name]
         while stack:
-            for written in (self._fields.get(stack.pop()) or {}).values():
-                inner = written.removesuffix("[]")
+            for field in (self._fields.get(stack.pop()) or {}).values():
+                inner = _name_inner(field)
                 if inner == name:
                     return True
                 if inner not in seen:
@@ -98,9 +102,10 @@ class DataTypes:
             if get_kind(element) == "Enumeration":
                 body |= self._write_values(element)
             elif fields := self._fields[name]:
-                body["fields"] = fields
-            description = read_description(self._index, element).get("description")
-            body |= {"comment": description} if description else {}
+                body["fields"] = {key: each if len(each) > 1 else each["type"] for key, each in fields.items()}
+            texts = read_description(self._index, element)
+            comment = texts.get("comment") or texts.get("description")
+            body |= {"comment": comment} if comment else {}
             section[name] = body | make_hints(element)
             self._ledger.take(element)
         return section
@@ -111,3 +116,8 @@ class DataTypes:
             self._ledger.leave(element, f"the values of `{get_name(element)[:80]}` are not taken: two have one name")
             return {}
         return {"values": values} if values else {}
+
+
+def _name_inner(field: Mapping[str, object]) -> str:
+    """Return the type of a field without the brackets of an array."""
+    return str(field["type"]).partition("[")[0]

@@ -7,10 +7,10 @@ from collections import defaultdict
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
-from archgen.importers.xmi.import_ledger import ImportLedger, call, make_hints
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
 from archgen.importers.xmi.made_names import choose_id, say_title
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
 from archgen.model.element_ids import make_unique_id
 
 
@@ -33,8 +33,12 @@ class DeploymentSections:
                 taken.add(self._hosts[element])
                 ledger.take(element)
         self._middlewares = self._find_middlewares()
+        self._own_nodes: dict[str, dict[str, object]] = {}
+        """Nodes that archgen exported, by id."""
+        self._own_hosts: dict[XmlElement, str] = {}
         self._read_manifestations()
         self._read_deployments()
+        self._make_own_nodes()
         for facts, element in assembly.hosted.items():
             if host := self._find_host(element):
                 self._host_of.setdefault(facts, host)
@@ -71,13 +75,33 @@ class DeploymentSections:
             manifested = self._index.list_named(element, "utilizedElement", "supplier")
             components = [self._facts_of[each] for each in manifested if each in self._facts_of]
             for artifact in artifacts:
-                if get_kind(artifact) == "Artifact":
+                if get_kind(artifact) == "Artifact" and not _is_own_node(artifact):
                     for facts in components:
                         self._package_of.setdefault(facts, artifact)
             if components:
                 self._ledger.take(element)
             else:
                 self._ledger.leave(element, f"{call(element)} is not taken: what it manifests is no component")
+
+    def _make_own_nodes(self) -> None:
+        """Make the nodes that archgen exported, as they were: one may implement several components."""
+        implemented: dict[XmlElement, list[ClassFacts]] = defaultdict(list)
+        for element in self._catalogue.manifestations:
+            for artifact in self._index.list_named(element, "client"):
+                targets = self._index.list_named(element, "utilizedElement")
+                implemented[artifact] += [self._facts_of[each] for each in targets if each in self._facts_of]
+        for artifact, components in implemented.items():
+            if not _is_own_node(artifact) or not components:
+                continue
+            node_id = choose_id(artifact, "node", self._own_nodes)
+            paths = [".".join(each.path) for each in components]
+            node: dict[str, object] = {"implements": paths[0] if len(paths) == 1 else paths}
+            node |= say_title(get_name(artifact), node_id)
+            package, _, executable = artifact.attributes.get("fileName", "").partition("/")
+            node |= ({"package": package} if package else {}) | ({"executable": executable} if executable else {})
+            host = self._own_hosts.get(artifact)
+            self._own_nodes[node_id] = node | ({"host": host} if host else {})
+            self._ledger.take(artifact)
 
     def _read_deployments(self) -> None:
         manifested = defaultdict(list)
@@ -97,6 +121,10 @@ class DeploymentSections:
                 self._deploy(element, each, manifested.get(each, []), host)
 
     def _deploy(self, deployment: XmlElement, deployed: XmlElement, manifested: list[ClassFacts], host: str) -> None:
+        if _is_own_node(deployed):
+            self._own_hosts[deployed] = host
+            self._ledger.take(deployment)
+            return
         if deployed in self._facts_of:
             manifested = [self._facts_of[deployed]]
         elif get_kind(deployed) == "Artifact" and not manifested:
@@ -128,7 +156,7 @@ class DeploymentSections:
 
     def make_nodes(self) -> dict[str, object]:
         """Return the section `nodes`: a node for each component that is deployed or has an artifact."""
-        section: dict[str, object] = {}
+        section: dict[str, object] = dict(self._own_nodes)
         for facts in dict.fromkeys((*self._package_of, *self._host_of)):
             if facts.root.sort != "component" or facts.device or facts.inside:
                 continue
@@ -142,7 +170,9 @@ class DeploymentSections:
             section[make_unique_id(facts.id, section.keys())] = node
         library_names = {name for names in self._libraries.values() for name in names}
         for artifact in self._catalogue.artifacts:
-            is_used = artifact in self._package_of.values() or get_name(artifact) in library_names
+            is_used = (
+                _is_own_node(artifact) or artifact in self._package_of.values() or get_name(artifact) in library_names
+            )
             if not is_used:
                 self._ledger.leave(
                     artifact, f"{call(artifact)} is not taken: it is on no node, and no component is in it"
@@ -172,7 +202,8 @@ class DeploymentSections:
         for end in ends:
             host = self._hosts.get(end) or (self._find_host(end) if get_kind(end) == "ExecutionEnvironment" else None)
             facts = self._facts_of.get(end)
-            if host is None and (facts is None or not facts.device):
+            is_known = facts is not None and (facts.device or get_id(element).startswith(OWN_PREFIX))
+            if host is None and not is_known:
                 return None
             references.append(host or ".".join(facts.path if facts else ()))
         return list(dict.fromkeys(references)) if len(set(references)) > 1 else None
@@ -181,3 +212,8 @@ class DeploymentSections:
 def _list_parent(index: UmlIndex, element: XmlElement) -> list[XmlElement]:
     parent = index.get_parent(element)
     return [] if parent is None else [parent]
+
+
+def _is_own_node(artifact: XmlElement) -> bool:
+    """Whether an artifact is a node that archgen exported."""
+    return get_id(artifact).startswith(f"{OWN_PREFIX}node.")

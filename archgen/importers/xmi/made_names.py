@@ -11,7 +11,7 @@ from archgen.importers.xmi.uml_index import get_id, get_kind, get_name
 from archgen.model.element_ids import is_id, make_id, make_unique_id
 from archgen.model.path_resolver import title_from_id
 
-_PARAMETER_NAME = re.compile(r"[^\s.]+\Z")
+_PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 MAX_TYPE_LENGTH = 200
 
 

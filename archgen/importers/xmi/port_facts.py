@@ -151,10 +151,9 @@ class InterfaceUses:
 
     def find_data_type(self, port: PortFacts) -> str:
         """Return the type of what a port's interfaces give: what their only `get` operation returns."""
-        for key in (*port.provided, *port.required):
-            if isinstance(key, XmlElement) and (type_name := self._find_returned(key, port.name)):
-                return type_name
-        return ""
+        keys = port.provided or port.required
+        names = {self._find_returned(key, port.name) if isinstance(key, XmlElement) else "" for key in keys}
+        return names.pop() if len(names) == 1 else ""
 
     def _find_returned(self, interface: XmlElement, port_name: str) -> str:
         operations = list_children(interface, "Operation")

@@ -57,8 +57,9 @@ class PortWiring:
             words = f"{call(connector)} is not taken: it does not join two ports of components"
             self._ledger.leave(connector, words)
             return None
-        for each in found:
-            each.port.is_joined = True
+        for each, other in (found, found[::-1]):
+            # A port that is given on to the inside still meets others outside.
+            each.port.is_joined |= other.facts.owner is not each.facts
         return connector, found[0], found[1]
 
     def _find_end(self, end: XmlElement) -> PortEnd | None:

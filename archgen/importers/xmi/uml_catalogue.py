@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from archgen.importers.foreign.xml_tree import XmlElement
-from archgen.importers.xmi.import_ledger import ImportLedger, call
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument
 
 _PACKAGES = frozenset({"Model", "Package"})
@@ -32,6 +32,7 @@ _SILENT_TAGS = frozenset(
         "feature",
         "attribute",
         "ownedReception",
+        "end",
     }
 )
 """Parts of elements that are read with them, or say again what stands elsewhere."""
@@ -51,6 +52,9 @@ _WHY = {
     "ProfileApplication": "profiles describe UML itself",
     "Stereotype": "profiles describe UML itself",
 }
+
+
+_TEXT_KEYS = frozenset({"functionality", "description", "comment"})
 
 
 @dataclass(slots=True)
@@ -134,7 +138,11 @@ class _CatalogueWalk:
         self.catalogue.packages[feature] = package
         for child in feature.children:
             kind = get_kind(child)
-            if kind in self._lists and child.tag not in _SILENT_TAGS and "xmi:idref" not in child.attributes:
+            if child.tag in _TOOL_TAGS:
+                self._tool_parts[child.tag] += 1
+                self._first_tool_part.setdefault(child.tag, child)
+            is_reference = "xmi:idref" in child.attributes or "href" in child.attributes
+            if kind in self._lists and child.tag not in _SILENT_TAGS and not is_reference:
                 self._lists[kind].append(child)
                 self.catalogue.packages[child] = package
                 self.visit_contents(child, package)
@@ -177,12 +185,14 @@ class _CatalogueWalk:
 
 def read_description(index: UmlIndex, element: XmlElement) -> dict[str, object]:
     """Return `description` with the comments that stand in an element and are about it."""
-    texts = []
+    texts: dict[str, list[str]] = {}
     for child in element.children:
         if get_kind(child) == "Comment":
             named = index.list_named(child, "annotatedElement")
             body = child.find("body")
             text = child.attributes.get("body") or (body.text if body is not None else "")
             if text.strip() and (not named or element in named):
-                texts.append(text.strip())
-    return {"description": "\n\n".join(texts)} if texts else {}
+                # archgen says in the ids of its comments which text of an element each is.
+                key = get_id(child).rpartition(".")[2] if get_id(child).startswith(OWN_PREFIX) else ""
+                texts.setdefault(key if key in _TEXT_KEYS else "description", []).append(text.strip())
+    return {key: "\n\n".join(each) for key, each in texts.items()}

@@ -176,7 +176,7 @@ def _find_told_name(child: XmlElement) -> str:
 
 def _name_from_id(element_id: str) -> str:
     """Return the name in the ids of primitive types: `EAJava_int`, `string_id`, `Integer`; empty for a mere number."""
-    name = element_id.removesuffix("_id")
+    name = element_id.rpartition("/")[2].removesuffix("_id")
     if name.startswith("EA") and "_" in name and not name.startswith(("EAID_", "EAPK_")):
         name = name.partition("_")[2]
     return (

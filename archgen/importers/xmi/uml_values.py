@@ -20,9 +20,17 @@ _PARAMETER_TYPES = {
 """The type of a parameter, by what tools call it in small letters."""
 _FIELD_TYPES = {"boolean": "bool", "string": "string", "float": "float64", "integer": "int64"}
 _EXACT_FIELD_TYPES = frozenset(
-    {"float32", "float64", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}
+    {
+        "bool",
+        "char",
+        "float32",
+        "float64",
+        "wstring",
+        *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),
+    }
 )
 _NARROW_FIELD_TYPES = {"float": "float32", "int": "int32", "short": "int16", "byte": "uint8"}
+_BOUNDED_TEXT = re.compile(r"w?string<=[0-9]{1,9}\Z")
 _NOTHING = frozenset({"void", "none", "nothing", ""})
 _UNIT = re.compile(r"([0-9]+(?:\.[0-9]+)?)\s*(ns|us|ms|s|min|h|Hz|kHz)\Z")
 _MAX_DIGITS = 15
@@ -42,7 +50,7 @@ def find_parameter_type(type_name: str) -> str | None:
 
 def find_field_type(type_name: str) -> str | None:
     """Return the type of a message's field for a primitive type of UML; None for what is none."""
-    if type_name in _EXACT_FIELD_TYPES:
+    if type_name in _EXACT_FIELD_TYPES or _BOUNDED_TEXT.match(type_name):
         return type_name
     kind = find_parameter_type(type_name)
     return _NARROW_FIELD_TYPES.get(type_name.lower()) or _FIELD_TYPES.get(kind or "")
@@ -50,11 +58,25 @@ def find_field_type(type_name: str) -> str | None:
 
 def is_many(element: XmlElement) -> bool:
     """Whether a property has more than one value."""
-    upper = element.find("upperValue")
-    value = (upper.attributes.get("value", "0") if upper is not None else element.attributes.get("upper", "1")).strip()
-    return value in {"*", "-1"} or (
-        value.isascii() and value.isdigit() and len(value) <= _MAX_DIGITS and int(value) > 1
-    )
+    return write_array(element) != ""
+
+
+def write_array(element: XmlElement) -> str:
+    """Return the brackets of an array for the multiplicity of a property: `[]`, `[3]`, `[<=5]`; empty for one value."""
+    lower, upper = _read_bound(element, "lower"), _read_bound(element, "upper")
+    if upper in {"*", "-1"}:
+        return "[]"
+    is_number = upper.isascii() and upper.isdigit() and len(upper) <= _MAX_DIGITS
+    if not is_number or int(upper) < 2:  # noqa: PLR2004 - one is no array
+        return ""
+    return f"[{int(upper)}]" if lower == upper else f"[<={int(upper)}]"
+
+
+def _read_bound(element: XmlElement, side: str) -> str:
+    bound = element.find(f"{side}Value")
+    # UML2 leaves out the value of a bound that is 0.
+    written = bound.attributes.get("value", "0") if bound is not None else element.attributes.get(side, "1")
+    return written.strip()
 
 
 def read_default(index: UmlIndex, element: XmlElement) -> str | None:
@@ -105,14 +127,14 @@ def read_period(text: str) -> dict[str, object] | None:
     words = text.strip().strip("\"'")
     if found := _UNIT.match(words):
         key = "rate" if found[2].endswith("Hz") else "period"
-        return {"behaviour": "periodic", key: f"{found[1]} {found[2]}"} if Decimal(found[1]) else {}
+        return {key: f"{found[1]} {found[2]}"} if Decimal(found[1]) else {}
     try:
         seconds = Decimal(words)
     except InvalidOperation:
         return None
     if not seconds.is_finite() or seconds < 0 or seconds > _LONGEST or seconds * 1_000_000_000 % 1:
         return None
-    return {"behaviour": "periodic", "period": write_duration(seconds)} if seconds else {}
+    return {"period": write_duration(seconds)} if seconds else {}
 
 
 def write_duration(seconds: Decimal) -> str:

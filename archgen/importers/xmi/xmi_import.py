@@ -12,11 +12,11 @@ from archgen.importers.xmi.component_facts import ClassSorting
 from archgen.importers.xmi.component_sections import ComponentSections, assign_port_ids
 from archgen.importers.xmi.data_types import DataTypes
 from archgen.importers.xmi.deployment_sections import DeploymentSections
-from archgen.importers.xmi.import_ledger import ImportLedger, call
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.port_facts import InterfaceUses
 from archgen.importers.xmi.port_wiring import PortWiring
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, make_catalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument, read_documents
 
 _FILES = {
@@ -71,7 +71,7 @@ def _count_relations(
             words = f"{call(element)} is not taken: it does not say what flows"
             ledger.leave(element, words, "let ports use and realize an interface")
     for package in dict.fromkeys(catalogue.packages.values()):
-        if package not in groups:
+        if package not in groups and not get_id(package).startswith(OWN_PREFIX):
             ledger.note(package, f"{call(package)} is no group: no component stands directly in it")
     meant = {key for keys in (*uses.provided.values(), *uses.required.values()) for key in keys}
     for element in catalogue.interfaces:

@@ -25,6 +25,13 @@ from archgen.views.generation.aadl_words import (
 )
 
 _DISPATCH = {"periodic": "Periodic", "event": "Aperiodic", "on_demand": "Aperiodic", "once": "Background"}
+_ROLES = {
+    "ros::publisher": "source",
+    "ros::callback": "sink",
+    "ros::call_pub": "filter",
+    "ros::service_provider": "reactive",
+}
+"""What the patterns say of the role."""
 _INHERITED_NAMES = ("ist", "tf", "function", "pc")
 """What a thread has from the library: no port of its own is called so."""
 _PROTOTYPES = {"msg": "message", "srv": "service", "msg_in": "message_in", "msg_out": "message_out"}
@@ -46,6 +53,11 @@ class Behaviour:
         self.is_refined = bool(fixed_names)
 
     @property
+    def further_role(self) -> str | None:
+        """The role of the component where the pattern does not say it."""
+        return self.component.role if _ROLES.get(self.pattern) != self.component.role else None
+
+    @property
     def uses_tf(self) -> bool:
         """Whether it has access to the transformations, as all patterns of ROS have."""
         return self.pattern.startswith("ros::")
@@ -54,7 +66,7 @@ class Behaviour:
     def behaviour(self) -> str | None:
         """What activates it, as far as it is written."""
         timing = self.timing
-        return timing.behaviour or ("periodic" if timing.period or timing.rate else None)
+        return timing.behaviour or ("periodic" if timing.period or timing.rate else "event" if timing.trigger else None)
 
     def _list_triggers(self) -> tuple[str, ...]:
         if self.behaviour == "periodic":

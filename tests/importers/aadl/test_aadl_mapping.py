@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from archgen.diagnostics.diagnostic import Severity
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_text
 from archgen.syntax.yaml_writer import write_yaml
@@ -18,7 +19,7 @@ def map_package(folder: Path, body: str) -> dict[str, Any]:
     imported = import_package(folder, body)
     sections = merge_slices(imported)
     findings = check_text("archgen: 1\n" + write_yaml(sections))
-    assert [finding.message for finding in findings if finding.severity == "error"] == []
+    assert [finding.message for finding in findings if finding.effective_severity is Severity.ERROR] == []
     return drop_hints(sections)
 
 
@@ -80,6 +81,25 @@ def test_what_is_extended_is_a_type_and_what_extends_it_is_made_from_it(tmp_path
         "base": {"inputs": {"a": {}}, "outputs": {"pose": {"type": "Pose"}}},
         "fine": {"is": "base", "outputs": {"pose": {"type": "Fine_Pose"}, "more": {"type": "Pose"}}},
     }
+
+
+def test_a_part_that_is_refined_to_one_with_more_makes_a_type_of_its_own(tmp_path: Path) -> None:
+    sections = map_package(
+        tmp_path,
+        """
+        process one features x: out data port; end one;
+        process two features x: out data port; y: out data port; end two;
+        system s end s;
+        system implementation s.i subcomponents p: process one; end s.i;
+        system implementation s.j extends s.i subcomponents p: refined to process two; end s.j;
+        system all_of end all_of;
+        system implementation all_of.i
+          subcomponents a: system s.i; b: system s.i; c: system s.j; d: system s.j;
+        end all_of.i;
+        """,
+    )
+    assert sections["component_types"]["s_i"] == {"components": {"p": {"outputs": {"x": {}}}}}
+    assert sections["component_types"]["s_j"] == {"components": {"p": {"outputs": {"x": {}, "y": {}}}}}
 
 
 def test_systems_of_systems_are_groups_and_composed_components(tmp_path: Path) -> None:

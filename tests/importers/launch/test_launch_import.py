@@ -316,6 +316,14 @@ def make_node(name, number=9):
             'return LaunchDescription([Node(package="p", executable="e", name="n", parameters=[{"a": load("x")}])])',
             'not taken: Node:14: the parameter `a` is computed: `load("x")`',
         ),
+        (
+            'return LaunchDescription([Node(package="p", executable="e", name="n", parameters=[{"a": THERE}])])',
+            "not taken: Node:14: the parameter `a` is computed: `THERE`",
+        ),
+        (
+            'return LaunchDescription([Node(package="p", executable="e", name=os.path)])',
+            "not taken: Node:14: its name is computed: `os.path`",
+        ),
         ("return LaunchDescription(find_all())", "not taken: find_all:14: what it gives is computed: `find_all()`"),
         (
             "return LaunchDescription([IncludeLaunchDescription(PythonLaunchDescriptionSource([FindPackageShare('far'), '/a.launch.py']))])",
@@ -333,6 +341,47 @@ def make_node(name, number=9):
 )
 def test_what_is_computed_is_noted_with_its_line(body: str, expected: str, tmp_path: Path) -> None:
     assert expected in messages_of(read_python(tmp_path, body))
+
+
+def test_modules_beside_the_file_are_read(tmp_path: Path) -> None:
+    helper = """
+    import os
+    from launch_ros.actions import Node
+    PACKAGE = "helped"
+    def make(name, **more):
+        return Node(package=PACKAGE, executable=find_program(), name=name)
+    """
+    body = """
+    import helper
+    from helper import make as make_node, PACKAGE
+    return LaunchDescription([helper.make("a"), make_node("b"), Node(package=PACKAGE, executable="e", name="c")])
+    """
+    imported = read_python(tmp_path, body, launch___helper__py=helper)
+    assert {name: node["package"] for name, node in nodes_of(imported).items()} == dict.fromkeys("abc", "helped")
+    assert [str(note.span) for note in imported.notes] == ["helper.py:6:1"]
+
+
+def test_modules_are_looked_for_where_the_file_says(tmp_path: Path) -> None:
+    body = """
+    import sys
+    sys.path.append(os.path.join(get_package_share_directory("bot"), "tools"))
+    import helper
+    return LaunchDescription([Node(package=helper.PACKAGE, executable="e", name="n")])
+    """
+    manifest = "<package><name>bot</name></package>"
+    imported = read_python(tmp_path, body, tools___helper__py="PACKAGE = 'helped'\n", package__xml=manifest)
+    assert nodes_of(imported)["n"]["package"] == "helped"
+
+
+def test_two_ways_of_one_name_are_both_taken(tmp_path: Path) -> None:
+    body = """
+    if os.environ["DISTRO"] < "e":
+        driver = Node(package="p", node_executable="old", node_name="driver_old")
+    else:
+        driver = Node(package="p", executable="new", name="driver_new")
+    return LaunchDescription([driver])
+    """
+    assert list(nodes_of(read_python(tmp_path, body))) == ["driver_old", "driver_new"]
 
 
 def test_both_ways_of_an_unknown_condition_are_read(tmp_path: Path) -> None:
@@ -403,8 +452,10 @@ def test_of_two_ways_to_start_a_node_the_default_is_taken(tmp_path: Path) -> Non
     """
     imported = read_python(tmp_path, body)
     assert nodes_of(imported)["n"]["plugin"] == "p::E"
+    hint = imported.slices["robot_launch.yaml"]["nodes"]["n"]["hints"]["launch"]
+    assert hint["other_ways"] == [{"package": "p", "executable": "e", "conditions": ["unless $(var composed)"]}]
     assert messages_of(imported) == [
-        "not taken: Node:18: another action starts `/n`, too: this one (only unless $(var composed)) is left out",
+        "noted: Node:18: another action starts `/n`, too: this one (only unless $(var composed)) is kept as a hint",
         "noted: ComposableNode:20: the container `/far` is started elsewhere: only its name is known",
     ]
 
@@ -418,6 +469,7 @@ ROS_1 = """\
   <machine name="base" address="10.0.0.2"/>
   <group ns="$(arg side)">
     <remap from="image" to="/image"/>
+    <remap from="~map" to="map"/>
     <node pkg="cam" type="driver.py" name="camera" machine="base" args="-v" respawn="true">
       <param name="rate" value="30"/>
       <rosparam>{size: [640, 480], mode: {auto: true}}</rosparam>
@@ -450,7 +502,7 @@ def test_files_of_ros_1_are_read(tmp_path: Path) -> None:
         "executable": "driver.py",
         "host": "base",
         "arguments": ["-v"],
-        "remaps": {"image": "/image"},
+        "remaps": {"image": "/image", "~/map": "map"},
         "parameters": {
             "rate": 30,
             "size": [640, 480],
@@ -463,7 +515,7 @@ def test_files_of_ros_1_are_read(tmp_path: Path) -> None:
     assert (nodes["filter"]["kind"], nodes["filter"]["container"]) == ("nodelet", "manager")
     assert sections["nodes"]["rviz"]["hints"]["launch"]["by_default"] == "off"
     assert messages_of(imported) == [
-        "not taken: test:18: a test is no part of the robot",
+        "not taken: test:19: a test is no part of the robot",
         "not taken: param:4: `/camera/gain` stands on the parameter server and below no node of the files",
         "not taken: param:5: `/nobody/x` stands on the parameter server and below no node of the files",
     ]

@@ -179,6 +179,26 @@ def test_the_result_is_a_sound_project(tmp_path: Path) -> None:
     assert not check_project(project).has_errors
 
 
+def test_empty_parts_of_services_are_parts(tmp_path: Path) -> None:
+    folder = write_package(tmp_path / "lifter", action___Wait__action="---\n---\n", srv___Ping__srv="---\n")
+    imported = read_packages([folder])
+    assert imported.slices["lifter.yaml"]["types"] == {
+        "Wait": {"message": "lifter/action/Wait", "request": {}, "response": {}, "feedback": {}},
+        "Ping": {"message": "lifter/srv/Ping", "request": {}, "response": {}},
+    }
+    assert check_types(imported, tmp_path / "project") == []
+
+
+def check_types(imported: ForeignImport, folder: Path) -> list[str]:
+    """Return the errors of a project that is made of an import."""
+    folder.mkdir()
+    (folder / "archgen.yaml").write_text("archgen: 1\nproject: {id: lift}\nros: {distro: jazzy}\n")
+    for name, sections in imported.slices.items():
+        (folder / name).write_text(write_yaml(sections))
+    checked = check_project(folder)
+    return [finding.message for finding in checked.findings if checked.has_errors]
+
+
 def test_messages_that_archgen_knows_are_only_named(tmp_path: Path) -> None:
     folder = write_package(
         tmp_path / "std_srvs",

@@ -210,10 +210,10 @@ def test_a_component_without_realization_has_no_parameters_and_a_note(tmp_path: 
 @pytest.mark.parametrize(
     ("text", "timing"),
     [
-        ("0.02", {"behaviour": "periodic", "period": "20 ms"}),
-        ("2", {"behaviour": "periodic", "period": "2 s"}),
-        ("0.0000015", {"behaviour": "periodic", "period": "1500 ns"}),
-        ("50 Hz", {"behaviour": "periodic", "rate": "50 Hz"}),
+        ("0.02", {"period": "20 ms"}),
+        ("2", {"period": "2 s"}),
+        ("0.0000015", {"period": "1500 ns"}),
+        ("50 Hz", {"rate": "50 Hz"}),
         ("0", None),
         ("0.0", None),
     ],
