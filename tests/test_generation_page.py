@@ -89,7 +89,7 @@ def test_what_a_later_run_does(run: Run, robot: Path) -> None:
         [
             "yours    own/convert.py  (it lacks read_mode)",
             "changed  run_all.sh",
-            "same     stubs/stub_grip.py",
+            "yours    stubs/stub_grip.py",
             "yours    stubs/stub_mode.py",
         ],
     )

@@ -14,7 +14,7 @@ from archgen.diagnostics.safe_text import measure_width
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
-    from archgen.views.elements.element_card import ElementCard
+    from archgen.views.elements.card_parts import ElementCard
 
 
 _TEXT_WIDTH = 96
@@ -32,12 +32,12 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     """
     from archgen.diagnostics.safe_text import make_visible
     from archgen.timing.chains.word_resolution import unknown_name_text
-    from archgen.views.elements import element_card
+    from archgen.views.elements import element_card, element_names
     from archgen.views.lookup import add_timing, make_lookup
 
     checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
-    timed_kinds = {kind for word in words for kind, _ in element_card.find_elements(lookup, word)}
+    timed_kinds = {kind for word in words for kind, _ in element_names.find_elements(lookup, word)}
     if checked_project.analysis is not None and not timed_kinds.isdisjoint(
         {"requirement", "chain", "composed", "use case"}
     ):
@@ -47,11 +47,11 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
         lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
     unknown_words = []
     for word in words:
-        matches = element_card.find_elements(lookup, word)
+        matches = element_names.find_elements(lookup, word)
         for kind, name in matches:
             click.echo(format_card(element_card.make_card(lookup, kind, name), find_width(sys.stdout)))
         if not matches:
-            unknown_words.append(unknown_name_text(word, element_card.kinds_by_id(lookup)))
+            unknown_words.append(unknown_name_text(word, element_names.kinds_by_id(lookup)))
     if unknown_words:
         raise click.UsageError(make_visible("\n".join(unknown_words)))
 

@@ -26,7 +26,8 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
 from archgen.model.requirement import Requirement
 from archgen.model.variant import Variant
-from archgen.views.elements.element_card import kinds_by_id, make_card
+from archgen.views.elements.element_card import make_card
+from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.resolved_record import make_record
 from tests.running import ROOT

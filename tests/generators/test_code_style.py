@@ -30,6 +30,7 @@ ROS_BACKENDS = {"ros2_python": "jazzy", "ros1_python": "noetic"}
 NOT_OF_ROS = "A,I,Q"
 """What is judged in packages of ROS alone: names as of builtins, the order of imports, quotes."""
 SEEDS = (20, 21)
+ODD_PROJECTS = Path(__file__).parent / "odd_projects"
 _TITLED = ("groups", "components", "component_types")
 
 
@@ -61,6 +62,9 @@ def workspaces(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 project = folder / f"{kind}_{name}" / "project"
                 project.mkdir(parents=True)
                 (project / "archgen.yaml").write_text(yaml.safe_dump(made, allow_unicode=True), encoding="utf-8")
+    for path in sorted(ODD_PROJECTS.glob("*.yaml")):
+        (folder / f"hostile_{path.stem}" / "project").mkdir(parents=True)
+        shutil.copyfile(path, folder / f"hostile_{path.stem}" / "project" / "archgen.yaml")
     for workspace in sorted(folder.iterdir()):
         _generate_all(workspace)
     return folder

@@ -25,6 +25,7 @@ from tests.generators.middleware_projects import (
     write_project,
 )
 from tests.generators.player_configuration import read_configuration
+from tests.generators.simulation.random_robots import make_robot
 from tests.hostile import TEXTS
 from tests.running import ROOT, contents
 
@@ -200,6 +201,14 @@ def test_examples_compile(example: str, middleware: str, tmp_path: Path) -> None
     generate(check_project(ROOT / example), tmp_path / "w", middleware)
     _read_all(tmp_path / "w")
     assert compile_middleware(tmp_path / "w", middleware, tmp_path) == ""
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_random_robots_have_files_that_can_be_read(seed: int, tmp_path: Path) -> None:
+    project = write_project(tmp_path / "p", make_robot(seed).text)
+    for middleware in MIDDLEWARES:
+        assert generate(project, tmp_path / "w", middleware) == []
+    _read_all(tmp_path / "w")
 
 
 ODD_LEFT_OUT = ["`auto.void a.b` and `auto.void a.B` give the same parameter `aB`"]

@@ -25,7 +25,11 @@ PROGRAMS = {
     },
 }
 """What simulates is one program: these files are those of the part that was asked for last, as its page says."""
-BACKENDS = [name for name, each in find_backends(ROOT / "docs")[0].items() if each.makes == "workspace"]
+MODELS = {"aadl", "openrtm", "orocos", "player"}
+"""What writes one model, or one deployment, for the whole of a part: each part is given a folder of its own."""
+BACKENDS = [
+    name for name, each in find_backends(ROOT / "docs")[0].items() if each.makes == "workspace" and name not in MODELS
+]
 PROJECT = """\
 archgen: 1
 project: {id: robot, title: Robot}

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen.cli.show_command import format_card
-from archgen.views.elements.element_card import find_elements, make_card
+from archgen.views.elements.element_card import make_card
+from archgen.views.elements.element_names import find_elements
 from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.pages.host_pages import make_host_pages
 from archgen.views.shapes import Facts

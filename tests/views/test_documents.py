@@ -17,7 +17,7 @@ from archgen.pipeline import CheckedProject
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import make_scoped_lookup, select_elements
 from archgen.views import inline_text, resolved_record
-from archgen.views.elements import element_card
+from archgen.views.elements import element_card, element_names
 from archgen.views.graphs import make_all_graphs
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline, site_pages
@@ -171,7 +171,7 @@ def test_all_connections_are_listed(whole: Lookup) -> None:
 
 
 def test_every_element_has_a_card(whole: Lookup) -> None:
-    for name, sorts in element_card.kinds_by_id(whole).items():
+    for name, sorts in element_names.kinds_by_id(whole).items():
         for sort in sorts:
             made = element_card.make_card(whole, sort, name)
             assert made.id == name
@@ -180,10 +180,10 @@ def test_every_element_has_a_card(whole: Lookup) -> None:
 
 def test_a_card_is_found_by_the_end_of_an_id_or_by_a_title(whole: Lookup) -> None:
     wanted = [("component", "environment_state.object_recognition")]
-    assert element_card.find_elements(whole, "object_recognition") == wanted
-    assert element_card.find_elements(whole, "environment_state.object_recognition") == wanted
-    assert element_card.find_elements(whole, "object Recognition") == wanted
-    assert element_card.find_elements(whole, "nothing of this name") == []
+    assert element_names.find_elements(whole, "object_recognition") == wanted
+    assert element_names.find_elements(whole, "environment_state.object_recognition") == wanted
+    assert element_names.find_elements(whole, "object Recognition") == wanted
+    assert element_names.find_elements(whole, "nothing of this name") == []
 
 
 def test_empty_projects_have_all_documents(tmp_path: Path) -> None:

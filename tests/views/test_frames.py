@@ -11,7 +11,8 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import make_scoped_lookup
-from archgen.views.elements.element_card import find_elements, make_card
+from archgen.views.elements.element_card import make_card
+from archgen.views.elements.element_names import find_elements
 from archgen.views.elements.frame_users import list_shown_frames
 from archgen.views.graphs.frame_graph import draw_frames
 from archgen.views.lookup import Lookup

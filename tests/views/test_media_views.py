@@ -9,7 +9,8 @@ import pytest
 from archgen.model.port_media import key_of_carrier, label_of_carrier
 from archgen.pipeline import check_project
 from archgen.views.carrier_record import record_carriers, record_endpoints
-from archgen.views.elements.element_card import find_elements, make_card
+from archgen.views.elements.element_card import make_card
+from archgen.views.elements.element_names import find_elements
 from archgen.views.explorer.map_flows import make_flow_tables
 from archgen.views.graphs.implementation_graph import draw_implementation
 from archgen.views.graphs.ros_graph import draw_ros_graph

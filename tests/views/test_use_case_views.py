@@ -10,7 +10,8 @@ from archgen import pipeline
 from archgen.analyses.size_counts import measure_size
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import make_scoped_lookup
-from archgen.views.elements.element_card import find_elements, make_card
+from archgen.views.elements.element_card import make_card
+from archgen.views.elements.element_names import find_elements
 from archgen.views.lookup import Lookup
 from archgen.views.resolved_record import make_record
 from archgen.views.search.functional_entries import make_requirement_entries

@@ -258,7 +258,23 @@ def _make_slice(**sections: Mapping[str, Any]) -> dict[str, Any]:
 def _subtract_base(body: Body, base_id: str, component_types: Mapping[str, Body]) -> Body:
     """Return a component type as made from another one: what it says otherwise than that."""
     base = component_types[base_id]
+    if _adds_inside(body, _write_whole(base, component_types)):
+        # A part was refined to one that has more: what is made from a type adds nothing inside of its parts.
+        return body
     return {"is": base_id, **_subtract(body, _write_whole(base, component_types))}
+
+
+def _adds_inside(body: Body, base: Body) -> bool:
+    """Whether a part of both has ports or parts here that it has not in the base."""
+    for name, part in body.get("components", {}).items():
+        known = base.get("components", {}).get(name)
+        if known is None:
+            continue
+        if any(part.get(key, {}).keys() - known.get(key, {}).keys() for key in ("inputs", "outputs", "components")):
+            return True
+        if _adds_inside(part, known):
+            return True
+    return False
 
 
 def _write_whole(body: Body, component_types: Mapping[str, Body]) -> Body:

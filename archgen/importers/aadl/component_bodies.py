@@ -170,7 +170,7 @@ def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes
             notes.add("connection", words, wires[0].connection.span)
             continue
         media = {find_medium(wire, structure, scope) for wire in wires}
-        medium = media.pop() if len(media) == 1 else "physical"
+        medium = min(media) if len(media) == 1 else "physical"
         reach_port(bodies[part_id], "outputs", port_id)["medium"] = medium
         for consumer in (wire.consumer for wire in wires):
             if consumer.part and consumer.part.part.category == "device" and consumer.part.id in bodies:

@@ -135,7 +135,7 @@ class HardwareMapper:
         )
         if bound is None and system.instances[path].structure.is_node:
             inner = {target for source, target in tree.bindings.items() if source[: len(path)] == path}
-            bound = inner.pop() if len(inner) == 1 else None
+            bound = min(inner) if len(inner) == 1 else None
         for _ in range(5):
             if bound is None or bound in host_ids:
                 break

@@ -16,6 +16,8 @@ from archgen.importers.launch.launch_values import (
     Substitution,
     UnknownValue,
     describe_value,
+    is_plain,
+    name_object,
     write_plain,
 )
 
@@ -73,7 +75,7 @@ class LaunchContext:
             return self._join(value, "", depth + 1)
         if isinstance(value, Mapping):
             return UnknownValue("a mapping where a text is expected")
-        return write_plain(value)
+        return write_plain(value) if is_plain(value) else name_object(value)
 
     def _join(self, parts: Sequence[LaunchValue], separator: str, depth: int) -> str | UnknownValue:
         texts: list[str] = []

@@ -48,6 +48,17 @@ def join_values(parts: Sequence[LaunchValue]) -> LaunchValue:
     return Substitution("join", tuple(parts))
 
 
+def is_plain(value: LaunchValue) -> bool:
+    """Whether a value is a text, a number, a boolean or None: no module, function or action."""
+    return value is None or isinstance(value, bool | int | float | str)
+
+
+def name_object(value: object) -> UnknownValue:
+    """Return a module, function or action that stands where a value is expected as what is not known."""
+    name = getattr(value, "name", None)
+    return UnknownValue(name if isinstance(name, str) else type(value).__name__)
+
+
 def write_plain(value: LaunchValue) -> str:
     """Return a plain value as a launch file writes it."""
     if isinstance(value, bool):
@@ -71,7 +82,7 @@ def describe_value(value: LaunchValue, depth: int = 0) -> str:
         )
     if isinstance(value, list | tuple):
         return "".join(describe_value(part, depth + 1) for part in value)
-    return write_plain(value)
+    return write_plain(value) if is_plain(value) else f"<{name_object(value).reason}>"
 
 
 def _describe_substitution(value: Substitution, depth: int) -> str:  # noqa: PLR0911 - a kind each

@@ -7,7 +7,7 @@ from typing import Any
 
 from archgen.importers.launch.command_words import split_words
 from archgen.importers.launch.launch_context import LaunchContext
-from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, name_object
 from archgen.syntax.plain_scalars import resolve_scalar
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import node_to_data
@@ -51,7 +51,7 @@ def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 
             for item in value
         ]
         return next((item for item in items if isinstance(item, UnknownValue)), items)
-    return _evaluate_substitution(value, context)
+    return _evaluate_substitution(value, context) if isinstance(value, Substitution) else name_object(value)
 
 
 def _evaluate_substitution(value: Substitution, context: LaunchContext) -> Any:  # noqa: ANN401

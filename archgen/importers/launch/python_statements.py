@@ -220,7 +220,7 @@ class StatementReader(ComprehensionReader):
         if declared.kwarg:
             rest = {name: value for name, value in arguments.named.items() if name not in known_names}
             scope.values[declared.kwarg.arg] = rest
-        for name in known_names - scope.values.keys():
+        for name in sorted(known_names - scope.values.keys()):
             scope.values[name] = UnknownValue(name, function.definition.lineno)
 
 

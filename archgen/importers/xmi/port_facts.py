@@ -157,7 +157,7 @@ class InterfaceUses:
         """Return the type of what a port's interfaces give: what their only `get` operation returns."""
         keys = port.provided or port.required
         names = {self._find_returned(key, port.name) if isinstance(key, XmlElement) else "" for key in keys}
-        return names.pop() if len(names) == 1 else ""
+        return min(names) if len(names) == 1 else ""
 
     def _find_returned(self, interface: XmlElement, port_name: str) -> str:
         operations = list_children(interface, "Operation")

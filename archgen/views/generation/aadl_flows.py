@@ -137,15 +137,15 @@ class FlowWriter:
 
     def _find_latency(self, terms: Sequence[ChainTerm]) -> TimeRange | None:
         """Return how long the terms of one process take (ns), None where that is open."""
-        longest = Fraction(0)
+        shortest = longest = Fraction(0)
         for index, term in enumerate(terms):
+            shortest += self._find_best(term)
             # The way to the first one of a process is the connection's.
             inner_link = () if index == 0 else (term.link,)
             for value in (term.sampling, term.response, *inner_link):
                 if value.value is None or not value.complete:
                     return None
                 longest += value.value
-        shortest = sum((self._find_best(term) for term in terms), Fraction(0))
         return (min(shortest, longest), longest) if can_be_written(longest) else None
 
     def _find_best(self, term: ChainTerm) -> Fraction:

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.model.component import Component
+from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
 from archgen.views.generation.aadl_words import AadlProperty, make_property, write_text, write_texts
 
 
-def read_aadl_hints(*elements: Node | Component) -> dict[str, Any]:
+def read_aadl_hints(*elements: Node | Component | ConceptualType) -> dict[str, Any]:
     """Return the hints of elements that are one in AADL; what the last one says counts."""
     found: dict[str, Any] = {}
     for element in elements:
@@ -26,10 +27,20 @@ def list_source_properties(hints: Mapping[str, Any]) -> list[AadlProperty]:
     schema = _find_text(hints.get("internal_state"), "schema")
     if schema:
         found.append(make_property("Source_Text", write_texts((schema,)), "internal_state"))
+    return found + list_own_sources(hints)
+
+
+def list_own_sources(hints: Mapping[str, Any]) -> list[AadlProperty]:
+    """Return the sources of an element itself."""
     sources = _list_texts(hints.get("source_text"))
-    if sources:
-        found.append(make_property("Source_Text", write_texts(sources)))
-    return found
+    return [make_property("Source_Text", write_texts(sources))] if sources else []
+
+
+def has_tf_access(hints: Mapping[str, Any]) -> bool:
+    """Return whether a process had access to the transformations, whatever it called it."""
+    accesses = hints.get("access")
+    kept = accesses.values() if isinstance(accesses, Mapping) else ()
+    return any((_find_text(each, "type") or "").lower() == "ros::tf" for each in kept)
 
 
 def find_thread_name(hints: Mapping[str, Any]) -> str | None:
@@ -44,9 +55,10 @@ def find_thread_name(hints: Mapping[str, Any]) -> str | None:
 def list_function_properties(hints: Mapping[str, Any], component_name: str) -> list[AadlProperty]:
     """Return headers and entry of the function that a component's thread calls, in terms of that thread."""
     threads = hints.get("threads")
-    if not isinstance(threads, Mapping) or not threads:
-        return []
-    thread = threads.get(component_name) or next(iter(threads.values()))
+    # A component that is a thread itself says it without naming one.
+    thread: object = hints
+    if isinstance(threads, Mapping) and threads:
+        thread = threads.get(component_name) or next(iter(threads.values()))
     functions = thread.get("functions") if isinstance(thread, Mapping) else None
     if not isinstance(functions, Mapping) or not functions:
         return []

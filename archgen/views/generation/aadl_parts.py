@@ -8,7 +8,7 @@ from typing import Any
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
-from archgen.views.generation.aadl_ports import PortPart
+from archgen.views.generation.aadl_ports import PortPart, find_outer_port
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -107,7 +107,7 @@ class SystemTree:
     def find_home(self, process: Process) -> tuple[SystemPart, str]:
         """Return the system that a process stands in, and the component that it is there; nothing for one of several."""
         components = [found for each in process.node.implements if (found := self._architecture.find_component(each))]
-        whole = self._find_whole(process)
+        whole = process.whole
         if whole is not None:
             return self._open_system(whole.parent or whole.group), whole.id
         homes = dict.fromkeys(each.parent or each.group for each in components)
@@ -115,14 +115,6 @@ class SystemTree:
         home = next(iter(homes)) if len(homes) == 1 else next(iter(groups)) if len(groups) == 1 else None
         system = self._open_system(home) if home else self.root
         return system, components[0].id if len(components) == 1 else ""
-
-    def _find_whole(self, process: Process) -> Component | None:
-        """Return the composed component that a process is the only one of."""
-        for each in process.node.wholes:
-            shell = self._architecture.shells.get(each)
-            if shell and set(self._architecture.leaves_of(each)) == set(process.node.implements):
-                return shell
-        return None
 
     def _open_system(self, element_id: str) -> SystemPart:
         if element_id not in self.parts:
@@ -186,11 +178,7 @@ class SystemTree:
         shell = system.element
         if not isinstance(shell, Component):
             return None
-        kind, ports = ("output", shell.outputs) if part.is_output else ("input", shell.inputs)
-        return next(
-            (name for name, port in ports.items() if part.port.id in self._architecture.leaf_ports_of(kind, port.id)),
-            None,
-        )
+        return find_outer_port(self._architecture, shell, part)
 
     def give_access(self, process: Process, tf_name: str) -> None:
         """Lead the access to the transformations from the outermost system to a process."""

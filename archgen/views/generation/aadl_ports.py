@@ -48,6 +48,14 @@ class PortPart:
         return not self.sources or output_id in self.sources
 
 
+def find_outer_port(architecture: Architecture, shell: Component, part: PortPart) -> str | None:
+    """Return the port of a composed component that passes a port inside on."""
+    kind, ports = ("output", shell.outputs) if part.is_output else ("input", shell.inputs)
+    return next(
+        (name for name, port in ports.items() if part.port.id in architecture.leaf_ports_of(kind, port.id)), None
+    )
+
+
 def list_port_parts(
     architecture: Architecture, types: TypeBook, component: Component, triggers: frozenset[str]
 ) -> list[PortPart]:

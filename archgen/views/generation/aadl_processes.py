@@ -13,11 +13,12 @@ from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.aadl_behaviours import Behaviour
 from archgen.views.generation.aadl_hints import (
     find_thread_name,
+    has_tf_access,
     list_function_properties,
     list_source_properties,
     read_aadl_hints,
 )
-from archgen.views.generation.aadl_ports import PortPart
+from archgen.views.generation.aadl_ports import PortPart, find_outer_port
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -47,6 +48,15 @@ _INTERNAL_KINDS = {
     "calls": "requires subprogram access",
 }
 """What a node has that is no port of a component, by its use."""
+
+
+def find_whole(architecture: Architecture, node: Node) -> Component | None:
+    """Return the composed component that a node is the only process of."""
+    for each in node.wholes:
+        shell = architecture.shells.get(each)
+        if shell and set(architecture.leaves_of(each)) == set(node.implements):
+            return shell
+    return None
 
 
 class Process:
@@ -79,17 +89,22 @@ class Process:
         self._subcomponents: list[dict[str, Any]] = []
         self._properties: list[AadlProperty] = []
         components = [found for each in node.implements if (found := architecture.find_component(each)) is not None]
-        self._hints = read_aadl_hints(node, *components)
+        self.whole = find_whole(architecture, node)
+        """The composed component that it is the only process of."""
+        self._hints = read_aadl_hints(*components, *([self.whole] if self.whole else []))
         self.behaviours = {
             each.id: Behaviour(architecture, types, each, node.timing.get(each.id) or node.timing.get("") or _NO_TIMING)
             for each in components
         }
-        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or "tf" in (
-            self._hints.get("access") or ()
+        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or has_tf_access(
+            self._hints
         )
         # Ports come before threads: it is they that others see.
         self._feature_items = [
-            self._make_feature(part) for behaviour in self.behaviours.values() for part in behaviour.parts
+            self._make_feature(part)
+            for behaviour in self.behaviours.values()
+            for part in behaviour.parts
+            if not self._is_inside_only(part)
         ]
         self._feature_items += [
             self._make_internal_feature(types, each)
@@ -115,8 +130,9 @@ class Process:
 
     def _make_feature(self, part: PortPart) -> dict[str, Any]:
         port = part.port
-        name = self.features[part.key] = self.names.take_name(part.name)
-        properties = make_named_properties(name, port.name)
+        shell_port = self._find_shell_port(part)
+        name = self.features[part.key] = self.names.take_name(shell_port or part.name)
+        properties = make_named_properties(name, shell_port or port.name)
         endpoint = next(iter(self.find_endpoints(part)), None)
         if endpoint and endpoint.medium == "ros":
             own_name = endpoint.own_name or endpoint.name
@@ -128,6 +144,22 @@ class Process:
             frame=port.frame,
         )
         return make_item(name, part.text, properties)
+
+    def _find_shell_port(self, part: PortPart) -> str | None:
+        """Return the port of the composed component that it is the process of, if that passes a port inside on."""
+        if self.whole is None:
+            return None
+        return find_outer_port(self._architecture, self.whole, part)
+
+    def _is_inside_only(self, part: PortPart) -> bool:
+        """Whether nothing outside of a composed component that is one process sees a port inside."""
+        if self.whole is None or self._find_shell_port(part):
+            return False
+        edges = [
+            edge for edge in self._architecture.edges if part.port.id == (edge.output if part.is_output else edge.input)
+        ]
+        peers = {(edge.input if part.is_output else edge.output).rpartition(".")[0] for edge in edges}
+        return bool(peers) and peers <= set(self.node.implements)
 
     def _make_internal_feature(self, types: TypeBook, endpoint: Endpoint) -> dict[str, Any]:
         classifier = types.name_type(endpoint.type or endpoint.message, endpoint.flow)
@@ -148,6 +180,8 @@ class Process:
         properties = make_text_properties(component=None if is_only else component.id)
         self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
         for part in behaviour.parts:
+            if part.key not in self.features:
+                continue
             feature, own_port = self.features[part.key], f"{name}.{behaviour.port_names[part.key]}"
             ends = (own_port, feature) if part.is_output else (feature, own_port)
             self._connect(f"{feature}_link", f"{part.connection_kind} {ends[0]} -> {ends[1]}")
@@ -183,7 +217,7 @@ class Process:
         for part in (output, reader):
             component = part.port.component
             ends.append(f"{self.threads[component]}.{self.behaviours[component].port_names[part.key]}")
-        name = f"{self.features[output.key]}_to_{self.features[reader.key]}"
+        name = f"{ends[0]}_to_{ends[1]}".replace(".", "_")
         self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
 
     def _find_own_owner(self, component: Component | None) -> str | None:
@@ -196,7 +230,7 @@ class Process:
         """Return its threads, its type and its implementation."""
         node = self.node
         behaviours = tuple(self.behaviours.values())
-        component = behaviours[0].component if len(behaviours) == 1 else None
+        component = behaviours[0].component if len(behaviours) == 1 else self.whole
         element = component or node
         properties = make_named_properties(element.id, element.id, element.title)
         if component is not None and node.title != title_from_id(node.id):
@@ -204,7 +238,7 @@ class Process:
         properties += make_text_properties(
             description=element.description,
             functionality=component.functionality if component else None,
-            role=behaviours[0].further_role if component else None,
+            role=behaviours[0].further_role if len(behaviours) == 1 else None,
             owner=self._find_own_owner(component),
             package_name=node.package,
             executable_name=node.executable,

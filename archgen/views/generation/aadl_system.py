@@ -11,6 +11,7 @@ from archgen.model.node import Endpoint
 from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
 from archgen.views.generation.aadl_flows import FlowWriter, RouteEnds
+from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
 from archgen.views.generation.aadl_platform import Platform
 from archgen.views.generation.aadl_ports import PortPart
@@ -64,6 +65,7 @@ class SystemWriter:
         properties = make_named_properties(process.name_in_system, own_id)
         if own_id != process.node.id:
             properties += make_text_properties(node=process.node.id)
+        properties += list_own_sources(read_aadl_hints(process.node))
         process.home.subcomponents.append(
             make_item(process.name_in_system, f"process {package}::{process.name}.impl", properties)
         )

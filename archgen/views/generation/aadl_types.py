@@ -8,6 +8,7 @@ from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType, DataField, flow_of, full_message_name
+from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
@@ -102,6 +103,7 @@ class TypeBook:
         ]
         if flow == "topic" and size and size.value <= _GREATEST_SIZE and size.value.denominator == 1:
             properties.append(make_property("Data_Size", _write_size(int(size.value))))
+        properties += list_own_sources(read_aadl_hints(declared))
         place = write_place(declared.at)
         if flow != "topic":
             if declared.message and flow_of(declared.message) == flow and not declared.has_content:

@@ -35,6 +35,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     """Return the components that hold no others, in their order, and the word for the project's middleware."""
     architecture = context.architecture
     data = {
+        "project": {"id": architecture.project.id, "title": architecture.project.title},
         "middleware": architecture.project.middleware,
         "components": [
             _record_component(context, architecture.components[component_id])

@@ -220,6 +220,12 @@ def record_class(
                 "place": write_place(port.at),
             }
         )
+    read_or_sent_types = [
+        each
+        for (direction, _), value_types in own.port_types.items()
+        if direction in {"input", "output"}
+        for each in value_types
+    ]
     is_shared = len(own.components) > 1 or first.component_type is not None
     return {
         "package": own.name.package,
@@ -235,7 +241,7 @@ def record_class(
         "parameters": parameters,
         "java_imports": types.list_java_imports(all_types, spellings, package),
         "server_imports": types.list_java_imports(server_types, spellings, package),
-        "modules": types.list_modules(all_types),
+        "modules": types.list_modules(read_or_sent_types),
         "server_modules": types.list_modules(server_types),
         **ports,
     }, findings

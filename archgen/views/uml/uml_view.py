@@ -93,7 +93,7 @@ def _list_shown_types(
     if selected is None:
         return list(bodies)
     everyone = {**architecture.components, **architecture.shells}
-    waiting = [everyone[each].type_name for each in _add_outer(selected) if each in everyone]
+    waiting = [everyone[each].type_name for each in sorted(_add_outer(selected)) if each in everyone]
     shown: set[str] = set()
     while waiting:
         name = waiting.pop()

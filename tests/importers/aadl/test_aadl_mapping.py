@@ -83,6 +83,25 @@ def test_what_is_extended_is_a_type_and_what_extends_it_is_made_from_it(tmp_path
     }
 
 
+def test_a_part_that_is_refined_to_one_with_more_makes_a_type_of_its_own(tmp_path: Path) -> None:
+    sections = map_package(
+        tmp_path,
+        """
+        process one features x: out data port; end one;
+        process two features x: out data port; y: out data port; end two;
+        system s end s;
+        system implementation s.i subcomponents p: process one; end s.i;
+        system implementation s.j extends s.i subcomponents p: refined to process two; end s.j;
+        system all_of end all_of;
+        system implementation all_of.i
+          subcomponents a: system s.i; b: system s.i; c: system s.j; d: system s.j;
+        end all_of.i;
+        """,
+    )
+    assert sections["component_types"]["s_i"] == {"components": {"p": {"outputs": {"x": {}}}}}
+    assert sections["component_types"]["s_j"] == {"components": {"p": {"outputs": {"x": {}, "y": {}}}}}
+
+
 def test_systems_of_systems_are_groups_and_composed_components(tmp_path: Path) -> None:
     sections = map_package(
         tmp_path,

@@ -316,6 +316,14 @@ def make_node(name, number=9):
             'return LaunchDescription([Node(package="p", executable="e", name="n", parameters=[{"a": load("x")}])])',
             'not taken: Node:14: the parameter `a` is computed: `load("x")`',
         ),
+        (
+            'return LaunchDescription([Node(package="p", executable="e", name="n", parameters=[{"a": THERE}])])',
+            "not taken: Node:14: the parameter `a` is computed: `THERE`",
+        ),
+        (
+            'return LaunchDescription([Node(package="p", executable="e", name=os.path)])',
+            "not taken: Node:14: its name is computed: `os.path`",
+        ),
         ("return LaunchDescription(find_all())", "not taken: find_all:14: what it gives is computed: `find_all()`"),
         (
             "return LaunchDescription([IncludeLaunchDescription(PythonLaunchDescriptionSource([FindPackageShare('far'), '/a.launch.py']))])",

@@ -89,3 +89,11 @@ def test_equal_tags_are_told(tmp_path: Path) -> None:
     (found,) = find_unfit_tags(make_context(tmp_path, second_name="X"), UNMET_NEED)
     assert found.message == "`g.front size.x` and `g.front size.X` have the same tag `Size.X`"
     assert [found.span.line, found.labels[0].span.line] == [9, 9]
+
+
+def test_the_view_says_whose_components_they_are(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(
+        "project: {id: rover, title: The rover}\ngroups: {g: {components: {a: {}}}}\n"
+    )
+    data = make_view(GenerationContext(check_project(tmp_path).architecture)).data
+    assert data["project"] == {"id": "rover", "title": "The rover"}

@@ -1,5 +1,6 @@
 #pragma once
 #include <rtm/Manager.h>
+#define RTC_WARN(arguments) static_cast<void>(sizeof(rtclog.warn arguments))
 namespace RTC {
 using UniqueId = int;
 enum ReturnCode_t { RTC_OK, RTC_ERROR, BAD_PARAMETER, UNSUPPORTED, OUT_OF_RESOURCES, PRECONDITION_NOT_MET };
@@ -16,6 +17,7 @@ public:
   virtual ReturnCode_t onActivated(UniqueId context);
   virtual ReturnCode_t onDeactivated(UniqueId context);
   virtual ReturnCode_t onExecute(UniqueId context);
+  struct Logger { int warn(const char * format, ...); } rtclog;
   bool addInPort(const char * name, InPortBase & port);
   bool addOutPort(const char * name, OutPortBase & port);
   bool addPort(PortBase & port);

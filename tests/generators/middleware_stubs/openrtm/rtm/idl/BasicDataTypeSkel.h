@@ -15,6 +15,7 @@ using ULongLong = std::uint64_t;
 using Float = float;
 using Double = double;
 char * string_dup(const char * text);
+class SystemException {};
 class String_member {
 public:
   String_member & operator=(const char * text);

@@ -1,0 +1,105 @@
+"""Which elements of an architecture a name means, whatever their kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from archgen.model.architecture import Architecture
+from archgen.model.node import Topic
+from archgen.model.port_media import name_on_medium
+from archgen.views.lookup import Lookup
+
+_COMPONENT_KINDS = frozenset({"component", "composed"})
+_NAMED_AFTER_COMPONENTS = frozenset({"node", "frame"})
+
+
+def elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
+    """Return all elements by kind; the keys appear as headings of cards."""
+    a = architecture
+    return {
+        # An id that several kinds share is found in this order.
+        "group": a.groups,
+        "composed": {shell_id: shell for shell_id, shell in a.shells.items() if shell_id not in a.components},
+        "component": a.components,
+        "component type": a.component_types,
+        "output": {**{port.id: port for each in a.shells.values() for port in each.outputs.values()}, **a.outputs},
+        "input": {**{port.id: port for each in a.shells.values() for port in each.inputs.values()}, **a.inputs},
+        "node": a.nodes,
+        "topic": a.topics,
+        "channel": _name_channels(a),
+        "type": a.types,
+        "requirement": a.requirements,
+        "use case": a.use_cases,
+        "partner": a.partners,
+        "host": a.hosts,
+        "container": a.containers,
+        "resource": a.resources,
+        "link": a.links,
+        "frame": a.frames,
+        "chain": a.chains,
+        "view": a.views,
+        "policy": a.policies,
+        "variant": a.variants,
+    }
+
+
+def _name_channels(architecture: Architecture) -> Mapping[str, Topic]:
+    """Return what runs over other media by the names that are written; what has none is called after its output."""
+    channels: dict[str, Topic] = {}
+    for key, channel in architecture.channels.items():
+        name = name_on_medium(channel)
+        if name not in architecture.outputs:
+            channels[key if name in channels or name in architecture.topics else name] = channel
+    return channels
+
+
+def kinds_by_id(lookup: Lookup) -> dict[str, list[str]]:
+    """Return each element's id with the kinds of element that have it."""
+    result: dict[str, list[str]] = {}
+    for kind, elements in elements_by_kind(lookup.architecture).items():
+        for element_id in elements:
+            result.setdefault(element_id, []).append(kind)
+    return result
+
+
+def find_elements(lookup: Lookup, name: str) -> list[tuple[str, str]]:
+    """Find the elements that a name may mean, as (kind, id) pairs.
+
+    Full ids win; then ids that end in the name; then titles of groups and components, ignoring case. A node or a frame
+    does not hide the components of its name: most nodes that nobody wrote are called after theirs.
+    """
+    kinds_of = kinds_by_id(lookup)
+    if name in kinds_of:
+        has_component_name = _NAMED_AFTER_COMPONENTS.issuperset(kinds_of[name])
+        components = _list_components_called(name, kinds_of) if has_component_name else ()
+        return [*components, *((kind, name) for kind in kinds_of[name])]
+    folded_name = name.casefold()
+    # `.` ends a group or component in an id, `/` a namespace in a topic or node: `scan` finds `/lidar/scan`.
+    suffix_matches = [
+        (kind, key) for key, kinds in kinds_of.items() if key.endswith((f".{name}", f"/{name}")) for kind in kinds
+    ]
+    if suffix_matches:
+        return suffix_matches
+    return [
+        (kind, key)
+        for key, kinds in kinds_of.items()
+        for kind in kinds
+        if _element_title(lookup, kind, key).casefold() == folded_name
+    ]
+
+
+def _list_components_called(name: str, kinds_of: Mapping[str, Sequence[str]]) -> Iterator[tuple[str, str]]:
+    for element_id, kinds in kinds_of.items():
+        if element_id.endswith(f".{name}"):
+            yield from ((kind, element_id) for kind in kinds if kind in _COMPONENT_KINDS)
+
+
+def _element_title(lookup: Lookup, kind: str, element_id: str) -> str:
+    """Return the title of a group or component, the id of anything else."""
+    architecture = lookup.architecture
+    if kind == "group":
+        return architecture.groups[element_id].title
+    if kind == "composed":
+        return architecture.shells[element_id].title
+    return architecture.components[element_id].title if kind == "component" else element_id

@@ -1,0 +1,92 @@
+"""Cards of the implementation level: nodes, and what they exchange over ROS and other media."""
+
+from __future__ import annotations
+
+import shlex
+
+from archgen.diagnostics.source_span import Span
+from archgen.model.node import Endpoint, Node, Topic
+from archgen.model.port_media import ROS, name_medium, name_on_medium
+from archgen.views import inline_text
+from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, format_findings, known_facts
+from archgen.views.elements.parameter_blocks import list_effective_lines
+from archgen.views.lookup import Lookup
+from archgen.views.start_phrases import describe_start
+
+
+def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
+    """Make the card of a node."""
+    facts = [
+        ("implements", ", ".join(node.implements)),
+        ("owner", ", ".join(node.owners) or "?"),
+        ("ROS name", "" if node.is_program else node.full_name),
+        ("kind", ", ".join(node.kinds)),
+        ("status", node.status or "?"),
+        ("package", node.package or "?"),
+        ("executable", node.executable or ""),
+        ("command", shlex.join(node.command)),
+        ("start", describe_start(node)),
+        ("host", node.host or "?"),
+        ("container", node.container or ""),
+        ("threads", format_fact(node.threads)),
+        ("scheduling", node.scheduling or ""),
+        ("callback_groups", inline_text.format_callback_groups(node)),
+        ("reentrant", "yes" if node.reentrant else ""),
+        (
+            "timing",
+            "; ".join(filter(None, (inline_text.format_short_timing(timing) for timing in node.timing.values()))),
+        ),
+    ]
+    lines = tuple(
+        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}"
+        for endpoint in lookup.endpoints_of.get(node.id, ())
+    )
+    lists = (
+        ("topics, services and actions", lines),
+        *drop_empty_lists(("parameters", tuple(list_effective_lines(lookup, node)))),
+        ("findings", tuple(format_findings(lookup, node.id))),
+    )
+    return ElementCard("node", node.id, node.title, node.at, known_facts(facts), lists)
+
+
+def _describe_endpoint(endpoint: Endpoint) -> str:
+    """Return the name of what a node uses with its message; over another medium than ROS, with its type."""
+    if endpoint.medium == ROS:
+        return f"{endpoint.name} ({endpoint.message or '?'})"
+    return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
+
+
+def make_topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
+    """Make the card of a topic, service or action."""
+    facts = [
+        ("message", ", ".join(topic.messages) or "?"),
+        ("types", ", ".join(topic.types)),
+        ("size", lookup.format_size(topic)),
+    ]
+    endpoints_by_role = (("from", topic.writers), ("to", topic.readers))
+    lists = tuple(
+        (name, tuple(f"{endpoint.node} ({inline_text.format_qos(endpoint.qos)})" for endpoint in endpoints))
+        for name, endpoints in endpoints_by_role
+    )
+    # Nothing declares a topic by itself: its first endpoint that stands in a file has to do.
+    span = next(
+        (endpoint.at for endpoint in (*topic.writers, *topic.readers) if endpoint.at.file), Span("", 0, 0, 0, 0)
+    )
+    return ElementCard(topic.flow, topic.name, topic.name, span, known_facts(facts), lists)
+
+
+def make_channel_card(lookup: Lookup, channel: Topic) -> ElementCard:
+    """Make the card of what nodes exchange over another medium."""
+    facts = [
+        ("medium", name_medium(channel.medium)),
+        ("types", ", ".join(channel.types)),
+        ("size", lookup.format_size(channel)),
+    ]
+    users = (*channel.writers, *channel.readers)
+    lists = tuple(
+        (role, tuple(dict.fromkeys(endpoint.node for endpoint in endpoints)))
+        for role, endpoints in (("from", channel.writers), ("to", channel.readers))
+    )
+    span = next((each.at for each in users if each.at.file), Span("", 0, 0, 0, 0))
+    name = name_on_medium(channel)
+    return ElementCard(channel.flow, name, name, span, known_facts(facts), lists)

@@ -1,0 +1,138 @@
+"""Cards of all other kinds: the fields that an element has, and who uses it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.model.architecture import UseCase
+from archgen.model.component import Component, Group
+from archgen.model.deployment import Container
+from archgen.model.node import Node
+from archgen.model.parameter import format_parameter
+from archgen.views import inline_text
+from archgen.views.elements import promise_words
+from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, format_findings, known_facts
+from archgen.views.elements.element_names import elements_by_kind
+from archgen.views.elements.frame_users import list_frame_users
+from archgen.views.elements.requirement_facts import list_requirement_facts, list_requirement_parts
+from archgen.views.lookup import Lookup
+from archgen.views.requirement_servers import describe_chain_state
+from archgen.views.sequences.step_words import describe_total, list_step_lines
+from archgen.views.tables.type_fields import list_field_lines
+
+
+def make_use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
+    """Make the card of a use case."""
+    facts = [
+        ("description", " ".join((use_case.description or "").split())),
+        ("actors", ", ".join(f"{actor.id} ({actor.title})" for actor in use_case.actors.values())),
+        ("time", describe_total(lookup, use_case.id)),
+    ]
+    requirement_ids = tuple(r.id for r in lookup.architecture.requirements.values() if use_case.id in r.use_cases)
+    lists = (
+        *drop_empty_lists(("steps", tuple(list_step_lines(lookup, use_case)))),
+        ("requirements", requirement_ids),
+        *drop_empty_lists(("findings", tuple(format_findings(lookup, use_case.id)))),
+    )
+    return ElementCard("use case", use_case.id, use_case.title, use_case.at, known_facts(facts), lists)
+
+
+def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard:
+    """Make the card of a kind without a card of its own: fields that exist, and who uses the element."""
+    architecture = lookup.architecture
+    element = elements_by_kind(architecture)[kind][element_id]
+    facts = [
+        # One list of field names serves all these kinds; those that an element lacks are empty and dropped.
+        (
+            key,
+            lookup.format_size(element)
+            if kind == "type" and key == "size"
+            else format_fact(getattr(element, key, None)),
+        )
+        for key in (
+            "message",
+            "size",
+            "comment",
+            "description",
+            "use_cases",
+            "host",
+            "cores",
+            "threads",
+            "scheduling",
+            "connects",
+            "devices",
+            "protocol",
+            "bandwidth",
+            "frame",
+            "parent",
+            "by",
+            "rate",
+            "deadline",
+            "show",
+            "of",
+            "without",
+            "drop",
+        )
+    ]
+    lists: list[tuple[str, tuple[str, ...]]] = []
+    if kind == "type":
+        facts += promise_words.list_card_facts(element)
+        facts += [("values", format_fact(element.values)), ("generic", format_fact(element.generic))]
+        field_lines = tuple(list_field_lines(element))
+        lists += [("fields", field_lines)] if field_lines else []
+        lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
+    elif kind == "requirement":
+        requirement = architecture.requirements[element_id]
+        facts += list_requirement_facts(lookup, requirement)
+        lists += list_requirement_parts(lookup, requirement)
+    elif kind == "partner":
+        facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
+        ownable_elements = (
+            ("groups", architecture.groups),
+            ("components", architecture.components),
+            ("nodes", architecture.nodes),
+        )
+        lists += [
+            (kind, owned_ids)
+            for kind, elements in ownable_elements
+            if (owned_ids := _owned_elements(elements.values(), element_id))
+        ]
+    elif kind in {"host", "container"}:
+        if kind == "host":
+            facts.append(("scheduling", inline_text.format_core_orders(element)))
+        else:
+            facts += _list_process_facts(element)
+        # `kind` names the node's field here: `Node.host` or `Node.container`.
+        lists.append(
+            ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
+        )
+    elif kind == "resource":
+        lists.append(("used by", tuple(node.id for node in architecture.nodes_using(element_id))))
+    elif kind == "frame":
+        facts.append(("static", "yes" if element.static else ""))
+        lists += list_frame_users(architecture, element)
+    elif kind == "variant":
+        lists.append(("changes", tuple(f"{change.path}: {change.value}" for change in element.changes)))
+    elif kind == "chain":
+        chain = architecture.chains[element_id]
+        facts += [("state", describe_chain_state(lookup, chain)), ("requirements", "; ".join(chain.requirements))]
+        lists.append(("through", tuple(point.id for point in chain.through)))
+    return ElementCard(
+        kind, element_id, getattr(element, "title", element_id), element.at, known_facts(facts), tuple(lists)
+    )
+
+
+def _list_process_facts(container: Container) -> list[tuple[str, str]]:
+    """Return what is written of a container's own node and its program."""
+    is_named = container.name is not None or container.namespace != "/"
+    return [
+        ("ROS name", container.full_name if is_named else ""),
+        ("package", container.package or ""),
+        ("executable", container.executable or ""),
+        ("parameters", format_parameter(container.parameters) if container.parameters else ""),
+    ]
+
+
+def _owned_elements(elements: Iterable[Group | Component | Node], partner_id: str) -> tuple[str, ...]:
+    """Return the ids of the elements that a partner owns, alone or with others."""
+    return tuple(item.id for item in elements if partner_id in item.owners)
