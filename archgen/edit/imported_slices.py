@@ -22,7 +22,7 @@ from archgen.project.project_loading import load_from_files
 from archgen.syntax import file_patterns
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.overlaid_files import OverlaidFiles
-from archgen.syntax.project_files import read_text_file
+from archgen.syntax.project_files import MAX_BYTES, read_text_file
 from archgen.syntax.yaml_writer import write_yaml
 
 _HOLDERS = frozenset(
@@ -132,6 +132,9 @@ def _plan_slice(  # noqa: PLR0913 - what, where and how
     merge: bool,
 ) -> PlannedSlice:
     new_text = origin.header + write_yaml(data, comments)
+    if len(new_text.encode()) > MAX_BYTES:
+        msg = f"{file} would be larger than {MAX_BYTES // 1_048_576} MiB, more than archgen reads: import the model in parts"
+        raise ImportRefusedError(msg)
     if files is None or not files.has_path(file):
         return PlannedSlice(file, new_text)
     if not merge:

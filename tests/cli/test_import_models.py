@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from archgen.diagnostics.source_span import Span
+from archgen.edit import imported_slices
 from archgen.importers.foreign import import_formats
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport, ImportNote
 from archgen.importers.foreign.import_formats import ImportFormat
@@ -156,4 +157,12 @@ def test_a_file_that_is_none_and_one_with_nothing_in_it(run: Run) -> None:
     done = run("import", write_model("!soul"), "-o", "robot")
     assert done.status == 1
     assert "there is nothing in it that archgen takes" in done.err
+    assert not Path("robot").exists()
+
+
+def test_what_archgen_could_not_read_is_not_written(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(imported_slices, "MAX_BYTES", 1 << 20)
+    done = run("import", write_model(f"arm={'x' * (1 << 20)}"), "-o", "robot")
+    assert done.status == 2
+    assert "toys.yaml would be larger than 1 MiB, more than archgen reads: import the model in parts" in done.err
     assert not Path("robot").exists()

@@ -15,6 +15,8 @@ from archgen.importers.foreign.foreign_import import ForeignFileError
 
 MAX_DEPTH = 200
 """Elements nest no deeper than this: models have about 30, and code that walks down a tree has an end."""
+MAX_ELEMENTS = 500_000
+"""A tree takes about 2 kB of memory for each: so many are a model of a hundred thousand classes, or of 50 MB."""
 _MALFORMED_HELP = "export it again from the tool that wrote it"
 _NO_NAMESPACES: Mapping[str, str] = MappingProxyType({"xml": "http://www.w3.org/XML/1998/namespace"})
 
@@ -68,6 +70,7 @@ class _TreeBuilder:
     def __init__(self, file: str) -> None:
         self._file = file
         self._root: XmlElement | None = None
+        self._count = 0
         self._open: list[tuple[XmlElement, Mapping[str, str], list[str]]] = []
         self._parser = expat.ParserCreate()
         self._parser.buffer_text = True
@@ -116,6 +119,10 @@ class _TreeBuilder:
         if len(self._open) >= MAX_DEPTH:
             words = f"its elements nest deeper than {MAX_DEPTH}"
             raise self._refuse(xml_errors.XmlProblem(words, "no model does: export it again"))
+        self._count += 1
+        if self._count > MAX_ELEMENTS:
+            words = f"it has more than {MAX_ELEMENTS:,} elements"
+            raise self._refuse(xml_errors.XmlProblem(words, "export the model in parts"))
         self._open.append((element, namespaces, []))
 
     def _add_text(self, text: str) -> None:

@@ -14,6 +14,8 @@ from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
 _COMPONENT_PREFIX = f"{OWN_PREFIX}component."
 _DATA_PREFIX = f"{OWN_PREFIX}type."
+_MAX_GENERALS = 50
+"""So many classes may stand one above another: the language reads 60 types, and a component is realized by one more."""
 
 
 @dataclass(slots=True, eq=False)
@@ -66,8 +68,10 @@ class ClassSorting:
         return get_kind(element) == "Component" or bool(list_children(element, "Port"))
 
     def _find_generals(self) -> dict[XmlElement, XmlElement]:
-        """Return the class that each is made from; the first of several, and none that closes a circle."""
+        """Return the class that each is made from; the first of several, none that closes a circle or is too far up."""
+        written: dict[XmlElement, XmlElement] = {}
         generals: dict[XmlElement, XmlElement] = {}
+        tops: dict[XmlElement, XmlElement] = {}
         known = frozenset(self._catalogue.classes)
         for element in self._catalogue.classes:
             for generalization in list_children(element, "Generalization"):
@@ -81,22 +85,19 @@ class ClassSorting:
                         f"{call(element)} is made from `{get_name(general)}`, too: a component type is made from one"
                     )
                     self._ledger.leave(generalization, words)
-                elif self._closes_circle(generals, element, general):
+                elif _find_top(tops, general) is element:
                     words = f"{call(element)} would be made from itself: the generalizations go round in a circle"
                     self._ledger.leave(generalization, words, "take out one of them")
                 else:
-                    generals[element] = general
-                    self._ledger.take(generalization)
+                    generals[element], written[element] = general, generalization
+                    tops[element] = general
+        for element in _list_beyond(generals):
+            words = f"{call(element)} is made from a class that is made from a class, more than {_MAX_GENERALS} times"
+            self._ledger.leave(written[element], words, "name a class further up")
+            del generals[element]
+        for element in generals:
+            self._ledger.take(written[element])
         return generals
-
-    @staticmethod
-    def _closes_circle(generals: dict[XmlElement, XmlElement], element: XmlElement, general: XmlElement) -> bool:
-        current: XmlElement | None = general
-        while current is not None:
-            if current is element:
-                return True
-            current = generals.get(current)
-        return False
 
     def _find_realizers(self) -> dict[XmlElement, XmlElement]:
         """Return the class that realizes each component; the first of several."""
@@ -211,3 +212,34 @@ class ClassSorting:
                 typed = list_children(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
                 uses.update(each for element in typed for each in self._index.list_named(element, "type"))
         return uses
+
+
+def _find_top(tops: dict[XmlElement, XmlElement], element: XmlElement) -> XmlElement:
+    """Return the class at the end of the way from each class to what it is made from; ways that were gone get shorter."""
+    passed = []
+    while element in tops:
+        passed.append(element)
+        element = tops[element]
+    for each in passed:
+        tops[each] = element
+    return element
+
+
+def _list_beyond(generals: dict[XmlElement, XmlElement]) -> list[XmlElement]:
+    """Return the classes whose way up is to be cut, so that none is longer than `_MAX_GENERALS`."""
+    beyond = []
+    lengths: dict[XmlElement, int] = {}
+    for start in generals:
+        way = []
+        current: XmlElement | None = start
+        while current is not None and current not in lengths:
+            way.append(current)
+            current = generals.get(current)
+        length = lengths[current] if current is not None else -1
+        for each in reversed(way):
+            length = length + 1
+            if length > _MAX_GENERALS:
+                beyond.append(each)
+                length = 0
+            lengths[each] = length
+    return beyond

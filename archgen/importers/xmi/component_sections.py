@@ -177,7 +177,7 @@ class ComponentSections:
         inputs: dict[str, object] = {}
         outputs: dict[str, object] = {}
         for port in ports:
-            sources = [] if is_type else self._wiring.sources.get(facts, {}).get(port, [])
+            sources = [] if is_type else list(self._wiring.sources.get(facts, {}).get(port, ()))
             port_type = self._find_type(port, facts, is_fed=bool(sources))
             is_given = is_type and not any(port is each for each in facts.ports)
             hints = {} if is_given else self._make_hints(port, is_fed=bool(sources))
@@ -199,7 +199,7 @@ class ComponentSections:
         for port in (*facts.ports, *(port for port in read if id(port) not in own)):
             hints = self._make_hints(port, is_fed=bool(read.get(port))) if id(port) in own else {}
             if port.is_input and (
-                written := _write_sources(read.get(port, [])) | (hints if not port.is_output else {})
+                written := _write_sources(list(read.get(port, ()))) | (hints if not port.is_output else {})
             ):
                 inputs[port.input_id] = written
             if port.is_output and hints:

@@ -44,7 +44,7 @@ class PortWiring:
         }
         joined = [ends for each in catalogue.connectors if (ends := self._read_connector(each))]
         self._decide_directions(joined)
-        self.sources: dict[ClassFacts, dict[PortFacts, list[str]]] = defaultdict(lambda: defaultdict(list))
+        self.sources: dict[ClassFacts, dict[PortFacts, dict[str, None]]] = defaultdict(lambda: defaultdict(dict))
         """What each input reads, as references of the language."""
         for connector, first, second in joined:
             self._connect(connector, first, second)
@@ -122,7 +122,7 @@ class PortWiring:
     def _delegate(self, connector: XmlElement, outer: PortEnd, inner: PortEnd) -> None:
         """Connect a port of a composed component with one of what stands inside."""
         if outer.port.is_input and inner.port.is_input:
-            self.sources[inner.facts][inner.port].append(f"self.{outer.port.input_id}")
+            self.sources[inner.facts][inner.port].setdefault(f"self.{outer.port.input_id}")
         if outer.port.is_output and inner.port.is_output:
             self.inner_of[outer.facts][outer.port].append(inner)
         if outer.port.is_input != inner.port.is_input and outer.port.is_output != inner.port.is_output:
@@ -135,9 +135,7 @@ class PortWiring:
         reference = self._refer(source, reader.facts)
         if reference is None:
             return False
-        references = self.sources[reader.facts][reader.port]
-        if reference not in references:
-            references.append(reference)
+        self.sources[reader.facts][reader.port].setdefault(reference)
         return True
 
     @staticmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.importers.foreign import xml_tree
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from archgen.importers.foreign.xml_tree import MAX_DEPTH, parse_xml
 
@@ -50,3 +51,10 @@ def test_what_cannot_be_read_is_told_with_its_place(data: bytes, message: str, p
     assert caught.value.message.startswith(message)
     assert str(caught.value.span) == f"model.xmi:{place}"
     assert caught.value.help_line
+
+
+def test_a_file_of_too_many_elements_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xml_tree, "MAX_ELEMENTS", 3)
+    assert parse_xml("model.xmi", b"<a><b/><b/></a>").tag == "a"
+    with pytest.raises(ForeignFileError, match="it has more than 3 elements"):
+        parse_xml("model.xmi", b"<a><b/><b/><b/></a>")

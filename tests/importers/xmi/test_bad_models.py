@@ -186,3 +186,23 @@ def test_several_files_refer_to_one_another(tmp_path: Path) -> None:
     )
     types = merge_sections(read_xmi([robot, base]))["component_types"]
     assert types["own"]["is"] == "base"
+
+
+@pytest.mark.parametrize("step", [1, -1])
+def test_classes_one_above_another_are_cut_where_the_language_ends(tmp_path: Path, step: int) -> None:
+    classes = [
+        f'<packagedElement xmi:type="uml:Component" xmi:id="k{number}" name="k{number}">'
+        f'<generalization xmi:id="g{number}" general="k{number + 1}"/></packagedElement>'
+        for number in range(200)
+    ]
+    imported = read_model(tmp_path, "\n".join(classes[::step]))
+    types = merge_sections(imported)["component_types"]
+    longest = 0
+    for name in types:
+        length, current = 0, name
+        while "is" in types[current]:
+            length, current = length + 1, types[current]["is"]
+        longest = max(longest, length)
+    assert longest == 49  # the lowest one of 50 is made from by nobody: a component, not a type
+    cut = [each for each in tell_notes(imported) if "is made from a class that is made from a class" in each]
+    assert 3 <= len(cut) <= 4
