@@ -9,6 +9,8 @@ from typing import Any
 from archgen.importers.running_graph.dump_lines import DumpLine
 from archgen.importers.running_graph.graph_model import RunningGraph, RunningNode
 from archgen.importers.running_graph.parameter_blocks import read_server_values
+from archgen.model.known_interfaces import KNOWN_DISTROS
+from archgen.model.ros_distro import PAST_DISTROS
 
 _NODE = re.compile(r"Node \[(/\S+)\]")
 _SECTIONS = {"Publications:": "publishes", "Subscriptions:": "subscribes", "Services:": "serves"}
@@ -85,8 +87,10 @@ class _DumpReader:
         if not lines:
             return
         values = read_server_values(self._graph, lines)
-        distro = values.pop("rosdistro", "")
-        self._graph.distro = distro.strip() if isinstance(distro, str) else ""
+        distro = str(values.pop("rosdistro", "")).strip()
+        # Debian builds Noetic's packages itself, and calls them its own.
+        distro = "noetic" if distro == "Debian" else distro
+        self._graph.distro = distro if distro in {*KNOWN_DISTROS, *PAST_DISTROS} else ""
         for own in ("rosversion", "run_id", "roslaunch"):
             values.pop(own, None)
         for node in self._graph.nodes.values():

@@ -321,3 +321,10 @@ def test_large_dumps_take_time_in_proportion(ros: int, tmp_path: Path) -> None:
         parts = [f"/n{n}\n  Publishers:\n    /t{n}: std_msgs/msg/String\n" for n in range(5_000)]
     imported = read_text("".join(parts), tmp_path, ros)
     assert imported.taken["node"] == 5_000
+
+
+@pytest.mark.parametrize(("written", "distro"), [("Debian", "noetic"), ("melodic", "melodic"), ("Mine", "")])
+def test_the_distribution_is_one_that_there_is(tmp_path: Path, written: str, distro: str) -> None:
+    file = tmp_path / "robot.txt"
+    file.write_text(ROS_1.replace("noetic", written), encoding="utf-8")
+    assert read_ros_1_graph([file]).distro == distro
