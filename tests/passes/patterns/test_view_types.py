@@ -49,7 +49,7 @@ def test_scalars_are_texts_and_what_is_left_empty_is_nothing(tmp_path: Path) -> 
     port = tree_of(ROBOT, tmp_path).get(("groups", "g", "components", "eye", "outputs", "seen"))
     assert isinstance(port, MappingNode)
     assert read_value(port, lambda _: None, {}) == {"type": "Pose", "external": "true"}
-    assert read_scalar(ScalarNode("", None, port.span)) is None
+    assert read_scalar(ScalarNode(None, "", port.span)) is None
 
 
 def test_references_to_what_stands_in_a_type_move_to_what_is_made_from_it(tmp_path: Path) -> None:
