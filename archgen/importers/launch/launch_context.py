@@ -48,6 +48,8 @@ class LaunchContext:
         self.scope = LaunchScope()
         self.is_ros_1 = is_ros_1
         self.used: dict[str, str] = {}
+        self.asked: set[str] = set()
+        """The arguments that were asked for, whether or not anything declares them."""
         self._scopes: list[LaunchScope] = []
         self._left = MAX_PARTS
 
@@ -121,6 +123,7 @@ class LaunchContext:
         name = self.resolve(value.parts[0], depth)
         if isinstance(name, UnknownValue):
             return name
+        self.asked.add(name)
         word = "arg" if self.is_ros_1 else "var"
         known = self.scope.configurations.get(name, value.parts[1] if len(value.parts) > 1 else None)
         if known is None:
@@ -148,7 +151,8 @@ class LaunchContext:
         if isinstance(text, UnknownValue):
             return text
         found = evaluate_expression(text, self._look_up)
-        return write_plain(found) if found is not None else UnknownValue(f"$(eval {describe_value(expression)})")
+        # As Python writes it: `True`, which a comparison with another expression's outcome needs.
+        return str(found) if found is not None else UnknownValue(f"$(eval {describe_value(expression)})")
 
     def _look_up(self, name: str) -> str | None:
         """Return the value of an argument that an expression of ROS 1 names; None where it is not known."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_arguments import LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext, LaunchScope
 from archgen.importers.launch.launch_files import LaunchFiles
 from archgen.importers.launch.launch_values import OPEN, UnknownValue
@@ -28,8 +29,10 @@ _LATER_HELP = "what it starts is taken; say with `start: {after: ...}` what it w
 class LaunchRun(ScopeRun):
     """Everything that was found so far. One run reads all files that were given."""
 
-    def __init__(self, files: LaunchFiles, load_actions: ActionLoader) -> None:
-        super().__init__()
+    def __init__(
+        self, files: LaunchFiles, load_actions: ActionLoader, arguments: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(LaunchArguments(dict(arguments or {})))
         self.files = files
         self.nodes: list[LaunchedNode] = []
         self.taken: Counter[str] = Counter()
@@ -41,21 +44,20 @@ class LaunchRun(ScopeRun):
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
         self._includes = 0
-        self._open_files: list[Path] = []
 
     def run_file(self, path: Path) -> None:
-        """Walk through a file that was given, with nothing set from outside."""
+        """Walk through a file that was given, with nothing set from outside but arguments of the command line."""
         self.context.push()
-        self.context.scope = LaunchScope()
+        self.context.scope = LaunchScope(configurations=dict(self.arguments.given))
         self._run_file(path)
         self.context.pop()
 
     def _run_file(self, path: Path) -> None:
         was_ros_1 = self.context.is_ros_1
-        self._open_files.append(path)
+        self.open_files.append(path)
         actions = self._load_actions(path, self)
         self.run_actions(actions)
-        self._open_files.pop()
+        self.open_files.pop()
         self.context.is_ros_1 = was_ros_1
 
     def run_actions(self, actions: list[LaunchAction]) -> None:
@@ -138,8 +140,8 @@ class LaunchRun(ScopeRun):
         path = self.files.find_file(text)
         if (
             path is None
-            or path in self._open_files
-            or len(self._open_files) > _MAX_DEPTH
+            or path in self.open_files
+            or len(self.open_files) > _MAX_DEPTH
             or self._includes > MAX_INCLUDES
         ):
             is_far = path is None
@@ -147,7 +149,7 @@ class LaunchRun(ScopeRun):
                 "it does not lie in the folders that were given"
                 if is_far
                 else "it includes itself"
-                if path in self._open_files
+                if path in self.open_files
                 else f"more than {MAX_INCLUDES} files, or {_MAX_DEPTH} in one another"
             )
             help_line = "give the folder of its package, too" if is_far else ""

@@ -128,7 +128,11 @@ def _make_pair(reader: CallReader, name: str, arguments: CallArguments, node: as
 
 
 def _make_argument(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    values = {"name": arguments.get(0, "name"), "default": copy_value(arguments.get(None, "default_value"))}
+    values = {
+        "name": arguments.get(0, "name"),
+        "default": copy_value(arguments.get(None, "default_value")),
+        "choices": copy_value(arguments.get(None, "choices")),
+    }
     return LaunchAction("argument", name, reader.place(node), values)
 
 

@@ -84,7 +84,7 @@ class Ros1EntityReader:
     def _read_arg(self, entity: LaunchEntity) -> LaunchAction:
         name = entity.attributes.get("name", "")
         if "value" in entity.attributes:
-            values = {"name": name, "value": self._attribute(entity, "value")}
+            values = {"name": name, "value": self._attribute(entity, "value"), "is_fixed": True}
             return LaunchAction("configure", entity.tag, entity.span, values)
         values = {"name": name, "default": self._attribute(entity, "default")}
         return LaunchAction("argument", entity.tag, entity.span, values)

@@ -63,7 +63,12 @@ class Ros2EntityReader:
         return LaunchAction("unread", entity.tag, entity.span, {"reason": reason})
 
     def _read_arg(self, entity: LaunchEntity) -> LaunchAction:
-        values = {"name": entity.attributes.get("name", ""), "default": self._attribute(entity, "default")}
+        choices = [self._attribute(each, "value") for each in entity.find_all("choice")]
+        values = {
+            "name": entity.attributes.get("name", ""),
+            "default": self._attribute(entity, "default"),
+            "choices": choices,
+        }
         return LaunchAction("argument", entity.tag, entity.span, values)
 
     def _read_let(self, entity: LaunchEntity) -> LaunchAction:
