@@ -62,8 +62,8 @@ def command(  # noqa: PLR0913 - one for each option
     FORMAT may be left out where the file's name tells it. NAME:=VALUE sets an argument of launch files. Nothing that is there is overwritten, nothing of the file is
     run, and nothing is invented: what it does not say is absent.
     """
-    words, arguments = _take_arguments(words)
-    import_format, files = _split_words(words)
+    file_words, arguments = _take_arguments(words)
+    import_format, files = _split_words(file_words)
     if arguments and not import_format.takes_arguments:
         msg = f"{import_format.name} takes no arguments such as {next(iter(arguments))}:=..., as launch files do"
         raise click.UsageError(make_visible(msg))

@@ -34,8 +34,8 @@ class LaunchScope:
     """Values of arguments: text, or what only running it would tell."""
     namespace: str | UnknownValue = ""
     remaps: tuple[tuple[str, str], ...] = ()
-    parameters: tuple[tuple[LaunchValue, LaunchValue], ...] = ()
-    parameter_files: tuple[LaunchValue, ...] = ()
+    parameters: tuple[LaunchValue, ...] = ()
+    """Parameters for all nodes, in the order in which they are set: mappings, and files."""
     environment: tuple[tuple[str, str], ...] = ()
     conditions: tuple[tuple[str, bool | None], ...] = ()
     """The conditions around, as words, each with its verdict by the defaults."""
@@ -49,7 +49,7 @@ class LaunchContext:
         self.is_ros_1 = is_ros_1
         self.used: dict[str, str] = {}
         self.asked: set[str] = set()
-        """The arguments that were asked for, whether or not anything declares them."""
+        """The arguments that ROS 2 was asked for, which needs no declaration of them."""
         self._scopes: list[LaunchScope] = []
         self._left = MAX_PARTS
 
@@ -123,8 +123,9 @@ class LaunchContext:
         name = self.resolve(value.parts[0], depth)
         if isinstance(name, UnknownValue):
             return name
-        self.asked.add(name)
         word = "arg" if self.is_ros_1 else "var"
+        if not self.is_ros_1:
+            self.asked.add(name)
         known = self.scope.configurations.get(name, value.parts[1] if len(value.parts) > 1 else None)
         if known is None:
             self.used[name] = ""

@@ -81,9 +81,10 @@ def _find_stem(path: Path) -> str:
 def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
     """Return which nodes are taken, by identity: of those with one full name the one that runs by the defaults."""
     kept: dict[str, LaunchedNode] = {}
-    free = [node for node in nodes if not node.full_name]
+    # What is no node may be called as another one.
+    free = [node for node in nodes if not node.full_name or node.form == "program"]
     for node in nodes:
-        if not node.full_name:
+        if not node.full_name or node.form == "program":
             continue
         other = kept.get(node.full_name)
         if other is None:

@@ -72,9 +72,7 @@ def _merge_values(first: LaunchValue, second: LaunchValue, test: UnknownValue) -
     return _make_unknown(test)
 
 
-def _merge_lists(
-    first: list[LaunchValue], second: list[LaunchValue], test: UnknownValue
-) -> list[LaunchValue]:
+def _merge_lists(first: list[LaunchValue], second: list[LaunchValue], test: UnknownValue) -> list[LaunchValue]:
     """Return what both ways have in common, actions, which know when they count, and one unknown value for the rest."""
     start = 0
     while start < min(len(first), len(second)) and _is_same(first[start], second[start]):

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable
 from typing import Any, Literal
 
-from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.importers.launch.launch_actions import LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
 from archgen.importers.launch.python_branches import BranchRecord, Container, merge_names
 from archgen.importers.launch.python_comprehensions import ComprehensionReader
@@ -163,8 +163,8 @@ class StatementReader(ComprehensionReader):
             record.put_back(contents[stays])
             merged = names[stays]
         else:
-            record.merge_outcomes(*contents, test)
-            merged = merge_names(*names, test)
+            record.merge_outcomes(contents[0], contents[1], test)
+            merged = merge_names(names[0], names[1], test)
         scope.values = {name: value for name, value in merged.items() if isinstance(name, str)}
         first, second = endings
         if first == second or {first, second} == {"return", "raise"}:

@@ -12,6 +12,7 @@ from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchAr
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import join_names
+from archgen.importers.launch.parameter_files import FILE_KIND
 
 
 class ScopeRun:
@@ -84,10 +85,15 @@ class ScopeRun:
             scope.namespace = join_names(scope.namespace, text)
 
     def _run_parameter(self, action: LaunchAction) -> None:
-        self.context.scope.parameters = (*self.context.scope.parameters, (action.get("name"), action.get("value")))
+        name = self.context.resolve(action.get("name"))
+        if isinstance(name, UnknownValue):
+            self._tell_computed(action, "its name", name)
+        else:
+            self.context.scope.parameters = (*self.context.scope.parameters, {name: action.get("value")})
 
     def _run_parameter_file(self, action: LaunchAction) -> None:
-        self.context.scope.parameter_files = (*self.context.scope.parameter_files, action.get("file"))
+        file = Substitution(FILE_KIND, (action.get("file"), "", {}))
+        self.context.scope.parameters = (*self.context.scope.parameters, file)
 
     def _run_remap(self, action: LaunchAction) -> None:
         pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
@@ -95,7 +101,10 @@ class ScopeRun:
         if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
             self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
         else:
-            self.context.scope.remaps = (*self.context.scope.remaps, (own_name, name))
+            scope = self.context.scope
+            # In ROS 1 a later rule for a name takes the place of an earlier one, in ROS 2 the first one counts.
+            kept = [pair for pair in scope.remaps if not (self.context.is_ros_1 and pair[0] == own_name)]
+            scope.remaps = (*kept, (own_name, name))
 
     def _run_environment(self, action: LaunchAction) -> None:
         name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
