@@ -255,7 +255,9 @@ class ExpressionReader:
                 self.assign(each, items[number] if fits and items else self.quote(target), scope)
         elif isinstance(target, ast.Subscript):
             owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
-            if (isinstance(owner, dict) and isinstance(key, str | int)) or (isinstance(owner, list) and isinstance(key, int) and -len(owner) <= key < len(owner)):
+            if (isinstance(owner, dict) and isinstance(key, str | int)) or (
+                isinstance(owner, list) and isinstance(key, int) and -len(owner) <= key < len(owner)
+            ):
                 owner[key] = value
             elif isinstance(owner, dict | list):
                 self.tell_lost("=", f"which entry `{self.quote(target).reason}` is, is computed", target)
