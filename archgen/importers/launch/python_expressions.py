@@ -254,13 +254,17 @@ class ExpressionReader:
             for number, each in enumerate(target.elts):
                 self.assign(each, items[number] if fits and items else self.quote(target), scope)
         elif isinstance(target, ast.Subscript):
-            owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
-            if (isinstance(owner, dict) and isinstance(key, str | int)) or (
-                isinstance(owner, list) and isinstance(key, int) and -len(owner) <= key < len(owner)
-            ):
+            self._assign_entry(target, value, scope)
+
+    def _assign_entry(self, target: ast.Subscript, value: LaunchValue, scope: NameScope) -> None:
+        owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
+        if isinstance(owner, dict) and isinstance(key, str | int):
+            owner[key] = value
+        elif isinstance(owner, list) and isinstance(key, int):
+            if -len(owner) <= key < len(owner):
                 owner[key] = value
-            elif isinstance(owner, dict | list):
-                self.tell_lost("=", f"which entry `{self.quote(target).reason}` is, is computed", target)
+        elif isinstance(owner, dict | list):
+            self.tell_lost("=", f"which entry `{self.quote(target).reason}` is, is computed", target)
 
     def _read_call(self, node: ast.Call, scope: NameScope) -> LaunchValue:
         function = self.evaluate(node.func, scope)
