@@ -158,25 +158,25 @@ def make_default(text: str) -> str:
     ("attribute", "parameter", "note"),
     [
         (
-            make_attribute("m", "mode", MANY + make_default("{}")),
+            make_attribute("level", "mode", MANY + make_default("{}")),
             {"choices": ["fast", "slow"], "type": "string[]", "value": []},
             "",
         ),
         (
-            make_attribute("m", "mode", MANY + make_default("fast, odd")),
+            make_attribute("level", "mode", MANY + make_default("fast, odd")),
             {"choices": ["fast", "slow"], "type": "string[]"},
             "is none of its",
         ),
-        (make_attribute("m", "Integer_id", make_default("1_000")), {"type": "integer"}, "is no integer"),
-        (make_attribute("m", "Real", make_default("1_0.5")), {"type": "float"}, "is no float"),
-        (make_attribute("m", "Integer", make_default("\u0663")), {"type": "integer"}, "is no integer"),
+        (make_attribute("level", "Integer_id", make_default("1_000")), {"type": "integer"}, "is no integer"),
+        (make_attribute("level", "Real", make_default("1_0.5")), {"type": "float"}, "is no float"),
+        (make_attribute("level", "Integer", make_default("\u0663")), {"type": "integer"}, "is no integer"),
     ],
 )
 def test_defaults_are_values_of_their_type(
     tmp_path: Path, attribute: str, parameter: dict[str, object], note: str
 ) -> None:
     imported = read_model(tmp_path, ENUMERATION + make_element("Class", "k", attribute))
-    assert merge_sections(imported)["component_types"]["k"]["parameters"]["m"] == parameter
+    assert merge_sections(imported)["component_types"]["k"]["parameters"]["level"] == parameter
     assert (
         [each for each in tell_notes(imported) if "default" in each and note in each] if note else imported.notes == ()
     )
