@@ -228,6 +228,7 @@ def _make_note_record(note: ImportNote) -> dict[str, Any]:
     return {
         "fate": note.fate,
         "kind": note.kind,
+        "count": note.count,
         "message": note.message,
         "help": note.help_line,
         "file": note.span.file,
