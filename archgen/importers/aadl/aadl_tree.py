@@ -76,7 +76,12 @@ class Property:
     span: Span
     paths: tuple[Path, ...] = ()
     appended: bool = False
-    in_modes: bool = False
+    modes: tuple[str, ...] = ()
+    """The modes in which the value counts, as written; empty for all."""
+    left_values: bool = False
+    """Whether further values were written, for other modes."""
+    appended_to: Property | None = None
+    """What its list goes on behind, where that is written elsewhere."""
 
 
 @dataclass(slots=True)

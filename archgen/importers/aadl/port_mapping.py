@@ -20,7 +20,7 @@ _MAX_PORTS = 20_000
 _OPPOSITE = {"in": "out", "out": "in", "requires": "provides", "provides": "requires"}
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class MappedPort:
     """An input or output that a feature became; `path` is the feature's name, below those of its groups."""
 

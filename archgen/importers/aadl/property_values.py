@@ -44,6 +44,12 @@ class UsedProperties:
 
     ids: set[int] = field(default_factory=set)
 
+    def add(self, association: Property | None) -> None:
+        """Remember one, with all that its list goes on behind."""
+        while association is not None:
+            self.ids.add(id(association))
+            association = association.appended_to
+
 
 @dataclass(slots=True)
 class Scope:
@@ -59,16 +65,17 @@ class Scope:
 
     def find(self, path: Path, name: str) -> Property | None:
         """Return the association of a property to what stands at a path, or None."""
-        for outer, prefix in self.layers:
-            if found := outer.properties.get((prefix + path, name)):
-                self.used.ids.add(id(found[0]))
-                return found[0]
-        return self._find_inside(self.inner, path, name) if self.inner else None
+        found = [outer.properties.get((prefix + path, name)) for outer, prefix in self.layers]
+        found.append(self._find_inside(self.inner, path, name) if self.inner else None)
+        for association in found:
+            # The others are written over: they are not left out.
+            self.used.add(association)
+        return next(filter(None, found), None)
 
     def _find_inside(self, resolved: Resolved, path: Path, name: str) -> Property | None:
         if found := resolved.properties.get((path, name)):
-            self.used.ids.add(id(found[0]))
-            return found[0]
+            self.used.add(found)
+            return found
         if not path:
             return None
         part = resolved.parts.get(path[0])
@@ -91,7 +98,7 @@ class Scope:
         for association in reversed(written):
             paths = [tuple(step.lower() for step in target) for target in association.paths] or [()]
             if path in paths and fold_property_name(association.name) == name:
-                self.used.ids.add(id(association))
+                self.used.add(association)
                 return association
         return None
 
@@ -135,7 +142,7 @@ def _wrap_properties(part: Part) -> Resolved:
     for association in part.written.properties:
         for path in association.paths or ((),):
             key = (tuple(step.lower() for step in path), fold_property_name(association.name))
-            wrapped.properties[key] = (association, part.owner.package)
+            wrapped.properties[key] = association
     return wrapped
 
 

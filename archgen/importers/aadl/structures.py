@@ -75,6 +75,28 @@ class Structure:
     """The ports of that thread behind those of the process, by id and whether they are inputs."""
     access_connections: dict[str, Connection] = field(default_factory=dict)
 
+    _inner_ends: dict[int, list[End]] | None = None
+    _wires_by_name: dict[str, list[Wire]] | None = None
+
+    def find_inner_ends(self, port: MappedPort) -> list[End]:
+        """Return the ports of its parts that stand behind one of its own, each once."""
+        if self._inner_ends is None:
+            ends: dict[int, dict[End, None]] = {}
+            for wire in self.wires:
+                for outer, inner in ((wire.producer, wire.consumer), (wire.consumer, wire.producer)):
+                    if outer.part is None and inner.part is not None:
+                        ends.setdefault(id(outer.port), {})[inner] = None
+            self._inner_ends = {key: list(found) for key, found in ends.items()}
+        return self._inner_ends.get(id(port), [])
+
+    def find_wires(self, connection_name: str) -> list[Wire]:
+        """Return the wires of a connection, by its name in lower case."""
+        if self._wires_by_name is None:
+            self._wires_by_name = {}
+            for wire in self.wires:
+                self._wires_by_name.setdefault(wire.connection.name.lower(), []).append(wire)
+        return self._wires_by_name.get(connection_name, [])
+
     @property
     def is_node(self) -> bool:
         """Whether it is one program: a process."""
