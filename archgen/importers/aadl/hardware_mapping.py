@@ -219,7 +219,11 @@ def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> li
     if place:
         instance, frame = system.instances.get(place), system.find_frame(place)
         structure = instance.structure if instance else frame.structure if frame else None
-    ends = (end for wire in structure.find_wires(connection_name) for end in (wire.producer, wire.consumer)) if structure else ()
+    ends = (
+        (end for wire in structure.find_wires(connection_name) for end in (wire.producer, wire.consumer))
+        if structure
+        else ()
+    )
     return [path for end in ends for path, _ in list_leaf_ports(end, place)]
 
 
@@ -233,9 +237,13 @@ def _read_speed(scope: Scope) -> Body:
         scope.value((), "sei::bandwidthcapacity", "bus_properties::bandwidth")
     )
     transmission = scope.value((), "transmission_time")
-    if not bandwidth and isinstance(transmission, AadlRecord):
-        slowest = next((value for name, value in transmission.fields.items() if name.lower() == "perbyte"), None)
-        bandwidth = _read_byte_time(slowest)
+    if isinstance(transmission, AadlRecord):
+        parts = {name.lower(): value for name, value in transmission.fields.items()}
+        bandwidth = bandwidth or _read_byte_time(parts.get("perbyte"))
+        lowest, highest = read_time_range(parts.get("fixed"))
+        if highest and not highest.startswith("0 ") and "latency" not in body:
+            # What each message takes, whatever its size.
+            body["latency"] = {"best": lowest or highest, "worst": highest}
     return {**body, "bandwidth": bandwidth} if bandwidth else body
 
 

@@ -13,6 +13,7 @@ from archgen.importers.aadl.aadl_tree import (
     Connection,
     Feature,
     Flow,
+    Modes,
     Path,
     Property,
     Subcomponent,
@@ -78,6 +79,8 @@ class Resolved:
     """By name, and whether it is a flow of an implementation."""
     properties: dict[tuple[Path, str], Property] = field(default_factory=dict)
     """The last association of each property, by the path that it applies to."""
+    initial_mode: str = ""
+    """In lower case; empty where it has no modes."""
     own_type: Resolved | None = None
     """The type of an implementation."""
     calls: list[Subcomponent] = field(default_factory=list)
@@ -107,7 +110,7 @@ class ClassifierResolver:
         """Look names up in `names`, and tell what is in none."""
         self.names, self.notes = names, notes
         self.overridden: set[int] = set()
-        """Associations, by identity, that others write over."""
+        """Associations, by identity, that others write over where they stand."""
         self._resolved: dict[tuple[str, str], Resolved] = {}
         self._open: set[int] = set()
 
@@ -157,6 +160,7 @@ class ClassifierResolver:
             self._add_inherited(found, parent)
         self._open.discard(id(classifier))
         found.prototypes |= env
+        found.initial_mode = classifier.initial_mode.lower() or found.initial_mode
         self._add_own(found, classifier, found.prototypes)
         return found
 
@@ -201,15 +205,20 @@ class ClassifierResolver:
                     tuple(step.lower() for step in path if step.lower() != "self"),
                     fold_property_name(association.name),
                 )
-                found.properties[key] = self._override(found.properties.get(key), association)
+                chosen = _choose_value(association, found.initial_mode)
+                found.properties[key] = self._override(found, found.properties.get(key), chosen)
 
-    def _override(self, earlier: Property | None, association: Property) -> Property:
+    def _override(self, found: Resolved, earlier: Property | None, association: Property) -> Property:
         """Return what counts of two associations to the same; `+=>` goes on behind the list that was there."""
         if earlier is None:
             return association
+        if association.modes and not _counts_in(association.modes, found.initial_mode):
+            # The earlier one counts in the initial mode, or was written first.
+            self.overridden.add(id(association))
+            return earlier
         if association.appended:
             items = [*_list_items(earlier.value), *_list_items(association.value)]
-            return replace(association, value=AadlList(tuple(items)), appended_to=earlier)
+            return replace(association, value=AadlList(tuple(items)), made_from=(earlier, association))
         self.overridden.add(id(earlier))
         return association
 
@@ -217,6 +226,7 @@ class ClassifierResolver:
         found.ancestors = tuple(dict.fromkeys((*found.ancestors, parent.known, *parent.ancestors)))
         if found.known.classifier.is_implementation and not parent.known.classifier.is_implementation:
             found.own_type = parent
+        found.initial_mode = parent.initial_mode or found.initial_mode
         found.prototypes.update(parent.prototypes)
         # Its own type came before, and says more of features than the type of what it extends.
         found.ports = {**found.ports, **{name: port for name, port in parent.ports.items() if name not in found.ports}}
@@ -242,6 +252,20 @@ class ClassifierResolver:
             kind = earlier.kind
         direction = feature.direction or (earlier.direction if earlier else "")
         found.ports[feature.name.lower()] = Port(feature, use, kind, direction, found.known)
+
+
+def _choose_value(association: Property, initial_mode: str) -> Property:
+    """Return an association with the value that it has in the initial mode, as far as it says one."""
+    values = ((association.value, association.modes), *association.other_values)
+    for index, (value, modes) in enumerate(values):
+        if index and _counts_in(modes, initial_mode):
+            rest = tuple(each for each in values if each[0] is not value)
+            return replace(association, value=value, modes=modes, other_values=rest, made_from=(association,))
+    return association
+
+
+def _counts_in(modes: Modes, initial_mode: str) -> bool:
+    return initial_mode in {mode.lower() for mode in modes}
 
 
 def _list_items(value: AadlValue) -> tuple[AadlValue, ...]:

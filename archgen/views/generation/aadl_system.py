@@ -47,8 +47,12 @@ class SystemWriter:
         self._latencies: dict[RouteEnds, tuple[Fraction, Fraction]] = {}
         self.classifiers: list[dict[str, Any]] = []
         self.comments: list[str] = []
+        self._processes_of: dict[str, list[Process]] = {}
+        """By the complete ids of the components that they implement."""
         for process in processes.values():
             self._place_process(process, names["nodes"])
+            for component_id in process.behaviours:
+                self._processes_of.setdefault(component_id, []).append(process)
         hosts = {
             host.id
             for host in self._architecture.hosts.values()
@@ -119,7 +123,7 @@ class SystemWriter:
                     self._bind_connection(route, source, reader, is_call=output.flow != "topic")
 
     def _find_parts(self, port_id: str, *, is_output: bool, source_id: str = "") -> Iterable[tuple[Process, PortPart]]:
-        for process in self._processes.values():
+        for process in self._processes_of.get(port_id.rpartition(".")[0], ()):
             part = process.find_part(port_id, is_output=is_output, source_id=source_id)
             if part is not None:
                 yield process, part
