@@ -21,7 +21,7 @@ from archgen.products.product_writing import (
     write_started,
 )
 from archgen.products.project_views import make_scoped_lookup
-from archgen.views import resolved_record
+from archgen.views.records import resolved_record
 
 
 def write_report(
