@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.node import Endpoint
 from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
+from archgen.views.generation.aadl_devices import Device
 from archgen.views.generation.aadl_flows import FlowWriter, RouteEnds
 from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
@@ -50,7 +51,7 @@ class SystemWriter:
         self._processes_of: dict[str, list[Process]] = {}
         """By the complete ids of the components that they implement."""
         for process in processes.values():
-            self._place_process(process, names["nodes"])
+            self._place_process(process, names["devices" if process.category == "device" else "nodes"])
             for component_id in process.behaviours:
                 self._processes_of.setdefault(component_id, []).append(process)
         hosts = {
@@ -58,7 +59,11 @@ class SystemWriter:
             for host in self._architecture.hosts.values()
             if context.is_whole or host.id in {process.node.host for process in processes.values()}
         }
-        self.platform = Platform(self._architecture, hosts, self._root.names, names["hosts"])
+        devices = {each.component.id: each for each in processes.values() if isinstance(each, Device)}
+        self.platform = Platform(self._architecture, hosts, self._root.names, names["hosts"], frozenset(devices))
+        for device_id, links in self.platform.links_by_device.items():
+            for link_id in links if device_id in devices else ():
+                self._join_device(devices[device_id], link_id)
         self._analysis = _analyse(self._architecture)
 
     def _place_process(self, process: Process, package: str) -> None:
@@ -67,12 +72,18 @@ class SystemWriter:
         own_id = component_id.rpartition(".")[2] or process.node.id
         process.name_in_system = process.home.names.take_name(own_id)
         properties = make_named_properties(process.name_in_system, own_id)
-        if own_id != process.node.id:
+        if own_id != process.node.id and process.category == "process":
             properties += make_text_properties(node=process.node.id)
         properties += list_own_sources(read_aadl_hints(process.node))
         process.home.subcomponents.append(
-            make_item(process.name_in_system, f"process {package}::{process.name}.impl", properties)
+            make_item(process.name_in_system, f"{process.category} {package}::{process.classifier}", properties)
         )
+
+    def _join_device(self, device: Device, link_id: str) -> None:
+        """Lead the access to a bus from the outermost system to a device."""
+        bus = self.platform.name_bus(link_id)
+        feature = device.add_bus_access(link_id, bus)
+        self._tree.lead_access(device, feature, bus, self.platform.names["link", link_id])
 
     def write(self) -> None:
         """Write the package of the systems."""
@@ -130,19 +141,26 @@ class SystemWriter:
 
     def _bind_connection(self, route: Route, source: Process, reader: Process, *, is_call: bool) -> None:
         """Bind a connection to the link between two computers where there is exactly one, else to ROS's own."""
-        hosts = {source.node.host, reader.node.host}
+        ends = {self._find_place(source), self._find_place(reader)}
         links = [
             link.id
             for link in self._architecture.links.values()
-            if len(hosts) > 1 and hosts <= set(link.connects) and ("link", link.id) in self.platform.names
+            if len(ends) > 1 and ends <= {*link.connects, *link.devices} and ("link", link.id) in self.platform.names
         ]
         if len(links) == 1:
             bus = self.platform.names["link", links[0]]
+        elif "device" in {source.category, reader.category}:
+            return
         else:
             bus = self._find_virtual_bus("services" if is_call else "topics")
         name = route.scope.name_inside(self._root, route.joint)
         if not any(name in names for names in self._bound.values()):
             self._bound.setdefault(bus, {})[name] = None
+
+    @staticmethod
+    def _find_place(process: Process) -> str | None:
+        """Return what of a link's ends a process is on: its host, or for a device itself."""
+        return process.component.id if isinstance(process, Device) else process.node.host
 
     def _find_virtual_bus(self, kind: str) -> str:
         if ("bus", kind) not in self.platform.names:
@@ -156,7 +174,7 @@ class SystemWriter:
             name = self._root.names.take_name("tf")
             self._root.subcomponents.append(make_item(name, "data ros::tf"))
             for process in users:
-                self._tree.give_access(process, name)
+                self._tree.lead_access(process, "tf", "data access ros::tf", name)
 
     def _bind_processes(self) -> None:
         """Bind processes to the containers that load them, else to their hosts."""
