@@ -211,7 +211,7 @@ class StructureFinder:
         port_path = path[1:] if part else path
         if port_path in ports.groups:
             return [(port.path[len(port_path) :], End(part, port)) for port in ports.groups[port_path]]
-        if ".".join(port_path) in ports.accesses:
+        if ".".join(port_path) in ports.accesses or port_path in ports.call_paths:
             return None
         return [((), End(part, port)) for port in ports.by_path.get(port_path, ())]
 

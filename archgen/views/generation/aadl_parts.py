@@ -17,6 +17,7 @@ from archgen.views.generation.aadl_words import (
     make_classifier,
     make_item,
     make_named_properties,
+    make_property,
     make_text_properties,
 )
 from archgen.views.generation.generation_context import write_place
@@ -169,6 +170,8 @@ class SystemTree:
             name = system.features[place] = system.names.take_name(wanted)
             properties = make_named_properties(name, wanted) if shell_port else []
             properties += make_text_properties(medium=part.port.medium if part.port.medium != "ros" else None)
+            if part.is_call_data:
+                properties = [make_property("archgen::Is_Call", "true")]
             system.feature_items.append(make_item(name, part.text, properties))
         name = system.features[place]
         ends = (inner_end, name) if part.is_output else (name, inner_end)

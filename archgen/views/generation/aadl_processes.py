@@ -220,6 +220,12 @@ class Process:
         behaviour = self.behaviours.get(port_id.rpartition(".")[0])
         return behaviour.find_part(port_id, is_output=is_output, source_id=source_id) if behaviour else None
 
+    def add_call_feature(self, part: PortPart) -> None:
+        """Add the port for the request or the answer of a call, if it is not there yet."""
+        if part.key not in self.features:
+            name = self.features[part.key] = self.names.take_name(part.name)
+            self.feature_items.append(make_item(name, part.text, [make_property("archgen::Is_Call", "true")]))
+
     def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
         """Join the ports of two components that this node implements."""
         ends = []

@@ -10,13 +10,15 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.node import Endpoint
 from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
+from archgen.views.generation.aadl_calls import RouteEnds, RouteFinder
 from archgen.views.generation.aadl_devices import Device
-from archgen.views.generation.aadl_flows import FlowWriter, RouteEnds
+from archgen.views.generation.aadl_flows import FlowWriter
 from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
 from archgen.views.generation.aadl_platform import Platform
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     can_be_written,
@@ -37,15 +39,17 @@ LAUNCH = "robot.launch"
 class SystemWriter:
     """The launch of everything: processes, computers, links, what flows between them, and where it runs."""
 
-    def __init__(self, context: GenerationContext, processes: dict[str, Process], names: dict[str, str]) -> None:
+    def __init__(
+        self, context: GenerationContext, processes: dict[str, Process], types: TypeBook, names: dict[str, str]
+    ) -> None:
         """Begin with the processes; `names` are those of the packages."""
         self._architecture = context.architecture
+        self._types = types
         self._processes = processes
         self._root = SystemPart("", LAUNCH.partition(".")[0], None, None)
         self._tree = SystemTree(self._architecture, names["system"], self._root)
         self._bound: dict[str, dict[str, None]] = {}
         self._routes: dict[RouteEnds, Route] = {}
-        self._latencies: dict[RouteEnds, tuple[Fraction, Fraction]] = {}
         self.classifiers: list[dict[str, Any]] = []
         self.comments: list[str] = []
         self._processes_of: dict[str, list[Process]] = {}
@@ -65,6 +69,7 @@ class SystemWriter:
             for link_id in links if device_id in devices else ():
                 self._join_device(devices[device_id], link_id)
         self._analysis = _analyse(self._architecture)
+        self._latencies = _find_link_latencies(self._analysis)
 
     def _place_process(self, process: Process, package: str) -> None:
         """Put a process into the system of its component, by the name of that."""
@@ -115,7 +120,6 @@ class SystemWriter:
 
     def _join_processes(self) -> None:
         """Write a connection for each pair of processes that implement the two ends of one."""
-        latencies = _find_link_latencies(self._analysis)
         for edge in self._architecture.edges:
             for source, output in self._find_parts(edge.output, is_output=True):
                 for reader, part in self._find_parts(edge.input, is_output=False, source_id=edge.output):
@@ -126,9 +130,8 @@ class SystemWriter:
                         source.join_inside(output, part, properties)
                         continue
                     ends = (source.node.id, edge.output, reader.node.id, edge.input)
-                    latency = latencies.get(ends)
+                    latency = self._latencies.get(ends)
                     if latency:
-                        self._latencies[ends] = latency
                         properties.append(make_property("Latency", write_range(*latency)))
                     route = self._routes[ends] = self._tree.join((source, output), (reader, part), properties)
                     self._bind_connection(route, source, reader, is_call=output.flow != "topic")
@@ -197,7 +200,8 @@ class SystemWriter:
         from archgen.timing.chains.chain_bounds import bound_all_chains
 
         results = bound_all_chains(self._analysis, self._architecture)
-        writer = FlowWriter(self._architecture, self._analysis, self._processes, self._routes, self._latencies)
+        routes = RouteFinder(self._types, self._tree, self._routes, self._latencies)
+        writer = FlowWriter(self._architecture, self._analysis, self._processes, routes)
         written: dict[SystemPart, dict[str, Chain]] = {}
         for chain in self._architecture.chains.values():
             place = writer.write_chain(chain, results[chain.id])
@@ -247,7 +251,7 @@ def _find_link_latencies(analysis: Analysis | None) -> dict[RouteEnds, tuple[Fra
         return {}
     found = {}
     for arc in analysis.system.arcs:
-        if arc.role == "data" and arc.link is not None and arc.worst is not None:
+        if arc.link is not None and arc.worst is not None:
             nodes = (analysis.system.activities[arc.source].node, analysis.system.activities[arc.target].node)
             best, worst = (arc.best or 0) * analysis.system.tick, arc.worst * analysis.system.tick
             if can_be_written(worst):

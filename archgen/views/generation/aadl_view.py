@@ -51,7 +51,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         for declared in architecture.types.values():
             if declared.origin == "project" and not declared.generic:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
-    system = SystemWriter(context, processes, names)
+    system = SystemWriter(context, processes, types, names)
     system.write()
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
