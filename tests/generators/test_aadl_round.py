@@ -123,7 +123,9 @@ LOST = {
 }
 """What of the project does not come back, by the words of the page."""
 GAINED = {
-    "a node for each component that is no device": [f"/nodes/{name}" for name in ("camera", "clouds", "motor", "user", "watcher")],
+    "a node for each component that is no device": [
+        f"/nodes/{name}" for name in ("camera", "clouds", "motor", "user", "watcher")
+    ],
     "role and behaviour of the thread": [
         *(f"/groups/driving/components/arm/components/motor/{key}" for key in ("role", "timing")),
         *(f"/groups/driving/components/watcher/{key}" for key in ("role", "timing")),
