@@ -195,9 +195,10 @@ def _list_ends(
     tree: HardwareTree, path: Path, system: LaunchedSystem, host_ids: Mapping[Path, str], hosts: Mapping[Path, str]
 ) -> list[str]:
     """Return the hosts and devices that have access to a bus, or whose connections are bound to it."""
-    ends: dict[str, None] = {}
-    for owner in tree.list_joined_devices(path):
-        ends |= _name_end(owner, system, host_ids)
+    owners = tree.list_joined_devices(path)
+    ends: dict[str, None] = {host_ids[owner]: None for owner in owners if owner in host_ids}
+    for owner in owners:
+        ends |= _name_device(tree, owner, system)
     if len(ends) > 1:
         return list(ends)
     for place, connection_name in tree.bound_connections.get(path, ()):
@@ -206,9 +207,9 @@ def _list_ends(
     return list(ends)
 
 
-def _name_end(owner: Path, system: LaunchedSystem, host_ids: Mapping[Path, str]) -> dict[str, None]:
-    if owner in host_ids:
-        return {host_ids[owner]: None}
+def _name_device(tree: HardwareTree, owner: Path, system: LaunchedSystem) -> dict[str, None]:
+    if component_id := tree.device_ids.get(owner):
+        return {component_id: None}
     instance = system.instances.get(owner)
     return {".".join(instance.ids): None} if instance else {}
 

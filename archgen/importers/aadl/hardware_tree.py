@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from archgen.importers.aadl.aadl_tree import Path, Property
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.bus_names import read_bound_path
 from archgen.importers.aadl.classifier_names import fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
@@ -38,6 +39,8 @@ class HardwareTree:
     """A forest: paths of accesses and buses, each with another one that it is joined to."""
     devices: dict[Path, Path] = field(default_factory=dict)
     """Accesses of processors and devices, with who has them."""
+    device_ids: dict[Path, str] = field(default_factory=dict)
+    """The components that devices are of, where an export of archgen's says it, by complete id."""
     bindings: dict[Path, Path] = field(default_factory=dict)
     """What is bound to processors, with the processor."""
     bound_connections: dict[Path, dict[tuple[Path, str], None]] = field(default_factory=dict)
@@ -96,6 +99,8 @@ class HardwareFinder:
             if part.category in PROCESSORS or part.category == "device":
                 accesses = (key for key, port in inner.ports.items() if port.kind in _BUS_ACCESSES)
                 tree.devices |= {(*inner_path, access): inner_path for access in accesses}
+                if component_id := find_own_text(inner_scope, (), "component"):
+                    tree.device_ids[inner_path] = component_id
             if len(path) < _MAX_DEPTH:
                 self.walk(inner, inner_scope, inner_path)
 

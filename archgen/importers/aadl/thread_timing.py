@@ -39,6 +39,8 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     for name, key in (("deadline", "deadline"), ("dispatch_jitter", "jitter")):
         if text := read_duration(scope.value(path, name)):
             timing[key] = text
+    if own_jitter := find_own_text(scope, path, "jitter"):
+        timing["jitter"] = own_jitter
     lowest, highest = read_time_range(scope.value(path, "compute_execution_time"))
     timing |= {"wcet": highest} if highest else {}
     # From 0 on says no more than up to.

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.importers.aadl.aadl_tree import Classifier, Connection, Flow, Modes, Property, Subcomponent
-from archgen.importers.aadl.classifier_names import KnownClassifier, fold_property_name
+from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 
-_DISPENSABLE_PROPERTIES = frozenset({"actual_latency"})
-"""What a tool has computed."""
 _TAKEN_PROPERTIES = frozenset(
     [
         *("dispatch_protocol", "period", "deadline", "dispatch_jitter", "compute_execution_time", "priority"),
@@ -34,7 +32,7 @@ def tell_untaken(resolver: ClassifierResolver, used: UsedProperties, notes: Note
         for name, span in classifier.annexes:
             notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
         for association in _list_associations(classifier):
-            if not known.is_of_library and id(association) not in written_over:
+            if not known.is_of_library and id(association) not in written_over and not _is_computed(association, names):
                 _tell_property(association, frozenset(names.property_sets), notes)
             elif id(association) in used.ids:
                 _tell_values(association, notes)
@@ -56,10 +54,16 @@ def _list_associations(classifier: Classifier) -> list[Property]:
     return found
 
 
+def _is_computed(association: Property, names: ClassifierNames) -> bool:
+    """Whether a tool has computed a property: what archgen writes of flows and connections is, too."""
+    name = fold_property_name(association.name)
+    return name == "actual_latency" or (names.is_own and name == "latency")
+
+
 def _tell_property(association: Property, known_sets: frozenset[str], notes: NoteList) -> None:
     name = fold_property_name(association.name)
     set_name = name.rpartition("::")[0]
-    if set_name == "archgen" or name in _DISPENSABLE_PROPERTIES:
+    if set_name == "archgen":
         return
     words = "archgen has no word for this property"
     if name in _TAKEN_PROPERTIES:
