@@ -94,7 +94,7 @@ def write_packed(checked_project: CheckedProject, target: Path) -> None:
 def write_resolved(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
     """Write the resolved model as YAML for other programs."""
     from archgen.syntax import yaml_writer
-    from archgen.views import resolved_record
+    from archgen.views.records import resolved_record
 
     data = resolved_record.make_record(make_scoped_lookup(checked_project, options))
     write_product_file(checked_project, target, yaml_writer.write_yaml(data).encode())

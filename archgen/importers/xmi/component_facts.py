@@ -31,6 +31,9 @@ class ClassFacts:
     base: ClassFacts | None = None
     """The component type that it is made from."""
     ports: list[PortFacts] = field(default_factory=list)
+    port_ids: dict[str, str] = field(default_factory=dict)
+    """The names of its own ports by their ids."""
+    ids_by_port_name: dict[str, str] = field(default_factory=dict)
     inside: list[ClassFacts] = field(default_factory=list)
     device: bool = False
     path: tuple[str, ...] = ()
@@ -59,7 +62,8 @@ class ClassSorting:
         self._catalogue = catalogue
         self._generals = self._find_generals()
         self._realizers = self._find_realizers()
-        self._with_ports = {each for each in catalogue.classes if self._has_ports(each)}
+        self.with_ports = {each for each in catalogue.classes if self._has_ports(each)}
+        """Components, and classes with ports."""
         self.facts: dict[XmlElement, ClassFacts] = {}
         self.parts: dict[XmlElement, ClassFacts] = {}
         self._sort_classes()
@@ -136,10 +140,10 @@ class ClassSorting:
         realizing = set(self._realizers.values())
         generals = set(self._generals.values())
         data_uses = self._count_data_uses()
-        component_family = self._find_family(realizing | self._with_ports)
+        component_family = self._find_family(realizing | self.with_ports)
         for element in classes:
             own_id = get_id(element)
-            if element in self._with_ports:
+            if element in self.with_ports:
                 is_type = (
                     own_id.startswith(_TYPE_PREFIX)
                     or is_true(element, "isAbstract")
@@ -180,7 +184,7 @@ class ClassSorting:
             (owner, reference.element)
             for owner in self._catalogue.classes
             for part in list_children(owner, "Property")
-            if (reference := self._index.find_reference(part, "type")) and reference.element in self._with_ports
+            if (reference := self._index.find_reference(part, "type")) and reference.element in self.with_ports
         ]
         return {owner for owner, _ in pairs}, {part for _, part in pairs if part is not None}
 
