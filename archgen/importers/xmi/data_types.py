@@ -12,6 +12,7 @@ from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, 
 from archgen.importers.xmi.made_names import name_type
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.link.data_types.message_names import spell_message_name
 from archgen.model.element_ids import make_id
 
 _UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
@@ -37,6 +38,7 @@ class DataTypes:
                 continue
             self._elements[name] = element
         self._fields = {name: self._read_fields(each) for name, each in self._elements.items()}
+        self._drop_nameless_fields()
         self._drop_unknown_fields()
 
     def _read_fields(self, element: XmlElement) -> dict[str, dict[str, object]] | None:
@@ -60,6 +62,20 @@ class DataTypes:
             comment = texts.get("comment") or texts.get("description")
             fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
         return fields or None
+
+    def _drop_nameless_fields(self) -> None:
+        """Leave out the fields of types after which no message can be called, or whose message another one has."""
+        first_types: dict[str, str] = {}
+        for name, fields in self._fields.items():
+            if not fields:
+                continue
+            message = spell_message_name(name)
+            if message is None:
+                self._drop_fields(
+                    name, "no message of ROS can be called so, which needs letters and digits, a letter first"
+                )
+            elif (first := first_types.setdefault(message, name)) is not name:
+                self._drop_fields(name, f"its message would be `{message}`, as that of `{first[:80]}`")
 
     def _drop_unknown_fields(self) -> None:
         """Leave out fields of types that have none themselves, and of those that hold themselves."""
