@@ -14,7 +14,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import NOT_TAKEN, NOTED, TAKEN, ImportLedger
 from archgen.importers.xmi.leftovers import TOOL_TAGS
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, is_written_here

@@ -37,6 +37,7 @@ class DataTypes:
                 ledger.leave(element, f"{call(element)} is not taken: {why}")
                 continue
             self._elements[name] = element
+        self._valueless: set[str] = set()
         self._fields = {name: self._read_fields(each) for name, each in self._elements.items()}
         self._drop_nameless_fields()
         self._drop_unknown_fields()
@@ -64,18 +65,23 @@ class DataTypes:
         return fields or None
 
     def _drop_nameless_fields(self) -> None:
-        """Leave out the fields of types after which no message can be called, or whose message another one has."""
+        """Leave out fields and values of types after which no message can be called, or whose message another one has."""
         first_types: dict[str, str] = {}
-        for name, fields in self._fields.items():
-            if not fields:
+        for name, element in self._elements.items():
+            literals = list_children(element, "EnumerationLiteral") if _is_enumeration(element) else []
+            if not self._fields[name] and not literals:
                 continue
             message = spell_message_name(name)
-            if message is None:
-                self._drop_fields(
-                    name, "no message of ROS can be called so, which needs letters and digits, a letter first"
-                )
-            elif (first := first_types.setdefault(message, name)) is not name:
-                self._drop_fields(name, f"its message would be `{message}`, as that of `{first[:80]}`")
+            reason = "no message of ROS can be called so, which needs letters and digits, a letter first"
+            if message is not None:
+                first = first_types.setdefault(message, name)
+                reason = f"its message would be `{message}`, as that of `{first[:80]}`" if first != name else ""
+            if reason and literals:
+                self._valueless.add(name)
+                words = f"the values of `{name[:80]}` are not taken: {reason}"
+                self._ledger.leave(literals[0], words, others=literals[1:])
+            elif reason:
+                self._drop_fields(name, reason)
 
     def _drop_unknown_fields(self) -> None:
         """Leave out fields of types that have none themselves, and of those that hold themselves."""
@@ -123,7 +129,7 @@ class DataTypes:
         section: dict[str, object] = {}
         for name, element in self._elements.items():
             body: dict[str, object] = {}
-            if _is_enumeration(element):
+            if _is_enumeration(element) and name not in self._valueless:
                 body |= self._write_values(element)
             elif fields := self._fields[name]:
                 for child in list_children(element, "Property"):

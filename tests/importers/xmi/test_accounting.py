@@ -203,6 +203,13 @@ def test_fields_make_messages_that_ros_can_name(
     assert len([each for each in tell_notes(imported) if why in each]) == 1
 
 
+def test_values_make_messages_that_ros_can_name(tmp_path: Path) -> None:
+    imported = read_model(tmp_path, ENUMERATION.replace('name="mode"', 'name="2D mode"'))
+    assert merge_sections(imported)["types"] == {"2D mode": {"hints": {"uml": {"id": "mode"}}}}
+    (note,) = (each for each in imported.notes if each.kind == "uml:EnumerationLiteral")
+    assert (note.count, "no message of ROS can be called so" in note.message) == (2, True)
+
+
 def test_a_property_that_only_refers_to_a_component_is_no_part_of_it(tmp_path: Path) -> None:
     contents = make_element("Component", "whole") + make_element("Component", "part", make_attribute("owner", "whole"))
     imported = read_model(tmp_path, contents)
