@@ -18,7 +18,7 @@ from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
-from archgen.views.pages.component_sections import ComponentSections
+from archgen.views.pages.component_sections import ReportSections
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.sequences.sequence_blocks import make_use_case_sections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -154,7 +154,7 @@ class _ChapterMaker:
     def make_groups(self) -> list[Section]:
         """Make one section for each group, with its components and their nodes; then one for all component types."""
         shows_nodes = self.edition.level == "implementation"
-        return ComponentSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
+        return ReportSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
 
     def _keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
         """Drop figures that are not among this document's drawings."""
