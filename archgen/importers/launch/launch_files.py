@@ -74,6 +74,15 @@ class LaunchFiles:
             return None
         return self._check(Path(posixpath.normpath(text)))
 
+    def list_names(self, text: str) -> list[str]:
+        """Return the names of the files in a folder that a text means, if it lies below a root."""
+        match = _PACKAGE_FILE.match(text)
+        folder = self._find_package(match[1]) if match else None
+        inner = posixpath.normpath(match[2] or ".") if match else ".."
+        if folder is None or inner.startswith(("/", "..")):
+            return []
+        return next((names for path, names in self._walk(folder) if path == folder / inner), [])
+
     def _find_in_package(self, folder: Path, inner_path: str) -> Path | None:
         inner = posixpath.normpath(inner_path)
         if inner.startswith(("/", "..")) or "$(" in inner or "\0" in inner:

@@ -121,7 +121,7 @@ class NodeMaker:
 
     def _set_remaps(self, node: LaunchedNode, action: LaunchAction) -> None:
         # The first rule for a name counts. Those of the scope come first, in ROS 1 last.
-        around, own = list(self._run.context.scope.remaps), list_items(action.get("remaps"))
+        around, own = list(self._run.context.scope.remaps), self._run.choose_values(action, action.get("remaps"))
         pairs: list[Any] = [*reversed(own), *around] if self._run.context.is_ros_1 else [*around, *own]
         for pair in pairs:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
@@ -149,8 +149,9 @@ class NodeMaker:
         node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
         for name, value in context.scope.environment:
             node.environment[name] = value
-        pairs = action.get("environment")
-        for name, value in pairs.items() if isinstance(pairs, Mapping) else _list_pairs(pairs):
+        given = action.get("environment")
+        pairs = given.items() if isinstance(given, Mapping) else _list_pairs(self._run.choose_values(action, given))
+        for name, value in pairs:
             variable, setting = context.resolve(name), context.resolve(value)
             if isinstance(variable, str) and isinstance(setting, str):
                 node.environment[variable] = setting
@@ -188,7 +189,8 @@ class NodeMaker:
             read_nodelet(node)
 
     def _set_parameters(self, node: LaunchedNode, action: LaunchAction) -> None:
-        for entry in [*self._run.context.scope.parameters, *list_items(action.get("parameters"))]:
+        own = self._run.choose_values(action, action.get("parameters"))
+        for entry in [*self._run.context.scope.parameters, *own]:
             if isinstance(entry, Mapping):
                 for raw_name, value in entry.items():
                     name = self._run.context.resolve(raw_name)

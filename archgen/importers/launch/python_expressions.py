@@ -17,6 +17,7 @@ from archgen.importers.launch.python_values import (
     ImportedName,
     ModuleValue,
     NameScope,
+    RecordValue,
 )
 
 MAX_STEPS = 300_000
@@ -103,6 +104,8 @@ class ExpressionReader:
             return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
         if isinstance(owner, UnknownValue):
             return self.quote(node)
+        if isinstance(owner, RecordValue) and node.attr != "to_dict":
+            return owner.values.get(node.attr, self.quote(node))
         if node.attr in {"parent", "name"} and isinstance(owner, str | Substitution):
             return self._read_path_part(node, owner)
         return BoundMethod(owner, node.attr)

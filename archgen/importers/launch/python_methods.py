@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, join_values
+from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue, join_values
 from archgen.importers.launch.python_operators import fill_text
 from archgen.importers.launch.python_statements import StatementReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments
@@ -54,7 +54,7 @@ class MethodReader(StatementReader):
             if owner.children and self.conditions and not owner.children[-1].conditions:
                 owner.children[-1].conditions += self.conditions
             return None
-        if name == "read" and isinstance(owner, Substitution) and owner.kind == "open file":
+        if name == "read" and isinstance(owner, Substitution) and owner.kind == OPEN_FILE:
             # What a file holds is what printing it gives.
             return Substitution("command", (["cat ", owner.parts[0]],))
         if name in _SAME_METHODS and isinstance(owner, str | Substitution):

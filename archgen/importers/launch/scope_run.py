@@ -7,7 +7,7 @@ from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ImportNote
-from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
@@ -131,6 +131,25 @@ class ScopeRun:
                 if isinstance(name, str):
                     resolved.append((name, value))
         return resolved
+
+    def choose_values(self, action: LaunchAction, values: LaunchValue) -> list[LaunchValue]:
+        """Return what is given, as a list, without what does not count by its own conditions."""
+        items = list(values) if isinstance(values, list | tuple) else [] if values is None else [values]
+        chosen: list[LaunchValue] = []
+        for item in items:
+            verdicts = (
+                [self.context.judge_condition(each) for each in item.conditions]
+                if isinstance(item, ConditionalValue)
+                else []
+            )
+            unsure = next((words for words, verdict in verdicts if verdict is None), None)
+            if any(verdict is False for _, verdict in verdicts):
+                continue
+            if unsure is not None:
+                self.add_note(action.word, f"what counts only {unsure} is left out", action.span)
+                continue
+            chosen.append(item.value if isinstance(item, ConditionalValue) else item)
+        return chosen
 
     def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
         """Add a note, once for each place."""
