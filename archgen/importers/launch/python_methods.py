@@ -57,6 +57,8 @@ class MethodReader(StatementReader):
         if name == "read" and isinstance(owner, Substitution) and owner.kind == OPEN_FILE:
             # What a file holds is what printing it gives.
             return Substitution("command", (["cat ", owner.parts[0]],))
+        if name == "find" and isinstance(owner, Substitution) and owner.kind in {"share", "prefix"}:
+            return Substitution(owner.kind, (arguments.get(0, "package_name"),))
         if name in _SAME_METHODS and isinstance(owner, str | Substitution):
             return owner
         if isinstance(owner, list):

@@ -24,7 +24,7 @@ def write_graph(graph: RunningGraph) -> dict[str, dict[str, Any]]:
         if node.full_name not in _NO_NODES and not node.full_name.rpartition("/")[2].startswith("_"):
             maker.add_node(node)
     slices = maker.finish()
-    if not slices and graph.messages:
+    if not slices and any(graph.messages.values()):
         types = {make_type_name(message): {"message": message} for message in graph.messages.values() if message}
         return {"recorded_types.yaml": {"types": types}}
     return slices

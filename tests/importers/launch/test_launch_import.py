@@ -218,6 +218,7 @@ def test_three_forms_say_the_same(form: str, tmp_path: Path) -> None:
         ("[n for n in ['a', 'b', 'c'] if n != 'a'][0]", "b"),
         ("(lambda name: name + '_node')('x')", "x_node"),
         ("str(Path('a') / 'b').replace('/', '_')", "a_b"),
+        ("['n', PythonExpression([\"1 + int('\", LaunchConfiguration('x'), \"') + int(2.7)\"])]", "n8"),
         ("['n_', EqualsSubstitution(LaunchConfiguration('x'), '5')]", "n_true"),
     ],
 )

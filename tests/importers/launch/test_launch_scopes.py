@@ -152,3 +152,22 @@ def test_places_are_counted_in_characters_of_the_right_file(tmp_path: Path) -> N
         tmp_path, 'return LaunchDescription([LogInfo(msg="äöü"), unset("x"), launch.actions.EmitEvent()])'
     )
     assert [note.span.column for note in imported.notes] == [1, 63]
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        ("'/', ns, 'arm'", "/arm"),
+        ("ns, 'arm'", "arm"),
+        ("'a/', ns, 'b', 'c'", "a/b/c"),
+        ("'a', '/b', 'c'", "/b/c"),
+        ("FindPackageShare('x').find('bot'), 'a'", "$(find-pkg-share bot)/a"),
+    ],
+)
+def test_paths_are_joined_as_python_joins_them(parts: str, expected: str, tmp_path: Path) -> None:
+    body = f"""
+    ns = LaunchConfiguration("ns")
+    return LaunchDescription([DeclareLaunchArgument("ns", default_value=""),
+        Node(package="p", executable="e", name="n", arguments=[PathJoinSubstitution([{parts}])])])
+    """
+    assert nodes_of(read_python(tmp_path, body))["n"]["arguments"] == [expected]
