@@ -33,6 +33,7 @@ class LaunchFiles:
 
     def __init__(self, paths: Sequence[Path]) -> None:
         self.roots = list(dict.fromkeys(_find_root(path) for path in paths))
+        self._own_folders = [folder for path in paths if (folder := _find_package_folder(path.resolve())) is not None]
         self._packages: dict[str, Path] | None = None
         self._walked: dict[Path, list[tuple[Path, list[str]]]] = {}
 
@@ -112,7 +113,8 @@ class LaunchFiles:
 
     def _find_package(self, name: str) -> Path | None:
         if self._packages is None:
-            self._packages = {}
+            # Of packages of one name that of a given file counts.
+            self._packages = {_read_package_name(folder): folder for folder in reversed(self._own_folders)}
             for root in self.roots:
                 for path, names in self._walk(root):
                     if "package.xml" in names:
@@ -138,11 +140,16 @@ def _find_root(path: Path) -> Path:
     resolved = path.resolve()
     if resolved.is_dir():
         return resolved
-    for parent in list(resolved.parents)[:_PARENTS_TRIED]:
-        if (parent / "package.xml").is_file():
-            # Packages of one repository stand beside one another; a folder of all packages of a workspace is too much.
-            return parent.parent if (parent.parent / ".git").exists() or _holds_packages(parent.parent) else parent
-    return resolved.parent
+    parent = _find_package_folder(resolved)
+    if parent is None:
+        return resolved.parent
+    # Packages of one repository stand beside one another; a folder of all packages of a workspace is too much.
+    return parent.parent if (parent.parent / ".git").exists() or _holds_packages(parent.parent) else parent
+
+
+def _find_package_folder(file: Path) -> Path | None:
+    parents = list(file.parents)[:_PARENTS_TRIED]
+    return next((parent for parent in parents if (parent / "package.xml").is_file()), None)
 
 
 def _holds_packages(folder: Path) -> bool:

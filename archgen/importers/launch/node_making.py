@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from archgen.importers.launch.command_words import split_words
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
-from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
+from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
 from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
 from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
@@ -138,6 +138,8 @@ class NodeMaker:
             return
         assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
         assert isinstance(name, str)  # noqa: S101 - as above
+        if self._run.context.is_ros_1:
+            own_name, name = clean_name(own_name), clean_name(name)
         self._keep_written(node, f"remaps.{own_name}", pair[1])
         node.remaps.setdefault(own_name, name)
 

@@ -45,6 +45,11 @@ class ParameterFileReader:
         text = self._read(path)
         return _read_tree(text.root) if text is not None and text.root is not None else None
 
+    def read_mapping(self, path: Path) -> dict[str, Any] | None:
+        """Return what a file in YAML says, with its keys as they are; None where it cannot be read."""
+        text = self._read(path)
+        return _read_tree(text.root, "") if text is not None and text.root is not None else None
+
     def _read(self, path: Path) -> ParameterText | None:
         if path not in self._texts:
             try:
@@ -57,13 +62,14 @@ class ParameterFileReader:
         return self._texts[path]
 
 
-def _read_tree(node: MappingNode) -> dict[str, Any]:
-    return {entry.key.strip("/"): _read_value(entry.value) for entry in node}
+def _read_tree(node: MappingNode, ends: str = "/") -> dict[str, Any]:
+    """Return a mapping as data, its keys without some characters at their ends."""
+    return {entry.key.strip(ends) if ends else entry.key: _read_value(entry.value, ends) for entry in node}
 
 
-def _read_value(node: YamlNode) -> Any:  # noqa: ANN401
+def _read_value(node: YamlNode, ends: str) -> Any:  # noqa: ANN401
     if isinstance(node, MappingNode):
-        return _read_tree(node)
+        return _read_tree(node, ends)
     if isinstance(node, ScalarNode) and node.is_plain and node.text.lower() in _YAML_1_1_WORDS:
         return _YAML_1_1_WORDS[node.text.lower()]
     return node.text if isinstance(node, ScalarNode) and not node.is_plain else node_to_data(node)

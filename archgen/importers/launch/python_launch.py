@@ -93,7 +93,7 @@ class _FileReader(CallReader):
         if isinstance(text, UnknownValue):
             return self.quote(node)
         file = self._run.files.find_file(text)
-        values = None if file is None else self._run.parameter_reader.read_whole(file)
+        values = None if file is None else self._run.parameter_reader.read_mapping(file)
         if values is None:
             is_far = file is None
             words = "it does not lie in the folders that were given" if is_far else "it is no mapping in YAML"

@@ -42,7 +42,7 @@ class MethodReader(StatementReader):
             reason = f"what it gives is computed: `{value.reason}`"
             action.children.append(LaunchAction("unread", _name_call(value.reason), span, {"reason": reason}))
 
-    def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:  # noqa: C901, PLR0911
+    def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:  # noqa: C901, PLR0911, PLR0912
         """Return what a method gives; what it changes is changed."""
         owner, name = method.owner, method.name
         if name == "perform_substitution":

@@ -22,11 +22,15 @@ _NODE_KEYS = {
     "prefix": "launch-prefix",
     "host": "machine",
 }
+_TAGS = frozenset({"arg", "env", "group", "include", "machine", "node", "param", "remap", "rosparam", "test"})
 _WORKING_FOLDERS = frozenset({"node", "ROS_HOME"})
 
 
 def is_ros_1_launch(root: LaunchEntity, name: str) -> bool:
     """Whether a launch file in XML is one of ROS 1: its nodes have a `type`, those of ROS 2 an `exec`."""
+    if root.find_all("param"):
+        # In ROS 2 each parameter stands in a node.
+        return True
     pending = list(root.children)
     marks = 0
     while pending:
@@ -42,7 +46,12 @@ def is_ros_1_launch(root: LaunchEntity, name: str) -> bool:
             "executable",
         }:
             return False
-        if entity.tag in {"rosparam", "machine", "test"} or (entity.tag == "node" and "type" in attributes):
+        holds_parameters = entity.tag == "group" and entity.find_all("param")
+        if (
+            holds_parameters
+            or entity.tag in {"rosparam", "machine", "test"}
+            or (entity.tag == "node" and "type" in attributes)
+        ):
             return True
         if (entity.tag == "node" and "exec" in attributes) or any(
             "$(var " in text or "$(find-pkg" in text for text in texts
@@ -68,7 +77,9 @@ class Ros1EntityReader:
         return None if text is None else read_text(text, self._folder, is_ros_1=True)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
-        reader: Callable[[LaunchEntity], LaunchAction] = getattr(self, f"_read_{entity.tag}", self._read_unknown)
+        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
+        if entity.tag in _TAGS:
+            reader = getattr(self, f"_read_{entity.tag}")
         action = reader(entity)
         action.conditions += self._read_conditions(entity)
         return action

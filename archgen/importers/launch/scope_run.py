@@ -11,7 +11,7 @@ from archgen.importers.launch.launch_actions import ConditionalValue, LaunchActi
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
-from archgen.importers.launch.launched_nodes import join_names
+from archgen.importers.launch.launched_nodes import clean_name, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND
 
 
@@ -102,6 +102,8 @@ class ScopeRun:
             self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
         else:
             scope = self.context.scope
+            if self.context.is_ros_1:
+                own_name, name = clean_name(own_name), clean_name(name)
             # In ROS 1 a later rule for a name takes the place of an earlier one, in ROS 2 the first one counts.
             kept = [pair for pair in scope.remaps if not (self.context.is_ros_1 and pair[0] == own_name)]
             scope.remaps = (*kept, (own_name, name))

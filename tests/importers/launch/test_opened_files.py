@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ VALUES = "rate: 5\ndeep: {flag: yes, words: [a, b]}\n"
         "with open(path) as file:\n    values = yaml.load(file.read(), Loader=yaml.FullLoader)",
         "values = load(path)",
         "values = {}\nif os.path.exists(path):\n    values = load(path)",
+        "values = load(os.path.dirname(path) + '/all.yaml')['/**']['ros__parameters']",
         "values = load(path)['other'] if False else load(Path(path))",
     ],
 )
@@ -39,7 +41,9 @@ path = os.path.join(get_package_share_directory("bot"), "config", "main.yaml")
 {statements}
 return LaunchDescription([{NODE}])
 """
-    imported = read_python(tmp_path, body, package__xml=MANIFEST.format("bot"), config___main__yaml=VALUES)
+    wrapped = "/**:\n  ros__parameters:\n" + textwrap.indent(VALUES, "    ")
+    files = {"config___main__yaml": VALUES, "config___all__yaml": wrapped, "package__xml": MANIFEST.format("bot")}
+    imported = read_python(tmp_path, body, **files)
     assert nodes_of(imported)["n"]["parameters"] == {"rate": 5, "deep": {"flag": True, "words": ["a", "b"]}}
     assert messages_of(imported) == []
 

@@ -234,7 +234,7 @@ def test_a_graph_of_ros_2(tmp_path: Path) -> None:
         "publishes": 3,
         "serves": 5,
         "subscribes": 3,
-        "topic or service": 3,
+        "topic or service": 4,
     }
     assert check_slices(imported, tmp_path / "project", "jazzy") == []
 
