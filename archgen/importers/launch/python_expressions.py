@@ -24,6 +24,7 @@ MAX_STEPS = 300_000
 MAX_DEPTH = 60
 _MAX_QUOTED = 80
 _NUMBERS = (int, float)
+_KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
 
 
 class ExpressionReader:
@@ -98,7 +99,8 @@ class ExpressionReader:
     def _read_attribute(self, node: ast.Attribute, scope: NameScope) -> LaunchValue:
         owner = self.evaluate(node.value, scope)
         if isinstance(owner, ImportedName):
-            return ImportedName(f"{owner.name}.{node.attr}")
+            name = f"{owner.name}.{node.attr}"
+            return _KNOWN_TEXTS.get(name) or ImportedName(name)
         if isinstance(owner, ModuleValue):
             is_known, value = owner.scope.find(node.attr)
             return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
