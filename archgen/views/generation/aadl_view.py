@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Output
 from archgen.model.node import Endpoint
 from archgen.model.port_media import flow_of_port
+from archgen.views.generation.aadl_component_types import TypeWriter, find_type, list_shared_types
 from archgen.views.generation.aadl_devices import Device, is_device
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_system import LAUNCH, SystemWriter
@@ -42,9 +43,21 @@ def make_view(context: GenerationContext) -> GeneratedView:
         endpoints.setdefault(endpoint.node, []).append(endpoint)
     linked_devices = {device for link in architecture.links.values() for device in link.devices}
     package_names = {Process.category: NameSpace(), Device.category: NameSpace()}
+    kinds = {
+        node.id: Device if is_device(architecture, node, linked_devices) else Process
+        for node in context.wanted_nodes.values()
+    }
+    # Component types have their names before the nodes, which may be called like them.
+    type_names = {
+        (kinds[node.id].category, declared.id): ""
+        for node in context.wanted_nodes.values()
+        if (declared := find_type(architecture, node))
+    }
+    for category, type_id in type_names:
+        type_names[category, type_id] = package_names[category].take_name(type_id)
     processes: dict[str, Process] = {}
     for node in context.wanted_nodes.values():
-        kind = Device if is_device(architecture, node, linked_devices) else Process
+        kind = kinds[node.id]
         own_endpoints = endpoints.get(node.id, ())
         processes[node.id] = kind(architecture, types, node, own_endpoints, package_names[kind.category])
     if context.is_whole:
@@ -53,12 +66,29 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
     system = SystemWriter(context, processes, types, names)
     system.write()
+    shared: dict[str, list[dict[str, Any]]] = {category: [] for category in package_names}
+    written_elsewhere: set[str] = set()
+    for shared_type in list_shared_types(architecture, processes.values(), type_names):
+        category = shared_type.instances[0].category
+        package = names["devices" if category == Device.category else "nodes"]
+        writer = TypeWriter(shared_type, package, package_names[category])
+        shared[category] += writer.make_classifiers()
+        writer.place_instances()
+        written_elsewhere |= {process.node.id for process in shared_type.instances}
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
         *(
             _make_package(
                 names[key],
-                [each for one in processes.values() if one.category == category for each in one.make_classifiers()],
+                [
+                    *shared[category],
+                    *(
+                        classifier
+                        for process in processes.values()
+                        if process.category == category and process.node.id not in written_elsewhere
+                        for classifier in process.make_classifiers()
+                    ),
+                ],
             )
             for key, category in (("nodes", Process.category), ("devices", Device.category))
         ),
