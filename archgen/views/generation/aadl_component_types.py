@@ -28,8 +28,8 @@ _Key = tuple[str, str, str]
 """Of a property: the section that it stands in, what it applies to there, and its name."""
 _TYPE_WORDS = frozenset({"archgen::Functionality", "archgen::Description", "archgen::Role", "archgen::Tags"})
 """What instances have from their types, of what a component says of itself."""
-_INSTANCE_PROPERTIES = frozenset({"topic_properties::Default_Name", "Queue_Size"})
-"""What a node says, not a component."""
+_INSTANCE_PROPERTIES = frozenset({"topic_properties::Default_Name", "Queue_Size", "archgen::External_End"})
+"""What a node says, and what stands around an instance."""
 
 
 @dataclass(frozen=True, slots=True)
