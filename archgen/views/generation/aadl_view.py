@@ -8,11 +8,10 @@ from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
-from archgen.model.node import Endpoint
 from archgen.model.port_media import flow_of_port
-from archgen.views.generation.aadl_component_types import TypeWriter, find_type, list_shared_types
-from archgen.views.generation.aadl_devices import Device, is_device
+from archgen.views.generation.aadl_devices import Device
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_programs import ProgramBook
 from archgen.views.generation.aadl_system import LAUNCH, SystemWriter
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import NameSpace, make_aadl_name
@@ -38,60 +37,18 @@ def make_view(context: GenerationContext) -> GeneratedView:
         for key in ("types", "nodes", "devices", "hosts", "system")
     }
     types = TypeBook(architecture, names["types"], units)
-    endpoints: dict[str, list[Endpoint]] = {}
-    for endpoint in architecture.list_endpoints():
-        endpoints.setdefault(endpoint.node, []).append(endpoint)
-    linked_devices = {device for link in architecture.links.values() for device in link.devices}
-    package_names = {Process.category: NameSpace(), Device.category: NameSpace()}
-    kinds = {
-        node.id: Device if is_device(architecture, node, linked_devices) else Process
-        for node in context.wanted_nodes.values()
-    }
-    # Component types have their names before the nodes, which may be called like them.
-    type_names = {
-        (kinds[node.id].category, declared.id): ""
-        for node in context.wanted_nodes.values()
-        if (declared := find_type(architecture, node))
-    }
-    for category, type_id in type_names:
-        type_names[category, type_id] = package_names[category].take_name(type_id)
-    processes: dict[str, Process] = {}
-    for node in context.wanted_nodes.values():
-        kind = kinds[node.id]
-        own_endpoints = endpoints.get(node.id, ())
-        processes[node.id] = kind(architecture, types, node, own_endpoints, package_names[kind.category])
+    programs = ProgramBook(context, types)
     if context.is_whole:
         for declared in architecture.types.values():
             if declared.origin == "project" and not declared.generic:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
-    system = SystemWriter(context, processes, types, names)
+    system = SystemWriter(context, programs.processes, types, names)
     system.write()
-    shared: dict[str, list[dict[str, Any]]] = {category: [] for category in package_names}
-    written_elsewhere: set[str] = set()
-    for shared_type in list_shared_types(architecture, processes.values(), type_names):
-        category = shared_type.instances[0].category
-        package = names["devices" if category == Device.category else "nodes"]
-        writer = TypeWriter(shared_type, package, package_names[category])
-        shared[category] += writer.make_classifiers()
-        writer.place_instances()
-        written_elsewhere |= {process.node.id for process in shared_type.instances}
+    program_packages = {Process.category: names["nodes"], Device.category: names["devices"]}
+    programs.write_types(program_packages)
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
-        *(
-            _make_package(
-                names[key],
-                [
-                    *shared[category],
-                    *(
-                        classifier
-                        for process in processes.values()
-                        if process.category == category and process.node.id not in written_elsewhere
-                        for classifier in process.make_classifiers()
-                    ),
-                ],
-            )
-            for key, category in (("nodes", Process.category), ("devices", Device.category))
-        ),
+        *(_make_package(name, programs.list_classifiers(category)) for category, name in program_packages.items()),
         _make_package(names["hosts"], system.platform.classifiers),
         _make_package(names["system"], system.classifiers, system.comments),
     ]
