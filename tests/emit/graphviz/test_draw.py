@@ -111,6 +111,7 @@ def broken(what: str, when: str = "not task.simple") -> tuple[str, ...]:
     return (sys.executable, "-P", "-c", BROKEN.format(root=root, what=what, when=when))
 
 
+@pytest.mark.usefixtures("fresh_workers")
 @pytest.mark.parametrize(
     ("what", "said"),
     [
@@ -140,6 +141,7 @@ def test_a_broken_worker_costs_one_picture(
     assert (other.warning, other.id) == (None, "other")
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_a_picture_that_cannot_be_drawn_at_all(tmp_path: Path) -> None:
     start = broken("os.abort()", "True")
     tiny, other = worker_pool.draw_tasks(
@@ -150,6 +152,7 @@ def test_a_picture_that_cannot_be_drawn_at_all(tmp_path: Path) -> None:
     assert other.svg
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_a_missing_library_is_named(tmp_path: Path) -> None:
     message = "libXrender.so.1: cannot open shared object file: No such file or directory"
     code = f"import sys; sys.modules['pygraphviz'] = None\nclass F:\n  def find_spec(s, n, *a):\n    if n == 'pygraphviz': raise ImportError({message!r})\ndel sys.modules['pygraphviz']; sys.meta_path.insert(0, F())\n"
@@ -319,6 +322,7 @@ def test_a_png_has_each_fill_as_it_is_in_the_svg() -> None:
         assert {bytes.fromhex(fill.decode()) for fill in fills} <= set(_unpack_png(picture.png or b""))
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -> None:
     with start_early_workers(tmp_path) as ready:
         processes = [each.start_process() for each in ready]
@@ -332,6 +336,7 @@ def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -
         assert list(ready) == []
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_more_workers_than_pictures_are_ended(tmp_path: Path) -> None:
     with start_early_workers(tmp_path) as ready:
         processes = [each.start_process() for each in ready]
