@@ -127,13 +127,13 @@ def broken(what: str, when: str = "not task.simple") -> tuple[str, ...]:
 def test_a_broken_worker_costs_one_picture(
     what: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    request_picture = DrawingWorker.request_picture
+    request_picture = worker_pool.DrawingWorker.request_picture
 
     def request_in_time(worker: DrawingWorker, task: DrawingTask, timeout: float) -> Picture | DrawingFailure:
         is_late = "sleep" in what and task.drawing.id == "tiny" and not task.simple
         return request_picture(worker, task, 1 if is_late else timeout)
 
-    monkeypatch.setattr(DrawingWorker, "request_picture", request_in_time)
+    monkeypatch.setattr(worker_pool.DrawingWorker, "request_picture", request_in_time)
     tasks = [DrawingTask(graph, {}, ("svg",)) for graph in (TINY, replace(TINY, id="other"))]
     tiny, other = worker_pool.draw_tasks(tasks, tmp_path, workers=1, timeout=600, command_line=broken(what))
     assert tiny.warning == f"the picture tiny is drawn in a simpler way: {said}"
