@@ -32,9 +32,9 @@ from archgen.products.output_options import OutputOptions
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chain_bounds as timing_chains
 from archgen.timing.run_analysis import analyse_architecture
-from archgen.views import resolved_record
 from archgen.views.pages.report_outline import DetailLevel
 from archgen.views.partner_ownership import Ownership
+from archgen.views.records import resolved_record
 from archgen.views.shapes import Record
 
 AnyPath = str | PathLike[str]

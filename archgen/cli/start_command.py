@@ -28,7 +28,7 @@ def command(project: Path | None, host: str | None, form: str) -> None:
     """
     from archgen.bringup.start_plan import make_start_plan
     from archgen.emit.terminal.start_text import format_plan
-    from archgen.views.start_plan_record import record_plan
+    from archgen.views.records.start_plan_record import record_plan
 
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)

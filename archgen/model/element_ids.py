@@ -66,14 +66,19 @@ def make_id(name: str, prefix: str) -> str:
     return element_id
 
 
-def make_unique_id(wanted_id: str, used_ids: AbstractSet[str]) -> str:
+def make_unique_id(wanted_id: str, used_ids: AbstractSet[str], first_number: int = 2) -> str:
     """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ...
 
     One that is too long is cut.
     """
-    element_id, number = wanted_id[:MAX_ID_LENGTH].strip("_"), 2
+    element_id, number = wanted_id[:MAX_ID_LENGTH].strip("_"), first_number
     while element_id in used_ids:
-        ending = f"_{number}"
-        element_id = wanted_id[: MAX_ID_LENGTH - len(ending)].strip("_") + ending
+        element_id = number_id(wanted_id, number)
         number += 1
     return element_id
+
+
+def number_id(element_id: str, number: int) -> str:
+    """Return an id with a number behind it, cut if it is too long: `arm_2`."""
+    ending = f"_{number}"
+    return element_id[: MAX_ID_LENGTH - len(ending)].strip("_") + ending

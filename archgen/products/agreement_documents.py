@@ -28,7 +28,7 @@ from archgen.views.agreement.budget_section import BudgetFinder
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph, Section
-from archgen.views.tables.architecture_tables import describe_severities
+from archgen.views.tables.finding_tables import describe_severities
 from archgen.views.timing.timing_lookup import complete_with_chains
 
 AgreementFormat = Literal["docx", "markdown", "html"]

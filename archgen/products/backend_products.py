@@ -9,10 +9,10 @@ from archgen.emit import file_tree
 from archgen.emit.backend_manifests import Backend
 from archgen.products.backend_choice import raise_problems
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
-from archgen.views import resolved_record
 from archgen.views.generation import make_generation_views
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.graph_shapes import Graph
+from archgen.views.records import resolved_record
 from archgen.views.requirement_exchange import make_requirement_exchange
 from archgen.views.sequence_shapes import SequenceChart
 from archgen.views.tables import statistics_tables

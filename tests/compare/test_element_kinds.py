@@ -29,7 +29,7 @@ from archgen.model.variant import Variant
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.resolved_record import make_record
+from archgen.views.records.resolved_record import make_record
 from tests.running import ROOT
 
 SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))

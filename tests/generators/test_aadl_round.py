@@ -102,7 +102,6 @@ LOST = {
     "requirements": ["/requirements", "/groups/sensing/components/lidar/requirements"],
     "use cases": ["/use_cases"],
     "views": ["/views"],
-    "tags": ["/groups/sensing/components/lidar/tags"],
     "properties": ["/properties"],
     "parameters": ["/groups/sensing/components/lidar/parameters"],
     "operations": ["/groups/sensing/components/lidar/operations"],
@@ -124,12 +123,14 @@ LOST = {
 }
 """What of the project does not come back, by the words of the page."""
 GAINED = {
-    "a node for each component": [f"/nodes/{name}" for name in ("camera", "clouds", "motor", "user", "watcher")],
+    "a node for each component that is no device": [
+        f"/nodes/{name}" for name in ("camera", "clouds", "motor", "user", "watcher")
+    ],
     "role and behaviour of the thread": [
         *(f"/groups/driving/components/arm/components/motor/{key}" for key in ("role", "timing")),
         *(f"/groups/driving/components/watcher/{key}" for key in ("role", "timing")),
     ],
-    "types of the ports of composed components": ["/groups/driving/components/arm/outputs/angle/type"],
+    "types and media of the ports of composed components": ["/groups/driving/components/arm/outputs/angle/type"],
     "what instances have from their types": [
         f"/groups/sensing/components/camera/{key}" for key in ("functionality", "outputs")
     ],

@@ -16,12 +16,13 @@ from archgen.model.document_chapters import GENERATED_CHAPTERS
 from archgen.pipeline import CheckedProject
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import make_scoped_lookup, select_elements
-from archgen.views import inline_text, resolved_record
+from archgen.views import inline_text
 from archgen.views.elements import element_card, element_names
 from archgen.views.graphs import make_all_graphs
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.records import resolved_record
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Paragraph, Section, Table, Text
 from archgen.views.tables import element_rows, statistics_tables
 

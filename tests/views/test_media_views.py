@@ -8,7 +8,6 @@ import pytest
 
 from archgen.model.port_media import key_of_carrier, label_of_carrier
 from archgen.pipeline import check_project
-from archgen.views.carrier_record import record_carriers, record_endpoints
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import find_elements
 from archgen.views.explorer.map_flows import make_flow_tables
@@ -17,6 +16,7 @@ from archgen.views.graphs.ros_graph import draw_ros_graph
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables
 from archgen.views.pages.host_pages import make_host_pages
+from archgen.views.records.carrier_record import record_carriers, record_endpoints
 from archgen.views.search.implementation_entries import make_channel_entries
 from archgen.views.shapes import Facts, Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows

@@ -16,8 +16,8 @@ from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_context_pages, make_topic_pages
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Block, Facts, Table
-from archgen.views.tables.architecture_tables import make_type_table
 from archgen.views.tables.element_rows import list_element_rows
+from archgen.views.tables.type_tables import make_type_table
 from tests.agreeing import text
 
 ROBOT = """\

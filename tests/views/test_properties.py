@@ -8,7 +8,7 @@ from archgen.views.elements.annotation_facts import list_annotation_facts, make_
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline, site_pages
-from archgen.views.resolved_record import make_record
+from archgen.views.records.resolved_record import make_record
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Facts, Markdown, Section, Table
 from archgen.views.tables.element_rows import list_element_rows

@@ -123,6 +123,15 @@ def test_pieces_for_paper_have_few_lifelines_and_are_even(steps: int, pieces: li
     if len(charts) > 1:
         assert [chart.id for chart in charts][:2] == ["sequences/UC-4/1", "sequences/UC-4/2"]
         assert charts[0].title == f"UC-4: steps 1 to {pieces[0]}"
+    # What has no words says what it runs along; the legend stands once.
+    assert {message.detail for chart in charts for message in chart.messages} == ({"Words"} if steps == 5 else {""})
+    assert [chart.legend for chart in charts] == [()] * (len(pieces) - 1) + [("step:data",)]
+
+
+def test_pieces_for_paper_leave_what_words_say_to_the_table(tmp_path: Path) -> None:
+    silent = long_robot(7).replace(", say: s3", "")
+    charts = sequence_charts.make_printed_charts(look_up(tmp_path, silent), "UC-4")
+    assert [message.detail for chart in charts for message in chart.messages] == ["", "", "", "Words", "", "", ""]
 
 
 def test_drawings_at_once_and_on_demand(tmp_path: Path) -> None:

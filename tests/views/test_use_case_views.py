@@ -13,13 +13,13 @@ from archgen.products.project_views import make_scoped_lookup
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import find_elements
 from archgen.views.lookup import Lookup
-from archgen.views.resolved_record import make_record
+from archgen.views.records.resolved_record import make_record
+from archgen.views.records.use_case_record import record_use_cases
 from archgen.views.search.functional_entries import make_requirement_entries
 from archgen.views.sequences import step_words
 from archgen.views.tables.element_rows import list_element_rows
 from archgen.views.tables.statistics_tables import format_figures
 from archgen.views.timing.timing_lookup import analyse_with_chains
-from archgen.views.use_case_record import record_use_cases
 
 ROBOT = """\
 archgen: 1

@@ -11,8 +11,10 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.compare.element_likeness import letter_pairs, word_set
-from archgen.compare.kinds.functional_kinds import COMPONENT, INPUT, OUTPUT, name_common_type
+from archgen.compare.kinds.component_keys import name_common_type
+from archgen.compare.kinds.functional_kinds import COMPONENT
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
 from archgen.compare.kinds.promise_keys import VERSION, deprecation_key
 from archgen.compare.kinds.ros_kinds import NODE
 from archgen.compare.kinds.shared_keys import DESCRIPTION, TITLE, key_values, prose_key, text_feature

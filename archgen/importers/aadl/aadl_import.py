@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.aadl.aadl_tree import Property
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
-from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
+from archgen.importers.aadl.classifier_names import ClassifierNames
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
 from archgen.importers.aadl.data_types import DataTypes
 from archgen.importers.aadl.hardware_mapping import HardwareMapper
@@ -24,37 +23,11 @@ from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.robot_groups import GroupBuilder
 from archgen.importers.aadl.structures import Structure, StructureFinder
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
+from archgen.importers.aadl.untaken_notes import tell_untaken
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
 
 MAX_BYTES = 16_000_000
-_TAKEN_PROPERTIES = frozenset(
-    [
-        "dispatch_protocol",
-        "period",
-        "deadline",
-        "dispatch_jitter",
-        "compute_execution_time",
-        "priority",
-        "queue_size",
-        "source_text",
-        "source_name",
-        "actual_processor_binding",
-        "actual_connection_binding",
-        "scheduling_protocol",
-        "latency",
-        "transmission_time",
-        "actual_latency",
-        "topic_properties::name",
-        "topic_properties::default_name",
-        "sei::bandwidthcapacity",
-        "bus_properties::bandwidth",
-        "data_model::data_representation",
-        "data_model::enumerators",
-        "data_model::element_names",
-        "data_model::base_type",
-    ]
-)
 
 
 def read_aadl(files: Sequence[Path]) -> ForeignImport:
@@ -166,7 +139,7 @@ class _ModelImport:
         }
         taken = self._count_taken(roots, data_count)
         taken |= {"processor": len(hardware.hosts), "bus": len(hardware.links), "end to end flow": len(chains.chains)}
-        self._tell_left()
+        tell_untaken(self._resolver, self._used, self._notes)
         title = next((find_own_text(system.scope, (), "title") for system in groups.systems), "")
         if not title and len(self._names.packages) == 1:
             title = next(iter(self._names.packages.values())).name
@@ -204,43 +177,6 @@ class _ModelImport:
             waiting += [part.structure for part in structure.parts.values() if part.structure]
         counts["data"] = data_count
         return dict(sorted(counts.items()))
-
-    def _tell_left(self) -> None:
-        """Tell of properties, annexes and classifiers that were not taken."""
-        known_sets = set(self._names.property_sets)
-        for known in self._names.known.values():
-            classifier = known.classifier
-            for name, span in classifier.annexes:
-                self._notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
-            for association in _list_associations(known):
-                self._tell_property(association, known_sets)
-            if classifier.modes:
-                words = "modes are read over: what is in some modes alone counts always"
-                self._notes.add_counted("modes", words, classifier.span)
-            if classifier.calls and classifier.category != "subprogram":
-                self._notes.add_counted("calls", "sequences of calls are not taken", classifier.span)
-        for package in self._names.packages.values():
-            for name, span in package.annexes:
-                self._notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
-
-    def _tell_property(self, association: Property, known_sets: set[str]) -> None:
-        name = fold_property_name(association.name)
-        set_name = name.rpartition("::")[0]
-        if id(association) in self._used.ids or set_name == "archgen" or name in _TAKEN_PROPERTIES:
-            return
-        words = "archgen has no word for this property"
-        if set_name and set_name not in known_sets:
-            words = f"the property set {set_name} is in none of the files, and archgen has no word for this property"
-        self._notes.add_counted(f"property {association.name}", words, association.span)
-
-
-def _list_associations(known: KnownClassifier) -> list[Property]:
-    classifier = known.classifier
-    found = list(classifier.properties)
-    elements = (classifier.features, classifier.subcomponents, classifier.connections, classifier.flows)
-    for written in elements:
-        found += [association for element in written for association in element.properties]
-    return found
 
 
 def _list_owners(bodies: Mapping[str, Body]) -> Iterator[str]:

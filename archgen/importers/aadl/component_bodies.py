@@ -54,7 +54,7 @@ class ComponentBuilder:
             body |= {"inputs": {}, "outputs": {}}
         if not structure.parts:
             add_port_hints(body, ports, body.get("timing", {}), is_own=self._resolver.names.is_own)
-        if resolved.category == "device":
+        if resolved.category == "device" and not self._resolver.names.is_own:
             body["tags"] = ["device"]
             for port_body in outputs.values():
                 port_body.setdefault("medium", "physical")
@@ -154,7 +154,12 @@ def reach_port(body: Body, section: str, port_id: str) -> Body:
 
 
 def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes: NoteList) -> None:
-    """Say what the ports of devices travel over: the bus that a connection is bound to."""
+    """Say what the ports of devices travel over: the bus that a connection is bound to.
+
+    Of a model that archgen wrote, the ports say it.
+    """
+    if scope.resolver.names.is_own:
+        return
     readers: dict[tuple[str, str], list[Wire]] = {}
     for wire in structure.wires:
         if wire.producer.part:

@@ -20,6 +20,8 @@ class ImportNote:
     help_line: str = ""
     fate: str = "not taken"
     """`not taken`, or `noted` where it is kept in another form, as a hint for instance."""
+    count: int = 1
+    """How many constructs of its kind it is about."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -99,9 +99,9 @@ def _read_parameter(
     parameter: dict[str, object] = {"choices": choices} if choices else {"type": kind}
     is_list = uml_values.is_many(element)
     if is_list:
-        parameter = {"type": f"{kind}[]"}
+        parameter["type"] = f"{kind}[]"
     _add_default(index, ledger, element, parameter, (kind, is_list, choices))
-    parameter |= read_description(index, element)
+    parameter |= read_description(index, ledger, element)
     if is_true(element, "isReadOnly"):
         parameter["read_only"] = True
     if visibility in _VISIBILITIES:
@@ -129,7 +129,7 @@ def _add_default(
             element, f"the default `{text[:60]}` of `{get_name(element)}` is no {kind}: the parameter has no value"
         )
         return
-    if choices and values[0] not in choices:
+    if choices and not set(values) <= set(choices):
         ledger.leave(element, f"the default `{text[:60]}` of `{get_name(element)}` is none of its enumeration's values")
         return
     parameter["value"] = values if is_list else values[0]
@@ -149,6 +149,7 @@ def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, 
         direction = parameter.attributes.get("direction", "in")
         type_name = name_type(uml_values.find_type_name(index, parameter))
         type_name = uml_values.find_field_type(type_name) or type_name
+        type_name += uml_values.write_array(parameter) if type_name else ""
         ledger.take(parameter)
         if direction == "return" and not type_name:
             continue
@@ -167,5 +168,5 @@ def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, 
         operation["call"] = "synchronous" if name.lower().startswith("get") else "asynchronous"
     if visibility in _VISIBILITIES:
         operation["visibility"] = visibility
-    features.operations[operation_id] = operation | read_description(index, element)
+    features.operations[operation_id] = operation | read_description(index, ledger, element)
     ledger.take(element)

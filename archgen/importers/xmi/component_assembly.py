@@ -46,6 +46,7 @@ class ComponentAssembly:
         self._cut_containment_circles()
         self._add_devices()
         self._place_components()
+        self._port_of: dict[tuple[int, XmlElement], PortFacts] = {}
         for facts in (*self.types.values(), *self.components):
             self._read_ports(facts)
         self._read_features()
@@ -81,7 +82,9 @@ class ComponentAssembly:
             for part in list_children(owner.element, "Property"):
                 reference = self._index.find_reference(part, "type")
                 part_type = self._sorting.facts.get(reference.element) if reference and reference.element else None
-                if part_type is None or part_type.sort != "component_type" or not self._is_part(part_type):
+                if part_type is None or part_type.sort != "component_type":
+                    continue
+                if part_type.element not in self._sorting.with_ports or not self._sorting.is_place(part):
                     continue
                 if is_true(part_type.element, "isAbstract"):
                     words = f"{call(part)} is not taken: `{get_name(part_type.element)}` is abstract"
@@ -90,9 +93,6 @@ class ComponentAssembly:
                 facts = ClassFacts(part, "component", owner=owner, base=part_type)
                 owner.inside.append(facts)
                 self._sorting.parts[part] = facts
-
-    def _is_part(self, part_type: ClassFacts) -> bool:
-        return get_kind(part_type.element) == "Component" or bool(list_children(part_type.element, "Port"))
 
     def _cut_containment_circles(self) -> None:
         """Leave out parts by which a type would contain itself."""
@@ -146,7 +146,7 @@ class ComponentAssembly:
             if facts.sort == "component":
                 self.components.append(facts)
             # A port and a component inside share no name: what is told outside is the port's.
-            outer = (facts, *facts.list_bases())
+            outer = (facts, *facts.list_bases()) if facts.inside else ()
             taken = {make_id(get_name(port), "port") for each in outer for port in list_children(each.element, "Port")}
             for inner in facts.inside:
                 inner.id = choose_id(inner.element, "component", taken)
@@ -173,6 +173,7 @@ class ComponentAssembly:
         # What a class provides to others as code is no port of a component type: only components meet here.
         is_component = facts.sort == "component" or get_kind(facts.element) == "Component"
         facts.ports = [*ports, *(self._uses.list_bare_ports(facts.element, ports) if is_component else ())]
+        self._port_of |= {(id(facts), port.element): port for port in reversed(facts.ports)}
 
     def _read_features(self) -> None:
         realized: dict[int, set[str]] = defaultdict(set)
@@ -182,6 +183,7 @@ class ComponentAssembly:
         for facts in (*self.types.values(), *self.components):
             if facts.element in self._sorting.parts:
                 self.features[facts.element] = ClassFeatures()
+                self._ledger.take(facts.element)
                 continue
             parts = {inner.element for inner in facts.inside}
             names = {port.name for port in facts.ports} | realized[id(facts)]
@@ -190,10 +192,11 @@ class ComponentAssembly:
             if not facts.device:
                 self._ledger.take(facts.element, kind)
 
+    def list_ports(self) -> list[PortFacts]:
+        """Return the ports of all components and component types."""
+        return [port for facts in (*self.types.values(), *self.components) for port in facts.ports]
+
     def find_port(self, facts: ClassFacts, element: XmlElement) -> PortFacts | None:
         """Return the port of a component that an element of it or of one of its types stands for."""
-        for each in (facts, *facts.list_bases()):
-            for port in each.ports:
-                if port.element is element:
-                    return port
-        return None
+        owners = (facts, *facts.list_bases())
+        return next((port for each in owners if (port := self._port_of.get((id(each), element)))), None)

@@ -31,6 +31,9 @@ class ClassFacts:
     base: ClassFacts | None = None
     """The component type that it is made from."""
     ports: list[PortFacts] = field(default_factory=list)
+    port_ids: dict[str, str] = field(default_factory=dict)
+    """The names of its own ports by their ids."""
+    ids_by_port_name: dict[str, str] = field(default_factory=dict)
     inside: list[ClassFacts] = field(default_factory=list)
     device: bool = False
     path: tuple[str, ...] = ()
@@ -59,7 +62,9 @@ class ClassSorting:
         self._catalogue = catalogue
         self._generals = self._find_generals()
         self._realizers = self._find_realizers()
-        self._with_ports = {each for each in catalogue.classes if self._has_ports(each)}
+        self.with_ports = {each for each in catalogue.classes if self._has_ports(each)}
+        """Components, and classes with ports."""
+        self._joined_parts = self._find_joined_parts()
         self.facts: dict[XmlElement, ClassFacts] = {}
         self.parts: dict[XmlElement, ClassFacts] = {}
         self._sort_classes()
@@ -136,10 +141,10 @@ class ClassSorting:
         realizing = set(self._realizers.values())
         generals = set(self._generals.values())
         data_uses = self._count_data_uses()
-        component_family = self._find_family(realizing | self._with_ports)
+        component_family = self._find_family(realizing | self.with_ports)
         for element in classes:
             own_id = get_id(element)
-            if element in self._with_ports:
+            if element in self.with_ports:
                 is_type = (
                     own_id.startswith(_TYPE_PREFIX)
                     or is_true(element, "isAbstract")
@@ -174,13 +179,28 @@ class ClassSorting:
                 self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
 
+    def is_place(self, element: XmlElement) -> bool:
+        """Whether a property is a place for a component inside: others only refer to one that stands elsewhere."""
+        return element.attributes.get("aggregation") == "composite" or element in self._joined_parts
+
+    def _find_joined_parts(self) -> set[XmlElement]:
+        """Return the properties that connectors join: they stand inside, whatever else is written of them."""
+        return {
+            part
+            for connector in self._catalogue.connectors
+            for end in list_children(connector, "ConnectorEnd")
+            for part in self._index.list_named(end, "partWithPort", "role")
+        }
+
     def _find_parts(self) -> tuple[set[XmlElement], set[XmlElement]]:
         """Return the classes that have parts with ports, and the classes of these parts."""
         pairs = [
             (owner, reference.element)
             for owner in self._catalogue.classes
             for part in list_children(owner, "Property")
-            if (reference := self._index.find_reference(part, "type")) and reference.element in self._with_ports
+            if self.is_place(part)
+            and (reference := self._index.find_reference(part, "type"))
+            and reference.element in self.with_ports
         ]
         return {owner for owner, _ in pairs}, {part for _, part in pairs if part is not None}
 

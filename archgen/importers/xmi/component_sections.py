@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import ChainMap, defaultdict
 from collections.abc import Iterable
 
 from archgen.importers.foreign.xml_tree import XmlElement
@@ -35,15 +35,17 @@ def assign_port_ids(assembly: ComponentAssembly) -> None:
 
 
 def _assign_own_ids(facts: ClassFacts) -> None:
-    inherited = [port for base in facts.list_bases() for port in base.ports]
-    id_by_name = {port.name: port.input_id or port.output_id for port in reversed(inherited) if port.name}
-    taken = {port.input_id or port.output_id for port in inherited}
+    bases = facts.list_bases()
+    # Not one set of all ids: a hundred types made from one of a hundred ports would make a hundred of them.
+    taken = ChainMap(facts.port_ids, *(base.port_ids for base in bases))
     for port in facts.ports:
-        port_id = id_by_name.get(port.name) if port.name else None
-        if port_id is None:
+        inherited = (base.ids_by_port_name.get(port.name) for base in bases) if port.name else ()
+        port_id = next((each for each in inherited if each is not None), None)
+        if port_id is None or port_id in facts.port_ids:
+            # Two ports of one name in one class are two: the second one is not the inherited one again.
             port_id = choose_id(port.element, "port", taken, name_port(port) or "port")
-        taken.add(port_id)
-        id_by_name.setdefault(port.name, port_id)
+        facts.port_ids[port_id] = port.name
+        facts.ids_by_port_name.setdefault(port.name, port_id)
         port.input_id = port.output_id = port_id
 
 
@@ -60,6 +62,7 @@ class ComponentSections:
     ) -> None:
         self._index, self._ledger, self._uses = index, ledger, uses
         self._assembly, self._wiring = assembly, wiring
+        self._port_keys = {facts: _list_keys(facts.ports) for facts in assembly.types.values()}
         self._given_ports: dict[ClassFacts, list[PortFacts]] = defaultdict(list)
         self._made_types: dict[str, dict[str, object]] = {}
         self._type_of: dict[ClassFacts, str] = {}
@@ -92,11 +95,15 @@ class ComponentSections:
                         self._given_ports[base] = ports
 
     def _find_missing(self, facts: ClassFacts) -> list[PortFacts]:
-        known = {key for base in facts.list_bases() for key in _list_keys(base.ports)}
-        return [port for port in facts.ports if not _list_keys([port]) <= known]
+        known = [self._port_keys[base] for base in facts.list_bases()] if facts.ports else []
+        return [
+            port for port in facts.ports if not all(any(key in each for each in known) for key in _list_keys([port]))
+        ]
 
     def _adds_features(self, facts: ClassFacts) -> bool:
         own = self._assembly.features[facts.element]
+        if not own.parameters:
+            return bool(own.operations or facts.inside)
         inherited = {name for base in facts.list_bases() for name in self._assembly.features[base.element].parameters}
         return bool(own.parameters.keys() - inherited or own.operations or facts.inside)
 
@@ -119,7 +126,7 @@ class ComponentSections:
         for facts in self._assembly.types.values():
             element = facts.element
             body: dict[str, object] = say_title(get_name(element), facts.id)
-            body |= read_description(self._index, element)
+            body |= read_description(self._index, self._ledger, element)
             if is_true(element, "isAbstract"):
                 body["abstract"] = True
             if facts.base is not None:
@@ -134,7 +141,9 @@ class ComponentSections:
         """Return the section `groups`."""
         groups: dict[str, dict[str, object]] = {}
         for group_id, package in self._assembly.groups.items():
-            body: dict[str, object] = say_title(get_name(package), group_id) | read_description(self._index, package)
+            body: dict[str, object] = say_title(get_name(package), group_id) | read_description(
+                self._index, self._ledger, package
+            )
             groups[group_id] = body | {"components": {}} | make_hints(package)
         for facts in self._assembly.components:
             if facts.owner is None:
@@ -145,7 +154,7 @@ class ComponentSections:
 
     def _write_component(self, facts: ClassFacts) -> dict[str, object]:
         body: dict[str, object] = say_title(get_name(facts.element), facts.id)
-        body |= read_description(self._index, facts.element)
+        body |= read_description(self._index, self._ledger, facts.element)
         features = self._assembly.features[facts.element]
         type_id = self._type_of.get(facts)
         if type_id is not None:
@@ -176,12 +185,13 @@ class ComponentSections:
         """Return `inputs` and `outputs`; those of a type read nothing."""
         inputs: dict[str, object] = {}
         outputs: dict[str, object] = {}
+        own = {id(port) for port in facts.ports}
         for port in ports:
             sources = [] if is_type else list(self._wiring.sources.get(facts, {}).get(port, ()))
             port_type = self._find_type(port, facts, is_fed=bool(sources))
-            is_given = is_type and not any(port is each for each in facts.ports)
+            is_given = is_type and id(port) not in own
             hints = {} if is_given else self._make_hints(port, is_fed=bool(sources))
-            texts = {} if is_given or not port.is_port else read_description(self._index, port.element)
+            texts = {} if is_given or not port.is_port else read_description(self._index, self._ledger, port.element)
             if port.is_input:
                 inputs[port.input_id] = port_type | _write_sources(sources) | ({} if port.is_output else texts | hints)
             if port.is_output:

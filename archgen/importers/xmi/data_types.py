@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
@@ -11,6 +12,7 @@ from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, 
 from archgen.importers.xmi.made_names import name_type
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.link.data_types.message_names import spell_message_name
 from archgen.model.element_ids import make_id
 
 _UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
@@ -27,19 +29,24 @@ class DataTypes:
         for element in elements:
             name = name_type(get_name(element))
             if uml_values.find_field_type(name) or get_id(element).startswith(_UNDECLARED):
+                # It is a type of the language itself.
+                ledger.take(element)
                 continue
             if not name or name in self._elements:
                 why = "there is another one of this name" if name else "it has no name"
                 ledger.leave(element, f"{call(element)} is not taken: {why}")
                 continue
             self._elements[name] = element
+        self._valueless: set[str] = set()
         self._fields = {name: self._read_fields(each) for name, each in self._elements.items()}
+        self._drop_nameless_fields()
         self._drop_unknown_fields()
 
     def _read_fields(self, element: XmlElement) -> dict[str, dict[str, object]] | None:
         """Return the fields of a type; None where it has none, or one whose type is not known."""
         fields: dict[str, dict[str, object]] = {}
-        for child in list_children(element, "Property"):
+        children = list_children(element, "Property")
+        for child in children:
             name = make_id(get_name(child), "field") if get_name(child) else ""
             written = uml_values.find_type_name(self._index, child)
             primitive = uml_values.find_field_type(written)
@@ -48,62 +55,87 @@ class DataTypes:
             problem = "it has no name" if not name else "there is another one" if name in fields else ""
             if problem or not is_known:
                 why = problem or "its type is not known"
+                others = [each for each in children if each is not child]
                 words = f"the fields of `{get_name(element)[:80]}` are not taken: of `{get_name(child)[:80]}` {why}"
-                self._ledger.leave(child, words)
+                self._ledger.leave(child, words, others=others)
                 return None
-            texts = read_description(self._index, child)
+            texts = read_description(self._index, self._ledger, child)
             comment = texts.get("comment") or texts.get("description")
             fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
         return fields or None
 
+    def _drop_nameless_fields(self) -> None:
+        """Leave out fields and values of types after which no message can be called, or whose message another one has."""
+        first_types: dict[str, str] = {}
+        for name, element in self._elements.items():
+            literals = list_children(element, "EnumerationLiteral") if _is_enumeration(element) else []
+            if not self._fields[name] and not literals:
+                continue
+            message = spell_message_name(name)
+            reason = "no message of ROS can be called so, which needs letters and digits, a letter first"
+            if message is not None:
+                first = first_types.setdefault(message, name)
+                reason = f"its message would be `{message}`, as that of `{first[:80]}`" if first != name else ""
+            if reason and literals:
+                self._valueless.add(name)
+                words = f"the values of `{name[:80]}` are not taken: {reason}"
+                self._ledger.leave(literals[0], words, others=literals[1:])
+            elif reason:
+                self._drop_fields(name, reason)
+
     def _drop_unknown_fields(self) -> None:
-        """Leave out fields of types that have none themselves, and those that hold themselves."""
-        while True:
-            dropped = [name for name, fields in self._fields.items() if fields and not self._is_whole(fields)]
-            if not dropped:
-                break
-            for name in dropped:
-                self._fields[name] = None
-                words = f"the fields of `{name[:80]}` are not taken: the fields of one of their types are not known"
-                self._ledger.leave(self._elements[name], words)
-        for name in [each for each in self._elements if self._holds_itself(each)]:
-            self._fields[name] = None
-            self._ledger.leave(self._elements[name], f"the fields of `{name[:80]}` are not taken: it would hold itself")
-        while dropped := [name for name, fields in self._fields.items() if fields and not self._is_whole(fields)]:
-            for name in dropped:
-                self._fields[name] = None
+        """Leave out fields of types that have none themselves, and of those that hold themselves."""
+        inner_types = {name: self._list_inner_types(fields or {}) for name, fields in self._fields.items()}
+        users: dict[str, list[str]] = defaultdict(list)
+        for name, inner in inner_types.items():
+            for each in inner:
+                users[each].append(name)
+        unknown = [
+            name for name, element in self._elements.items() if not self._fields[name] and not _is_enumeration(element)
+        ]
+        while unknown:
+            for user in users[unknown.pop()]:
+                if self._fields[user]:
+                    self._drop_fields(user, "the fields of one of their types are not known")
+                    unknown.append(user)
+        for name in self._list_unwhole(inner_types, users):
+            self._drop_fields(name, "it would hold itself, or a type that does")
 
-    def _is_whole(self, fields: dict[str, dict[str, object]]) -> bool:
-        for field in fields.values():
-            name = _name_inner(field)
-            inner = self._elements.get(name)
-            if inner is not None and get_kind(inner) != "Enumeration" and not self._fields[name]:
-                return False
-        return True
+    def _list_unwhole(self, inner_types: Mapping[str, Collection[str]], users: Mapping[str, list[str]]) -> list[str]:
+        """Return the types with fields that are not reached from those that hold no others."""
+        open_counts = {name: len(inner_types[name]) for name, fields in self._fields.items() if fields}
+        whole = [name for name, count in open_counts.items() if not count]
+        while whole:
+            for user in users.get(whole.pop(), ()):
+                if user in open_counts:
+                    open_counts[user] -= 1
+                    if not open_counts[user]:
+                        whole.append(user)
+        return [name for name, count in open_counts.items() if count]
 
-    def _holds_itself(self, name: str) -> bool:
-        seen: set[str] = set()
-        stack = [name]
-        while stack:
-            for field in (self._fields.get(stack.pop()) or {}).values():
-                inner = _name_inner(field)
-                if inner == name:
-                    return True
-                if inner not in seen:
-                    seen.add(inner)
-                    stack.append(inner)
-        return False
+    def _list_inner_types(self, fields: Mapping[str, Mapping[str, object]]) -> dict[str, None]:
+        """Return the types of these files that fields have, without enumerations: these are whole in themselves."""
+        names = dict.fromkeys(str(field["type"]).partition("[")[0] for field in fields.values())
+        return {name: None for name in names if name in self._elements and not _is_enumeration(self._elements[name])}
+
+    def _drop_fields(self, name: str, reason: str) -> None:
+        self._fields[name] = None
+        element = self._elements[name]
+        properties = list_children(element, "Property")
+        self._ledger.leave(properties[0], f"the fields of `{name[:80]}` are not taken: {reason}", others=properties[1:])
 
     def make_types(self) -> dict[str, object]:
         """Return the section `types`."""
         section: dict[str, object] = {}
         for name, element in self._elements.items():
             body: dict[str, object] = {}
-            if get_kind(element) == "Enumeration":
+            if _is_enumeration(element) and name not in self._valueless:
                 body |= self._write_values(element)
             elif fields := self._fields[name]:
+                for child in list_children(element, "Property"):
+                    self._ledger.take(child)
                 body["fields"] = {key: each if len(each) > 1 else each["type"] for key, each in fields.items()}
-            texts = read_description(self._index, element)
+            texts = read_description(self._index, self._ledger, element)
             comment = texts.get("comment") or texts.get("description")
             body |= {"comment": comment} if comment else {}
             section[name] = body | make_hints(element)
@@ -118,6 +150,5 @@ class DataTypes:
         return {"values": values} if values else {}
 
 
-def _name_inner(field: Mapping[str, object]) -> str:
-    """Return the type of a field without the brackets of an array."""
-    return str(field["type"]).partition("[")[0]
+def _is_enumeration(element: XmlElement) -> bool:
+    return get_kind(element) == "Enumeration"

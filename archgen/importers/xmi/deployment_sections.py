@@ -13,6 +13,9 @@ from archgen.importers.xmi.uml_catalogue import UmlCatalogue, read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
 from archgen.model.element_ids import make_unique_id
 
+_MAX_HINTS = 10_000
+"""Where environments that stand in no node would be so many hints, they are nobody's."""
+
 
 class DeploymentSections:
     """Makes the sections `hosts`, `links` and `nodes`."""
@@ -24,6 +27,7 @@ class DeploymentSections:
         self._facts_of = {facts.element: facts for facts in assembly.components}
         self._hosts: dict[XmlElement, str] = {}
         self._libraries: dict[str, list[str]] = defaultdict(list)
+        self._library_artifacts: set[XmlElement] = set()
         self._host_of: dict[ClassFacts, str] = {}
         self._package_of: dict[ClassFacts, XmlElement] = {}
         taken: set[str] = set()
@@ -54,13 +58,17 @@ class DeploymentSections:
     def _find_middlewares(self) -> dict[str, list[str]]:
         """Return the names of execution environments by host; one that stands in no node is that of all nodes."""
         middlewares: dict[str, list[str]] = defaultdict(list)
-        for element in self._catalogue.hardware:
-            if get_kind(element) != "ExecutionEnvironment":
-                continue
+        environments = [each for each in self._catalogue.hardware if get_kind(each) == "ExecutionEnvironment"]
+        hosts_of_all = list(self._hosts.values())
+        if len(environments) * len(hosts_of_all) > _MAX_HINTS:
+            hosts_of_all = []
+        for element in environments:
             host = self._find_host(element)
-            hosts = [host] if host else list(self._hosts.values())
+            hosts = [host] if host else hosts_of_all
             if not hosts:
-                self._ledger.leave(element, f"{call(element)} is not taken: there is no node that has it")
+                self._ledger.leave(
+                    element, f"{call(element)} is not taken: it stands in no node, and there is none, or too many"
+                )
                 continue
             for each in hosts:
                 middlewares[each].append(get_name(element))
@@ -77,7 +85,11 @@ class DeploymentSections:
             for artifact in artifacts:
                 if get_kind(artifact) == "Artifact" and not _is_own_node(artifact):
                     for facts in components:
-                        self._package_of.setdefault(facts, artifact)
+                        if self._package_of.setdefault(facts, artifact) is not artifact:
+                            words = (
+                                f"{call(artifact)} manifests {call(facts.element)}, too: a component is in one package"
+                            )
+                            self._ledger.leave(artifact, words)
             if components:
                 self._ledger.take(element)
             else:
@@ -129,6 +141,7 @@ class DeploymentSections:
             manifested = [self._facts_of[deployed]]
         elif get_kind(deployed) == "Artifact" and not manifested:
             self._libraries[host].append(get_name(deployed))
+            self._library_artifacts.add(deployed)
             self._ledger.note(deployed, f"{call(deployed)} is a hint of `{host}`: no component is in it")
             self._ledger.take(deployment)
             return
@@ -151,7 +164,9 @@ class DeploymentSections:
                 middleware=middlewares[0] if len(middlewares) == 1 else middlewares,
                 artifacts=list(dict.fromkeys(self._libraries.get(host_id, ()))),
             )
-            section[host_id] = say_title(get_name(element), host_id) | read_description(self._index, element) | hints
+            section[host_id] = (
+                say_title(get_name(element), host_id) | read_description(self._index, self._ledger, element) | hints
+            )
         return section
 
     def make_nodes(self) -> dict[str, object]:
@@ -159,6 +174,7 @@ class DeploymentSections:
         section: dict[str, object] = dict(self._own_nodes)
         for facts in dict.fromkeys((*self._package_of, *self._host_of)):
             if facts.root.sort != "component" or facts.device or facts.inside:
+                self._leave_undeployable(facts)
                 continue
             node: dict[str, object] = {"implements": ".".join(facts.path)}
             artifact = self._package_of.get(facts)
@@ -168,24 +184,36 @@ class DeploymentSections:
             if facts in self._host_of:
                 node["host"] = self._host_of[facts]
             section[make_unique_id(facts.id, section.keys())] = node
-        library_names = {name for names in self._libraries.values() for name in names}
+        used = {*self._package_of.values(), *self._library_artifacts}
         for artifact in self._catalogue.artifacts:
-            is_used = (
-                _is_own_node(artifact) or artifact in self._package_of.values() or get_name(artifact) in library_names
-            )
-            if not is_used:
+            if not _is_own_node(artifact) and artifact not in used:
                 self._ledger.leave(
                     artifact, f"{call(artifact)} is not taken: it is on no node, and no component is in it"
                 )
         return section
+
+    def _leave_undeployable(self, facts: ClassFacts) -> None:
+        why = "it stands in a component type" if facts.root.sort != "component" else "it is made of components"
+        why = "it is a device" if facts.device else why
+        if host := self._host_of.get(facts):
+            words = f"{call(facts.element)} is not deployed on `{host}`: {why}"
+            self._ledger.note(facts.element, words, "" if facts.device else "deploy the components themselves")
+        if artifact := self._package_of.get(facts):
+            words = f"{call(artifact)} is not taken as a package of {call(facts.element)}: {why}"
+            self._ledger.leave(artifact, words)
 
     def make_links(self) -> dict[str, object]:
         """Return the section `links`: communication paths, and associations of nodes and devices."""
         section: dict[str, object] = {}
         for element in self._catalogue.paths:
             ends = self._find_ends(element)
-            if ends is None:
-                words = f"{call(element)} is not taken: what flows between components is said by ports and interfaces"
+            if not ends or len(ends) == 1:
+                why = (
+                    "it joins a node with itself"
+                    if ends
+                    else "what flows between components is said by ports and interfaces"
+                )
+                words = f"{call(element)} is not taken: {why}"
                 self._ledger.leave(element, words)
                 continue
             link_id = choose_id(element, "link", section.keys(), get_name(element) or "link")
@@ -206,7 +234,7 @@ class DeploymentSections:
             if host is None and not is_known:
                 return None
             references.append(host or ".".join(facts.path if facts else ()))
-        return list(dict.fromkeys(references)) if len(set(references)) > 1 else None
+        return list(dict.fromkeys(references)) or None
 
 
 def _list_parent(index: UmlIndex, element: XmlElement) -> list[XmlElement]:

@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container
+from collections.abc import Collection
 from collections.abc import Set as AbstractSet
 from typing import cast
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
 from archgen.importers.xmi.uml_index import get_id, get_kind, get_name
-from archgen.model.element_ids import is_id, make_id, make_unique_id
+from archgen.model.element_ids import is_id, make_id, make_unique_id, number_id
 from archgen.model.path_resolver import title_from_id
 
 _PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 MAX_TYPE_LENGTH = 200
+_MANY_NUMBERS = 50
 
 
-def choose_id(element: XmlElement, kind: str, taken: Container[str], name: str = "") -> str:
+def choose_id(element: XmlElement, kind: str, taken: Collection[str], name: str = "") -> str:
     """Return a free id for an element: the one that archgen exported it from, else one made from its name."""
     own_id = get_id(element)
     if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken:
         return last_word
     wanted = make_id(name or get_name(element) or get_kind(element), kind)
-    # A mapping answers `in` as a set does; a copy for each id would take time with the square of the model.
-    return make_unique_id(wanted, cast("AbstractSet[str]", taken))
+    # Thousands of one name: counting on from 2 for each would take time with the square of the model.
+    first_number = len(taken) if number_id(wanted, _MANY_NUMBERS) in taken else 2
+    # A mapping answers `in` as a set does, and need not be copied.
+    return make_unique_id(wanted, cast("AbstractSet[str]", taken), first_number)
 
 
 def say_title(name: str, element_id: str) -> dict[str, object]:

@@ -48,8 +48,8 @@ class InterfaceUses:
         self._index = index
         self._interfaces = frozenset(catalogue.interfaces)
         self._named = {get_name(each): each for each in reversed(catalogue.interfaces) if get_name(each)}
-        self.provided: dict[XmlElement, list[InterfaceKey]] = defaultdict(list)
-        self.required: dict[XmlElement, list[InterfaceKey]] = defaultdict(list)
+        self.provided: dict[XmlElement, dict[InterfaceKey, None]] = defaultdict(dict)
+        self.required: dict[XmlElement, dict[InterfaceKey, None]] = defaultdict(dict)
         self.used_elements: set[XmlElement] = set()
         """The dependencies and realizations that say something here."""
         for usage in catalogue.dependencies:
@@ -62,7 +62,7 @@ class InterfaceUses:
     def _add(
         self,
         element: XmlElement,
-        uses: dict[XmlElement, list[InterfaceKey]],
+        uses: dict[XmlElement, dict[InterfaceKey, None]],
         client_roles: tuple[str, ...],
         supplier_roles: tuple[str, ...],
     ) -> None:
@@ -75,8 +75,7 @@ class InterfaceUses:
                 key = self._find_interface(reference)
                 if key is not None:
                     self.used_elements.add(element)
-                    if key not in uses[client]:
-                        uses[client].append(key)
+                    uses[client][key] = None
 
     def _find_interface(self, reference: Reference) -> InterfaceKey | None:
         if reference.element is None:
@@ -135,15 +134,15 @@ class InterfaceUses:
         """Return what a component provides and requires itself, where none of its ports does."""
         ports = list(ports)
         bare: dict[InterfaceKey, PortFacts] = {}
-        written = InterfaceLists(
-            [*self.provided.get(owner, ()), *self._list_written(owner, "provided")],
-            [*self.required.get(owner, ()), *self._list_written(owner, "required")],
-        )
-        for key in dict.fromkeys((*written.provided, *written.required)):
-            is_output = key in written.provided and not any(key in port.provided for port in ports)
-            is_input = key in written.required and not any(key in port.required for port in ports)
+        provided = dict.fromkeys((*self.provided.get(owner, ()), *self._list_written(owner, "provided")))
+        required = dict.fromkeys((*self.required.get(owner, ()), *self._list_written(owner, "required")))
+        provided_by_ports = {key for port in ports for key in port.provided}
+        required_by_ports = {key for port in ports for key in port.required}
+        for key in provided | required:
+            is_output = key in provided and key not in provided_by_ports
+            is_input = key in required and key not in required_by_ports
             if is_output or is_input:
-                name = get_name(key) if isinstance(key, XmlElement) else key.partition(":")[2]
+                name = name_interface(key)
                 element = key if isinstance(key, XmlElement) else owner
                 facts = PortFacts(element, name, is_port=False, is_input=is_input, is_output=is_output)
                 facts.provided, facts.required = [key] * is_output, [key] * is_input
@@ -168,14 +167,6 @@ class InterfaceUses:
             if parameter.attributes.get("direction") == "return":
                 return uml_values.find_type_name(self._index, parameter)
         return ""
-
-
-@dataclass(frozen=True, slots=True)
-class InterfaceLists:
-    """What an element provides and requires."""
-
-    provided: list[InterfaceKey]
-    required: list[InterfaceKey]
 
 
 def name_interface(key: InterfaceKey) -> str:

@@ -10,9 +10,12 @@ from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
 from archgen.importers.xmi.import_ledger import ImportLedger, call
-from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts
+from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, name_interface
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_children
+
+_MAX_CONNECTIONS = 100_000
+"""So many connections one interface makes: each who uses it reads each who realizes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,10 +40,9 @@ class PortWiring:
         self._index, self._ledger, self._sorting, self._assembly = index, ledger, sorting, assembly
         self.inner_of: dict[ClassFacts, dict[PortFacts, list[PortEnd]]] = defaultdict(lambda: defaultdict(list))
         """The ports inside that a port of a composed component gives on, by component and port."""
-        self._pairs: list[tuple[PortEnd, PortEnd]] = []
         self._everyone = [*assembly.types.values(), *assembly.components]
-        self._owners_of_ports = {
-            port.element: facts for facts in self._everyone for port in facts.ports if port.is_port
+        self._end_of_port = {
+            port.element: PortEnd(facts, port) for facts in self._everyone for port in facts.ports if port.is_port
         }
         joined = [ends for each in catalogue.connectors if (ends := self._read_connector(each))]
         self._decide_directions(joined)
@@ -71,11 +73,7 @@ class PortWiring:
             facts = self._sorting.parts[part.element]
             port = self._assembly.find_port(facts, role.element)
             return PortEnd(facts, port) if port else None
-        owner = self._owners_of_ports.get(role.element)
-        if owner is None:
-            return None
-        port = next(each for each in owner.ports if each.element is role.element)
-        return PortEnd(owner, port)
+        return self._end_of_port.get(role.element)
 
     def _decide_directions(self, joined: list[tuple[XmlElement, PortEnd, PortEnd]]) -> None:
         """Let a connector say which way a port goes of which nothing else does, and what follows from that."""
@@ -154,10 +152,27 @@ class PortWiring:
         for end in self._list_free_ends():
             for key in end.port.provided:
                 providers[self._find_scope(end.facts), key].append(end)
+        users: dict[tuple[ClassFacts | None, InterfaceKey], list[PortEnd]] = defaultdict(list)
+        for end in self._list_free_ends():
+            for key in end.port.required:
+                users[self._find_scope(end.facts), key].append(end)
+        for (scope, key), readers in users.items():
+            source_count = len(providers.get((scope, key), ()))
+            if source_count * len(readers) > _MAX_CONNECTIONS:
+                self._refuse_connections(key, source_count, readers)
+                del providers[scope, key]
         for end in self._list_free_ends():
             for key in end.port.required:
                 for source in providers.get((self._find_scope(end.facts), key), ()):
                     self._add_source(source, end)
+
+    def _refuse_connections(self, key: InterfaceKey, provider_count: int, readers: list[PortEnd]) -> None:
+        element = key if isinstance(key, XmlElement) else readers[0].port.element
+        words = (
+            f"nobody is connected by the interface `{name_interface(key)[:80]}`: {provider_count:,} ports realize it and "
+            f"{len(readers):,} use it, which makes more than {_MAX_CONNECTIONS:,} connections"
+        )
+        self._ledger.leave(element, words, "join the ports by connectors")
 
     def _list_free_ends(self) -> Iterator[PortEnd]:
         for facts in self._assembly.components:

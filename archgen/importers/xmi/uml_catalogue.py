@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xmi.comment_texts import make_plain
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument
@@ -26,16 +27,15 @@ _SILENT_TAGS = frozenset(
     | {
         "utilizedElement",
         "member",
-        "elementImport",
         "interface",
         "qualifiedName",
         "feature",
         "attribute",
-        "ownedReception",
         "end",
     }
 )
 """Parts of elements that are read with them, or say again what stands elsewhere."""
+_OWNING_TAGS = frozenset({"packagedElement", "ownedMember", "nestedPackage", "nestedClassifier"})
 _TOOL_TAGS = frozenset({"Extension", "eAnnotations", "Documentation"})
 _WHY = {
     "UseCase": "use cases of the language have actors and steps in words",
@@ -49,6 +49,8 @@ _WHY = {
     "Constraint": "archgen cannot check it",
     "Collaboration": "only its components could be taken, and they stand elsewhere",
     "PackageImport": "packages see one another here",
+    "ElementImport": "packages see one another here",
+    "Reception": "what flows between components is said by ports and interfaces",
     "ProfileApplication": "profiles describe UML itself",
     "Stereotype": "profiles describe UML itself",
 }
@@ -74,6 +76,7 @@ class UmlCatalogue:
     connectors: list[XmlElement] = field(default_factory=list)
     packages: dict[XmlElement, XmlElement] = field(default_factory=dict)
     """The package that each element stands in, directly or inside of other elements."""
+    all_packages: list[XmlElement] = field(default_factory=list)
 
 
 def make_catalogue(documents: Sequence[XmiDocument], index: UmlIndex, ledger: ImportLedger) -> UmlCatalogue:
@@ -84,6 +87,7 @@ def make_catalogue(documents: Sequence[XmiDocument], index: UmlIndex, ledger: Im
             if get_kind(model) == "Profile":
                 ledger.leave(model, f"{call(model)} is not taken: profiles describe UML itself")
             else:
+                walk.catalogue.all_packages.append(model)
                 walk.visit_contents(model, model)
         walk.note_surroundings(document)
     return walk.catalogue
@@ -93,8 +97,7 @@ class _CatalogueWalk:
     def __init__(self, index: UmlIndex, ledger: ImportLedger) -> None:
         self.catalogue = UmlCatalogue()
         self._index, self._ledger = index, ledger
-        self._tool_parts: Counter[str] = Counter()
-        self._first_tool_part: dict[str, XmlElement] = {}
+        self._tool_parts: dict[str, list[XmlElement]] = defaultdict(list)
         catalogue = self.catalogue
         self._lists = {
             **dict.fromkeys(_CLASSES, catalogue.classes),
@@ -116,13 +119,13 @@ class _CatalogueWalk:
         for child in element.children:
             kind = get_kind(child)
             if child.tag in _TOOL_TAGS:
-                self._tool_parts[child.tag] += 1
-                self._first_tool_part.setdefault(child.tag, child)
+                self._count_tool_part(child)
             elif "xmi:idref" in child.attributes or "href" in child.attributes:
-                continue
+                self._visit_reference(child)
             elif kind in _PACKAGES:
                 self.visit_contents(child, child)
                 self.catalogue.packages[child] = package
+                self.catalogue.all_packages.append(child)
             elif (elements := self._lists.get(kind)) is not None:
                 elements.append(child)
                 self.catalogue.packages[child] = package
@@ -131,16 +134,27 @@ class _CatalogueWalk:
                 self._visit_feature(child, package)
             elif kind == "Comment":
                 self._visit_comment(child, element)
-            elif child.tag not in _SILENT_TAGS and kind:
+            elif child.tag not in _SILENT_TAGS and (kind or "xmi:id" in child.attributes):
                 self._leave(child, kind)
+
+    def _visit_reference(self, child: XmlElement) -> None:
+        """Note a part of the model that lies in a file of its own, and was not named."""
+        if child.tag in _OWNING_TAGS and "href" in child.attributes:
+            reference = self._index.resolve_child(child)
+            if reference is not None and reference.element is None:
+                name = reference.name or child.attributes["href"].rpartition("#")[2]
+                words = f"`{name[:80]}` is not taken: it lies in a file that was not named"
+                self._ledger.leave(child, words, "name all files of the model together")
+
+    def _count_tool_part(self, part: XmlElement) -> None:
+        self._tool_parts[part.tag].append(part)
 
     def _visit_feature(self, feature: XmlElement, package: XmlElement) -> None:
         self.catalogue.packages[feature] = package
         for child in feature.children:
             kind = get_kind(child)
             if child.tag in _TOOL_TAGS:
-                self._tool_parts[child.tag] += 1
-                self._first_tool_part.setdefault(child.tag, child)
+                self._count_tool_part(child)
             is_reference = "xmi:idref" in child.attributes or "href" in child.attributes
             if kind in self._lists and child.tag not in _SILENT_TAGS and not is_reference:
                 self._lists[kind].append(child)
@@ -159,31 +173,27 @@ class _CatalogueWalk:
 
     def note_surroundings(self, document: XmiDocument) -> None:
         """Note what a tool keeps for itself, and the stereotypes that it wrote outside of the model."""
-        for child in document.root.children if document.root not in document.models else ():
-            if child.tag in _TOOL_TAGS and child.tag != "Documentation":
-                self._tool_parts[child.tag] += 1
-                self._first_tool_part.setdefault(child.tag, child)
-        for tag, count in self._tool_parts.items():
+        for child in document.surroundings:
+            if child.tag in _TOOL_TAGS:
+                self._count_tool_part(child)
+        for tag, parts in self._tool_parts.items():
             if tag != "Documentation":
-                words = f"{count} `{tag}` {'is' if count == 1 else 'are'} not taken: what the tool keeps for itself"
-                self._ledger.leave(self._first_tool_part[tag], words, kind=f"xmi:{tag}")
+                words = f"{len(parts)} `{tag}` {'is' if len(parts) == 1 else 'are'} not taken: what the tool keeps for itself"
+                self._ledger.leave(parts[0], words, kind=f"xmi:{tag}", others=parts[1:])
         self._tool_parts.clear()
-        self._first_tool_part.clear()
-        stereotypes = [
-            child
-            for child in document.root.children
-            if document.root not in document.models and child not in document.models and child.tag not in _TOOL_TAGS
-        ]
-        first_of: dict[str, XmlElement] = {}
-        for child in stereotypes:
-            first_of.setdefault(f"{child.prefix}:{child.tag}", child)
-        counts = Counter(f"{child.prefix}:{child.tag}" for child in stereotypes)
-        for name, first in first_of.items():
-            words = f"the stereotype `{name[:80]}` of {counts[name]} elements is not taken: it belongs to a profile"
-            self._ledger.leave(first, words, kind=name)
+        stereotypes: dict[str, list[XmlElement]] = defaultdict(list)
+        for child in document.surroundings:
+            if child in self._index.flow_stereotypes:
+                self._ledger.take(child, child.tag)
+            elif child.tag not in _TOOL_TAGS:
+                stereotypes[f"{child.prefix}:{child.tag}"].append(child)
+        for name, uses in stereotypes.items():
+            owners = f"{len(uses)} elements" if len(uses) > 1 else "one element"
+            words = f"the stereotype `{name[:80]}` of {owners} is not taken: it belongs to a profile"
+            self._ledger.leave(uses[0], words, kind=name, others=uses[1:])
 
 
-def read_description(index: UmlIndex, element: XmlElement) -> dict[str, object]:
+def read_description(index: UmlIndex, ledger: ImportLedger, element: XmlElement) -> dict[str, object]:
     """Return `description` with the comments that stand in an element and are about it."""
     texts: dict[str, list[str]] = {}
     for child in element.children:
@@ -191,8 +201,11 @@ def read_description(index: UmlIndex, element: XmlElement) -> dict[str, object]:
             named = index.list_named(child, "annotatedElement")
             body = child.find("body")
             text = child.attributes.get("body") or (body.text if body is not None else "")
-            if text.strip() and (not named or element in named):
+            if not text.strip():
+                ledger.take(child)
+            elif not named or element in named:
+                ledger.take(child)
                 # archgen says in the ids of its comments which text of an element each is.
                 key = get_id(child).rpartition(".")[2] if get_id(child).startswith(OWN_PREFIX) else ""
-                texts.setdefault(key if key in _TEXT_KEYS else "description", []).append(text.strip())
+                texts.setdefault(key if key in _TEXT_KEYS else "description", []).append(make_plain(text))
     return {key: "\n\n".join(each) for key, each in texts.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -26,8 +27,19 @@ _KINDS_BY_TAG = {
     "end": "ConnectorEnd",
     "ownedComment": "Comment",
     "nestedPackage": "Package",
+    "ownedRule": "Constraint",
+    "qualifier": "Property",
+    "packageImport": "PackageImport",
+    "elementImport": "ElementImport",
+    "profileApplication": "ProfileApplication",
+    "ownedReception": "Reception",
+    "templateBinding": "TemplateBinding",
+    "ownedTemplateSignature": "TemplateSignature",
+    "parameterSubstitution": "TemplateParameterSubstitution",
 }
 """What an element is that does not say it."""
+_SAME_ARCHIVE = "local:"
+"""What the addresses begin with by which MagicDraw leads from one file of an archive to another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +60,14 @@ class UmlIndex:
         self._document_of: dict[XmlElement, int] = {}
         self._parents: dict[XmlElement, XmlElement] = {}
         self._by_id: dict[tuple[int, str], XmlElement] = {}
-        self._position_of_file = {document.name: position for position, document in enumerate(documents)}
+        self._positions_of_file: dict[str, list[int]] = defaultdict(list)
         self.doubled: list[XmlElement] = []
         for position, document in enumerate(documents):
+            self._positions_of_file[document.name].append(position)
             for model in document.models:
                 self._add_elements(position, model)
+        self.flow_stereotypes: set[XmlElement] = set()
+        """The stereotypes of SysML that say which way the data of a port goes."""
         self.flow_directions = self._read_flow_directions()
         """`in` or `out` of the ports that a stereotype of SysML gives a direction."""
 
@@ -74,11 +89,12 @@ class UmlIndex:
     def _read_flow_directions(self) -> dict[XmlElement, str]:
         directions: dict[XmlElement, str] = {}
         for position, document in enumerate(self._documents):
-            for stereotype in document.root.children if document.root not in document.models else ():
+            for stereotype in document.surroundings:
                 direction = stereotype.attributes.get("direction", "")
                 port = self._by_id.get((position, stereotype.attributes.get("base_Port", "")))
                 if stereotype.tag == "FlowPort" and direction in {"in", "out"} and port is not None:
                     directions[port] = direction
+                    self.flow_stereotypes.add(stereotype)
         return directions
 
     def get_span(self, element: XmlElement) -> Span:
@@ -116,6 +132,10 @@ class UmlIndex:
         """Return the elements of the files that an element names in one of several roles."""
         return [each.element for each in self.list_references(element, *roles) if each.element is not None]
 
+    def resolve_child(self, child: XmlElement) -> Reference | None:
+        """Return what an element stands for that is only a reference to another one; None where it is none."""
+        return next(iter(self._read_child(child)), None)
+
     def _read_child(self, child: XmlElement) -> list[Reference]:
         if (target := child.attributes.get("xmi:idref")) is not None:
             return [self._resolve_id(child, target)]
@@ -132,8 +152,11 @@ class UmlIndex:
 
     def _resolve_address(self, child: XmlElement, address: str) -> Reference:
         file, _, fragment = address.rpartition("#")
-        position = self._position_of_file.get(file.rpartition("/")[2])
-        found = self._by_id.get((position, fragment)) if position is not None else None
+        if not file or file.startswith(_SAME_ARCHIVE):
+            positions = self._positions_of_file[self._documents[self._document_of.get(child, 0)].name]
+        else:
+            positions = self._positions_of_file.get(file.rpartition("/")[2], [])
+        found = next((self._by_id[each, fragment] for each in positions if (each, fragment) in self._by_id), None)
         if found is not None:
             return Reference(found, get_name(found))
         return Reference(None, _find_told_name(child) or _name_from_id(fragment), is_outside=True)
@@ -171,10 +194,11 @@ def is_true(element: XmlElement, attribute: str) -> bool:
 
 def list_children(element: XmlElement, *kinds: str) -> list[XmlElement]:
     """Return the children of some kinds, in the order of the file."""
-    return [child for child in element.children if get_kind(child) in kinds and _is_written_here(child)]
+    return [child for child in element.children if get_kind(child) in kinds and is_written_here(child)]
 
 
-def _is_written_here(child: XmlElement) -> bool:
+def is_written_here(child: XmlElement) -> bool:
+    """Whether an element is itself, and no reference to another one."""
     return "xmi:idref" not in child.attributes and "href" not in child.attributes
 
 

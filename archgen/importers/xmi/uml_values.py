@@ -109,7 +109,8 @@ def convert_value(text: str, kind: str) -> object:
     if kind == "string":
         has_quotes = len(words) > 1 and words[0] == words[-1] and words[0] in "\"'"
         return words[1:-1] if has_quotes else text
-    if len(words) > _MAX_DIGITS + 10:
+    if len(words) > _MAX_DIGITS + 10 or "_" in words or not words.isascii():
+        # Python reads more than the tools write: `1_000`, digits of other scripts.
         raise ValueError(words)
     if kind == "integer":
         return int(words, 0) if words.lower().startswith("0x") else int(words)

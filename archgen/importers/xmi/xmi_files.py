@@ -23,11 +23,14 @@ class XmiDocument:
     file: str
     name: str
     root: XmlElement
+    models: tuple[XmlElement, ...]
+    """The outermost packages: the root, or what stands in `xmi:XMI`."""
 
     @property
-    def models(self) -> list[XmlElement]:
-        """The outermost packages: the root, or what stands in `xmi:XMI`."""
-        return [self.root] if _is_model(self.root) else [each for each in self.root.children if _is_model(each)]
+    def surroundings(self) -> list[XmlElement]:
+        """What stands beside the outermost packages: stereotypes, and what a tool keeps for itself."""
+        models = frozenset(self.models)
+        return [] if self.root in models else [each for each in self.root.children if each not in models]
 
 
 def read_documents(files: Sequence[Path]) -> list[XmiDocument]:
@@ -54,17 +57,17 @@ def _read_archive(path: Path) -> Iterator[XmiDocument]:
 
 
 def _make_document(file: str, name: str, data: bytes) -> XmiDocument:
-    document = XmiDocument(file, name, parse_xml(file, data))
-    root = document.root
+    root = parse_xml(file, data)
+    models = (root,) if _is_model(root) else tuple(each for each in root.children if _is_model(each))
     if root.tag == "XMI" and (version := root.attributes.get("xmi.version")):
         words = f"it is XMI {version[:10]} (UML 1), as ArgoUML writes it; archgen reads XMI 2 (UML 2)"
         help_line = "open it in a tool of UML 2, such as Papyrus or Modelio, and export it from there"
         raise ForeignFileError(words, root.span(file), help_line)
-    if not document.models:
+    if not models:
         words = f"there is no UML model in it: its outermost element is `{root.tag[:60]}`"
         help_line = "export the model from your tool as XMI 2.x (UML 2)"
         raise ForeignFileError(words, root.span(file), help_line)
-    return document
+    return XmiDocument(file, name, root, models)
 
 
 def _is_model(element: XmlElement) -> bool:

@@ -13,6 +13,7 @@ from archgen.importers.xmi.component_sections import ComponentSections, assign_p
 from archgen.importers.xmi.data_types import DataTypes
 from archgen.importers.xmi.deployment_sections import DeploymentSections
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.leftovers import note_leftovers
 from archgen.importers.xmi.port_facts import InterfaceUses
 from archgen.importers.xmi.port_wiring import PortWiring
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, make_catalogue
@@ -32,7 +33,11 @@ def read_xmi(files: Sequence[Path]) -> ForeignImport:
     """Read UML models that belong together. Raise ForeignFileError for a file that is none."""
     documents = read_documents(files)
     index = UmlIndex(documents)
-    ledger = ImportLedger(index)
+    return convert_documents(documents, index, ImportLedger(index))
+
+
+def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger: ImportLedger) -> ForeignImport:
+    """Return what documents of UML become. The ledger says of each element what became of it."""
     for element in index.doubled:
         words = f"{call(element)} has the id of another element: references mean the first one of the two"
         ledger.note(element, words, "export the model again, or give it an id of its own", "xmi:id")
@@ -53,15 +58,23 @@ def read_xmi(files: Sequence[Path]) -> ForeignImport:
         "links": deployment.make_links(),
         "nodes": deployment.make_nodes(),
     }
-    _count_relations(catalogue, uses, ledger, frozenset(assembly.groups.values()))
+    titled = _find_titled(documents)
+    if titled is not None:
+        ledger.take(titled)
+    _count_relations(catalogue, uses, ledger, assembly)
+    _note_packages(
+        catalogue, ledger, frozenset((*assembly.groups.values(), *((titled,) if titled is not None else ())))
+    )
+    note_leftovers(ledger, documents)
     slices = {
         name: kept for name, keys in _FILES.items() if (kept := {key: sections[key] for key in keys if sections[key]})
     }
-    return ForeignImport(slices, dict(ledger.taken), ledger.list_notes(), title=_find_title(documents))
+    title = get_name(titled) if titled is not None else ""
+    return ForeignImport(slices, dict(ledger.taken), ledger.list_notes(), title=title)
 
 
 def _count_relations(
-    catalogue: UmlCatalogue, uses: InterfaceUses, ledger: ImportLedger, groups: frozenset[XmlElement]
+    catalogue: UmlCatalogue, uses: InterfaceUses, ledger: ImportLedger, assembly: ComponentAssembly
 ) -> None:
     """Count usages, realizations and interfaces, and note those that say nothing here."""
     for element in (*catalogue.dependencies, *catalogue.realizations):
@@ -70,10 +83,8 @@ def _count_relations(
         elif get_kind(element) in {"Usage", "Dependency", "Abstraction", "Substitution"}:
             words = f"{call(element)} is not taken: it does not say what flows"
             ledger.leave(element, words, "let ports use and realize an interface")
-    for package in dict.fromkeys(catalogue.packages.values()):
-        if package not in groups and not get_id(package).startswith(OWN_PREFIX):
-            ledger.note(package, f"{call(package)} is no group: no component stands directly in it")
     meant = {key for keys in (*uses.provided.values(), *uses.required.values()) for key in keys}
+    meant |= {key for port in assembly.list_ports() for key in (*port.provided, *port.required)}
     for element in catalogue.interfaces:
         if element in meant:
             ledger.take(element)
@@ -81,6 +92,12 @@ def _count_relations(
             ledger.leave(element, f"{call(element)} is not taken: nobody realizes or uses it")
 
 
-def _find_title(documents: Sequence[XmiDocument]) -> str:
-    names = [get_name(model) for document in documents for model in document.models]
-    return next((name for name in names if name), "")
+def _note_packages(catalogue: UmlCatalogue, ledger: ImportLedger, groups: frozenset[XmlElement]) -> None:
+    for package in catalogue.all_packages:
+        if package not in groups and not get_id(package).startswith(OWN_PREFIX):
+            ledger.note(package, f"{call(package)} is no group: no component stands directly in it")
+
+
+def _find_titled(documents: Sequence[XmiDocument]) -> XmlElement | None:
+    """Return the model whose name is the project's title."""
+    return next((model for document in documents for model in document.models if get_name(model)), None)

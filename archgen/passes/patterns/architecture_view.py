@@ -5,19 +5,18 @@ Worked out from the tree when it is asked for, and again after an edit of it, fo
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from archgen.compose.library_types import list_libraries
-from archgen.diagnostics.element_origins import TreePath
 from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.matching import IndexToken
-from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ScalarText, ViewValue
+from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ViewValue
 from archgen.passes.patterns.type_layers import Layer, TypeLayers
 from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements
 from archgen.passes.patterns.view_index import ComponentIndex
 from archgen.passes.patterns.view_references import ViewReferences
+from archgen.passes.patterns.view_types import ConceptualTypes
+from archgen.passes.patterns.view_values import read_value
 from archgen.passes.project_tree import ProjectTree
-from archgen.schema import fold_type_name
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _PORT_KEYS = ("inputs", "outputs")
@@ -37,8 +36,7 @@ class ArchitectureView:
         self._users: dict[str, set[str]] = {}
         self._resolved: dict[int, tuple[ScalarNode, PortReference]] = {}
         self._component_types = TypeLayers(tree.root)
-        self._types: dict[str, dict[str, ViewValue]] | None = None
-        self.type_paths: dict[str, TreePath] = {}
+        self.types = ConceptualTypes(tree)
         self.references = ViewReferences(self.elements, self._list_outputs)
         type_entries = self._component_types.list_used(tree.root)
         inherited_ids = {name: self._component_types.list_inherited(name) for name in type_entries}
@@ -74,11 +72,11 @@ class ArchitectureView:
 
     def list_types(self) -> Sequence[str]:
         """Return the names of all conceptual types, in order."""
-        return tuple(self._read_types())
+        return self.types.list_names()
 
     def get_type(self, name: str) -> dict[str, ViewValue] | None:
         """Return what a conceptual type has, None where there is none."""
-        return self._read_types().get(name)
+        return self.types.get_body(name)
 
     def is_a(self, name: str, wanted: str) -> bool:
         """Whether a conceptual type is one, or made from a generic one; whether a component, or its type, is made from another."""
@@ -123,7 +121,7 @@ class ArchitectureView:
 
     def note_type_edit(self) -> None:
         """Read the conceptual types again."""
-        self._types = None
+        self.types.forget_bodies()
 
     def add_element(self, element: ViewElement) -> None:
         """Take up a component that was written into the tree."""
@@ -200,23 +198,13 @@ class ArchitectureView:
             self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name
         }
         for entry in expanded:
-            body[entry.key] = self._read_value(entry.value, moves)
+            body[entry.key] = read_value(entry.value, self.find_reference, moves)
         for key in ("is", "same_as"):
             name = body.get(key)
             base = read_generic_name(name).base if isinstance(name, str) else ""
             if isinstance(name, str) and self.type_keys.get(base, base) != base:
                 body[key] = self.type_keys[base] + name[len(base) :]
         return body
-
-    def _read_value(self, node: YamlNode, moves: Mapping[str, str]) -> ViewValue:
-        if isinstance(node, MappingNode):
-            return {entry.key: self._read_value(entry.value, moves) for entry in node}
-        if isinstance(node, SequenceNode):
-            return [self._read_value(item, moves) for item in node.items]
-        reference = self.find_reference(node)
-        if reference is None:
-            return read_scalar(node)
-        return _move_reference(reference, moves, node) if moves else reference
 
     def _resolve_sources(self, key: str) -> None:
         """Resolve what the ports of a component name in its own place: what its type writes is resolved there."""
@@ -269,45 +257,10 @@ class ArchitectureView:
             self._mark_stale(parent)
             parent = self.elements[parent].parent
 
-    def _read_types(self) -> dict[str, dict[str, ViewValue]]:
-        if self._types is None:
-            self._types, self.type_paths = {}, {}
-            sections: list[tuple[TreePath, YamlNode | None]] = [(("types",), self.tree.root.get("types"))]
-            for library in list_libraries(self.tree.root):
-                body = library.value
-                types = body.get("types") if isinstance(body, MappingNode) else None
-                sections.append((("libraries", library.key, "types"), types))
-            for path, section in sections:
-                for entry in section if isinstance(section, MappingNode) else ():
-                    name = fold_type_name(entry.key)
-                    if name not in self._types:
-                        value = self._read_value(entry.value, {})
-                        self._types[name] = value if isinstance(value, dict) else {}
-                        self.type_paths[name] = (*path, entry.key)
-        return self._types
-
-
-def _move_reference(reference: PortReference, moves: Mapping[str, str], node: YamlNode) -> PortReference:
-    at = node if isinstance(node, ScalarNode) else None
-    for type_key, key in moves.items():
-        if reference.holder == type_key:
-            return PortReference(key, reference.port, holder=key, at=at)
-        if reference.component.startswith(f"{type_key}."):
-            return PortReference(key + reference.component[len(type_key) :], reference.port, at=at)
-    return reference
-
 
 def _list_items(node: YamlNode | None) -> list[ScalarNode]:
     items = node.items if isinstance(node, SequenceNode) else [node]
     return [item for item in items if isinstance(item, ScalarNode) and item.value is not None]
-
-
-def read_scalar(node: ScalarNode) -> ScalarText | None:
-    """Return a scalar as rules see it: its text, None where nothing is written."""
-    if node.value is None:
-        return None
-    text = str(node.value).lower() if isinstance(node.value, bool) else node.text
-    return ScalarText(text, node.value, node.span)
 
 
 def find_instance(view: ArchitectureView, key: str) -> bool:

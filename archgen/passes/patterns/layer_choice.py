@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+from archgen.diagnostics.element_origins import TreePath
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.pattern_shapes import ViewValue
 from archgen.passes.patterns.type_layers import Layer
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
+TYPE_NAME_KEYS = frozenset({"is", "same_as"})
+"""The keys whose values name a component type."""
 DataPath = tuple[str, ...]
 """The keys that lead to a value of a component."""
 _DECLARED_SECTIONS = frozenset({"inputs", "outputs", "parameters", "operations"})
@@ -16,6 +21,20 @@ _WIRING_KEYS = frozenset({"from", "external"})
 _JOINED_LISTS = frozenset({"requirements", "tags"})
 """Lists that an instance adds to."""
 _PATH_OF_LEAF = 3
+
+
+class WrittenPlace(NamedTuple):
+    """Where a value of a component is written, and what it is made from."""
+
+    key: str
+    layer: Layer
+    path: DataPath
+    source: TreePath
+
+    @property
+    def target(self) -> TreePath:
+        """The path in the tree."""
+        return (*self.layer.path, *self.path)
 
 
 def choose_layer(view: ArchitectureView, key: str, path: DataPath, present: ViewValue) -> Layer:
@@ -52,3 +71,11 @@ def _get_node(node: YamlNode | None, path: DataPath) -> YamlNode | None:
     for key in path:
         node = node.get(key) if isinstance(node, MappingNode) else None
     return node
+
+
+def find_source(view: ArchitectureView, layer: Layer, path: DataPath) -> TreePath:
+    """Return the innermost thing on the way to a value that is written."""
+    for length in range(len(path), 0, -1):
+        if view.tree.get((*layer.path, *path[:length])) is not None:
+            return (*layer.path, *path[:length])
+    return layer.path

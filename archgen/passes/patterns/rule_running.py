@@ -155,7 +155,7 @@ class _RuleRunner:
         for entry in rule.find.types:
             name = bindings.get(getattr(entry.key, "name", ""), str(getattr(entry.key, "text", "")))
             if isinstance(name, str) and self._view.get_type(name) is not None:
-                return self._view.type_paths[name]
+                return self._view.types.find_path(name)
         return ()
 
     def _stop(

@@ -7,46 +7,30 @@ the library.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from archgen.diagnostics.element_origins import TreePath
 from archgen.model.element_ids import is_id
 from archgen.passes.patterns.architecture_view import ArchitectureView, find_instance
-from archgen.passes.patterns.data_edits import are_inside, drop_data, make_data_node, merge_data
+from archgen.passes.patterns.data_edits import drop_data, make_data_node, merge_data
 from archgen.passes.patterns.edit_values import EditError, expand_value, fill_key, fill_pattern
-from archgen.passes.patterns.layer_choice import DataPath, choose_layer
+from archgen.passes.patterns.layer_choice import TYPE_NAME_KEYS, DataPath, WrittenPlace, choose_layer, find_source
+from archgen.passes.patterns.new_components import add_component
 from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
     Bindings,
     ComponentBody,
     PatternEntry,
-    PortReference,
     ViewValue,
 )
+from archgen.passes.patterns.source_edits import write_sources
 from archgen.passes.patterns.type_layers import Layer
-from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside, path_of_type
 from archgen.passes.patterns.view_words import VIRTUAL_KEYS
 from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
-from archgen.syntax.yaml_tree import ScalarNode, SequenceNode, YamlNode
 
-_TYPE_KEYS = frozenset({"is", "same_as"})
+_TYPE_NAME_PATHS = frozenset((key,) for key in TYPE_NAME_KEYS)
 _PORT_SECTIONS = frozenset({"inputs", "outputs"})
 _ID_SECTIONS = frozenset({"inputs", "outputs", "operations"})
-
-
-class _Place(NamedTuple):
-    """Where a value of a component is written, and what it is made from."""
-
-    key: str
-    layer: Layer
-    path: DataPath
-    source: TreePath
-
-    @property
-    def target(self) -> TreePath:
-        """The path in the tree."""
-        return (*self.layer.path, *self.path)
 
 
 class TreeEditor:
@@ -111,50 +95,15 @@ class TreeEditor:
             self.has_new_names = True
 
     def _add_component(self, key: str, value: Mapping[str, ViewValue], origin: TreePath) -> None:
-        parent, dot, name = key.rpartition(".")
-        if not is_id(name):
-            message = f"`{name}` is no id, so nothing can be called so"
-            raise EditError(message, "`snake(...)` in `let` makes one of any text")
-        kind = str(value.get("kind", "component"))
-        # `parts.filter_of_pose` is a new type of the library `parts`.
-        library = parent if parent not in self._view.elements and self._tree.get(("libraries", parent)) else None
-        if library is not None:
-            parent, dot = "", ""
-        is_group = not dot and kind == "group" and library is None
-        if dot and parent not in self._view.elements:
-            message = f"`{key}` is to stand in `{parent}`, which there is not"
-            raise EditError(message, "its path begins with that of what it stands in: `$outer.name`")
-        if dot and find_instance(self._view, parent):
-            message = f"`{key}` is to stand in an instance, which has what its type has"
-            raise EditError(message, f"write it into the type of `{parent}`: `kind: type` finds types")
-        type_name = self._view.elements[parent].type_name if dot else None if is_group else key
-        path = (
-            (*self._view.elements[parent].path, INNER_KEY, name)
-            if dot
-            else ("groups", name)
-            if is_group
-            else path_of_type(key)
-        )
-        form = COMPONENT_FORM if dot else GROUP_FORM if is_group else COMPONENT_TYPE_FORM
-        copied_from = value.path if isinstance(value, ComponentBody) else ""
-        body, sources = _split_sources({k: v for k, v in value.items() if k not in VIRTUAL_KEYS}, copied_from)
-        span = self._tree.find_place(origin)
-        content = expand_value(body if library is None else _leave_library(body, library), form)
-        self._tree.set(path, make_data_node(content, span, copied_from), origin)
-        inner_ids = (*self._view.elements[parent].inner_ids, name) if dot else ()
-        element_kind: ElementKind = "component" if dot else "group" if is_group else "type"
-        element = ViewElement(key, name, element_kind, parent if dot else None, path, type_name, inner_ids)
-        self._view.add_element(element)
-        for inner in list_inside(self._tree.get(path), key, path, type_name, inner_ids, frozenset()):
-            self._view.add_element(inner)
+        sources = add_component(self._view, key, value, origin)
         self.has_new_names = True
-        for data_path, each in sources:
-            self._write("set", key, data_path, each)
+        for path, each in sources:
+            self._write("set", key, path, each)
 
     def _edit_type(self, kind: EditKind, entry: PatternEntry, bindings: Bindings, origin: TreePath) -> None:
         name, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
         is_known = self._view.get_type(name) is not None
-        path: TreePath = self._view.type_paths.get(name, ("types", name))
+        path: TreePath = self._view.types.find_path(name)
         if kind == "drop":
             drop_data(self._view, path, value) if is_known else None
         else:
@@ -170,7 +119,7 @@ class TreeEditor:
             return
         layers = self._view.list_layers(key)
         # What a type is made from is the type's own.
-        for layer in layers[:1] if path[0] in _TYPE_KEYS else layers:
+        for layer in layers[:1] if path[0] in TYPE_NAME_KEYS else layers:
             count = self._tree.edit_count
             drop_data(self._view, (*layer.path, *path), value)
             if self._tree.edit_count != count:
@@ -190,10 +139,10 @@ class TreeEditor:
         if present is not None and present == value:
             return
         layer = choose_layer(self._view, key, path, present)
-        place = _Place(key, layer, path, self._find_source(layer, path))
+        place = WrittenPlace(key, layer, path, find_source(self._view, layer, path))
         span = self._tree.find_place(place.source)
         if path[-1] == "from" and (len(path) == 1 or path[0] in _PORT_SECTIONS):
-            self._write_sources(kind, place, value)
+            write_sources(self._view, kind, place, value)
         elif isinstance(value, dict) and path[0] in _PORT_SECTIONS:
             self._write_port(kind, place, value)
             return
@@ -208,54 +157,12 @@ class TreeEditor:
             self._tree.set(place.target, node, place.source)
         self._note(key, layer, path)
 
-    def _write_port(self, kind: EditKind, place: _Place, value: Mapping[str, ViewValue]) -> None:
+    def _write_port(self, kind: EditKind, place: WrittenPlace, value: Mapping[str, ViewValue]) -> None:
         """Write a port that is new, or a section of new ports: first that it is there, then each of its keys."""
         self._tree.set(place.target, make_data_node({}, self._tree.find_place(place.source)), place.source)
         self._note(place.key, place.layer, place.path)
         for name, each in value.items():
             self._write(kind, place.key, (*place.path, name), each)
-
-    def _write_sources(self, kind: EditKind, place: _Place, value: ViewValue) -> None:
-        span = self._tree.find_place(place.source)
-        is_output = place.path[0] == "outputs"
-        type_name = place.layer.type_name
-        writer = self._view.type_keys.get(type_name, place.key) if type_name else place.key
-        nodes: list[ScalarNode] = []
-        for item in value if isinstance(value, list) else [value]:
-            reference = self._find_target(item, writer, is_output=is_output)
-            words = self._view.references.write(reference, writer, is_output=is_output)
-            if words is None:
-                message = f"`{reference}` cannot be named at `{writer}`: it lies outside of what is seen from there"
-                raise EditError(message, "lead it through the ports of what stands around")
-            node = ScalarNode(words, words, reference.span or span)
-            self._view.remember_reference(node, reference)
-            nodes.append(node)
-        if kind == "set":
-            self._tree.set(place.target, SequenceNode(list[YamlNode](nodes), span), place.source)
-        for node in nodes if kind == "add" else ():
-            self._tree.append(place.target, node, place.source)
-
-    def _find_target(self, item: ViewValue, writer: str, *, is_output: bool) -> PortReference:
-        if isinstance(item, PortReference):
-            return item
-        text = str(item) if isinstance(item, str) else ""
-        if text.startswith("self."):
-            shell = writer if is_output else self._view.elements[writer].parent
-            return PortReference(shell or "", text.removeprefix("self."), holder=shell or "")
-        if text in self._view.elements:
-            return PortReference(text, None)
-        component, _, port = text.rpartition(".")
-        if component not in self._view.elements:
-            message = f"`{text}` is no port and no component"
-            raise EditError(message, "a source is a path and a port: `$source.$port`, or `self.$port`")
-        return PortReference(component, port)
-
-    def _find_source(self, layer: Layer, path: DataPath) -> TreePath:
-        """Return the innermost thing on the way to a value that is written."""
-        for length in range(len(path), 0, -1):
-            if self._tree.get((*layer.path, *path[:length])) is not None:
-                return (*layer.path, *path[:length])
-        return layer.path
 
     def _note(self, key: str, layer: Layer, path: DataPath) -> None:
         if path[0] == "outputs":
@@ -265,22 +172,10 @@ class TreeEditor:
 
     def _name_types(self, path: DataPath, value: ViewValue, layer: Layer) -> ViewValue:
         """Return the name of a component type as it is written at a layer: in a library without its library."""
-        if path not in {("is",), ("same_as",)} or not isinstance(value, str):
+        if path not in _TYPE_NAME_PATHS or not isinstance(value, str):
             return value
         name = self._view.write_type_name(value)
         return name.removeprefix(f"{layer.path[1]}.") if layer.path[0] == "libraries" else name
-
-
-def _leave_library(body: Mapping[str, ViewValue], library: str) -> dict[str, ViewValue]:
-    """Return what is to stand in a library, whose types name one another without it."""
-    return {
-        key: _leave_library(value, library)
-        if isinstance(value, dict)
-        else value.removeprefix(f"{library}.")
-        if key in _TYPE_KEYS and isinstance(value, str)
-        else value
-        for key, value in body.items()
-    }
 
 
 def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:
@@ -288,28 +183,6 @@ def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:
     copy = ComponentBody(body if isinstance(body, dict) else {})
     copy.path = holder
     return copy
-
-
-def _split_sources(
-    body: dict[str, ViewValue], copied_from: str
-) -> tuple[dict[str, ViewValue], list[tuple[DataPath, ViewValue]]]:
-    """Return what a new component has without what its ports take data from, and that by path.
-
-    What a copy names inside of itself stays: it means the copy's own.
-    """
-    kept, sources = dict(body), list[tuple[DataPath, ViewValue]]()
-    if "from" in body and not are_inside(body["from"], copied_from):
-        sources.append((("from",), kept.pop("from")))
-    for side in ("inputs", "outputs"):
-        ports = kept.get(side)
-        if not isinstance(ports, dict):
-            continue
-        kept[side] = kept_ports = dict(ports)
-        for name, port in ports.items():
-            if isinstance(port, dict) and "from" in port and not are_inside(port["from"], copied_from):
-                kept_ports[name] = {key: each for key, each in port.items() if key != "from"}
-                sources.append(((side, name, "from"), port["from"]))
-    return kept, sources
 
 
 def _get(value: ViewValue, path: DataPath) -> ViewValue:

@@ -23,6 +23,7 @@ from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
+    list_tags,
     make_classifier,
     make_item,
     make_named_properties,
@@ -35,8 +36,6 @@ from archgen.views.generation.generation_context import write_place
 if TYPE_CHECKING:
     from archgen.views.generation.aadl_parts import SystemPart
 
-_RESERVED_NAMES = ("tf", "internal_state", "main_thread", "main_state")
-"""What a process has from the library `ros`."""
 _TF_TOPICS = frozenset({"/tf", "/tf_static"})
 _LONGEST_QUEUE = 512
 """What the standard's own project file lets readers take."""
@@ -62,6 +61,11 @@ def find_whole(architecture: Architecture, node: Node) -> Component | None:
 class Process:
     """A node in AADL: its type and implementation, which grow as connections and flows are found."""
 
+    category = "process"
+    reserved_names: tuple[str, ...] = ("tf", "internal_state", "main_thread", "main_state")
+    """What it has from the library `ros`."""
+    may_use_tf = True
+
     def __init__(
         self,
         architecture: Architecture,
@@ -76,7 +80,7 @@ class Process:
         self.name_in_system = self.name
         self.home: SystemPart
         """The system that it stands in; known when it is placed."""
-        self.names = NameSpace(_RESERVED_NAMES)
+        self.names = NameSpace(self.reserved_names)
         self.features: dict[tuple[bool, str, str], str] = {}
         """The names of its features by the keys of the parts of its ports."""
         self.threads: dict[str, str] = {}
@@ -96,17 +100,17 @@ class Process:
             each.id: Behaviour(architecture, types, each, node.timing.get(each.id) or node.timing.get("") or _NO_TIMING)
             for each in components
         }
-        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or has_tf_access(
-            self._hints
+        self.uses_tf = self.may_use_tf and (
+            any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or has_tf_access(self._hints)
         )
         # Ports come before threads: it is they that others see.
-        self._feature_items = [
+        self.feature_items = [
             self._make_feature(part)
             for behaviour in self.behaviours.values()
             for part in behaviour.parts
             if not self._is_inside_only(part)
         ]
-        self._feature_items += [
+        self.feature_items += [
             self._make_internal_feature(types, each)
             for each in endpoints
             if each.port is None and each.name not in _TF_TOPICS
@@ -114,6 +118,11 @@ class Process:
         for behaviour in self.behaviours.values():
             self._add_thread(behaviour, package_names, is_only=len(self.behaviours) == 1)
         self._properties += list_source_properties(self._hints)
+
+    @property
+    def classifier(self) -> str:
+        """What its subcomponent is made from, within its package."""
+        return f"{self.name}.impl"
 
     def find_endpoints(self, part: PortPart, source_id: str = "") -> Iterable[Endpoint]:
         """Yield what a part of a port uses; with a source only what it arrives on."""
@@ -211,6 +220,12 @@ class Process:
         behaviour = self.behaviours.get(port_id.rpartition(".")[0])
         return behaviour.find_part(port_id, is_output=is_output, source_id=source_id) if behaviour else None
 
+    def add_call_feature(self, part: PortPart) -> None:
+        """Add the port for the request or the answer of a call, if it is not there yet."""
+        if part.key not in self.features:
+            name = self.features[part.key] = self.names.take_name(part.name)
+            self.feature_items.append(make_item(name, part.text, [make_property("archgen::Is_Call", "true")]))
+
     def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
         """Join the ports of two components that this node implements."""
         ends = []
@@ -220,7 +235,7 @@ class Process:
         name = f"{ends[0]}_to_{ends[1]}".replace(".", "_")
         self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
 
-    def _find_own_owner(self, component: Component | None) -> str | None:
+    def find_own_owner(self, component: Component | None) -> str | None:
         """Return who owns its component, where that is not who owns the group."""
         owner = component.owner if component else self.node.owner
         group = self._architecture.groups.get(component.group) if component else None
@@ -235,19 +250,28 @@ class Process:
         properties = make_named_properties(element.id, element.id, element.title)
         if component is not None and node.title != title_from_id(node.id):
             properties += make_text_properties(node_title=node.title)
+        role = behaviours[0].further_role if len(behaviours) == 1 else None
+        properties += list_component_words(component or node, role, self.find_own_owner(component))
         properties += make_text_properties(
-            description=element.description,
-            functionality=component.functionality if component else None,
-            role=behaviours[0].further_role if len(behaviours) == 1 else None,
-            owner=self._find_own_owner(component),
             package_name=node.package,
             executable_name=node.executable,
             node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
         )
         own_type = make_classifier("process", self.name, extends="ros::node", properties=properties)
         implementation = make_classifier("process", f"{self.name}.impl", extends="ros::node.impl")
-        own_type.update(features=self._feature_items, flows=self.flows, place=write_place(node.at))
+        own_type.update(features=self.feature_items, flows=self.flows, place=write_place(node.at))
         implementation.update(
             subcomponents=self._subcomponents, connections=self.connections, properties=self._properties
         )
         return [*self.thread_classifiers, own_type, implementation]
+
+
+def list_component_words(element: Component | Node, role: str | None, owner: str | None) -> list[AadlProperty]:
+    """Return what a component says of itself beside its ports and timing."""
+    texts = make_text_properties(
+        description=element.description,
+        functionality=element.functionality if isinstance(element, Component) else None,
+        role=role,
+        owner=owner,
+    )
+    return [*texts, *(list_tags(element) if isinstance(element, Component) else [])]

@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Output
 from archgen.model.node import Endpoint
 from archgen.model.port_media import flow_of_port
+from archgen.views.generation.aadl_devices import Device, is_device
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_system import LAUNCH, SystemWriter
 from archgen.views.generation.aadl_types import TypeBook
@@ -33,26 +34,34 @@ def make_view(context: GenerationContext) -> GeneratedView:
     project = make_aadl_name(architecture.project.id)
     names = {
         key: units.take_name(f"{project}_{key}" if key != "system" else project)
-        for key in ("types", "nodes", "hosts", "system")
+        for key in ("types", "nodes", "devices", "hosts", "system")
     }
     types = TypeBook(architecture, names["types"], units)
     endpoints: dict[str, list[Endpoint]] = {}
     for endpoint in architecture.list_endpoints():
         endpoints.setdefault(endpoint.node, []).append(endpoint)
-    node_names = NameSpace()
-    processes = {
-        node.id: Process(architecture, types, node, endpoints.get(node.id, ()), node_names)
-        for node in context.wanted_nodes.values()
-    }
+    linked_devices = {device for link in architecture.links.values() for device in link.devices}
+    package_names = {Process.category: NameSpace(), Device.category: NameSpace()}
+    processes: dict[str, Process] = {}
+    for node in context.wanted_nodes.values():
+        kind = Device if is_device(architecture, node, linked_devices) else Process
+        own_endpoints = endpoints.get(node.id, ())
+        processes[node.id] = kind(architecture, types, node, own_endpoints, package_names[kind.category])
     if context.is_whole:
         for declared in architecture.types.values():
             if declared.origin == "project" and not declared.generic:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
-    system = SystemWriter(context, processes, names)
+    system = SystemWriter(context, processes, types, names)
     system.write()
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
-        _make_package(names["nodes"], [each for process in processes.values() for each in process.make_classifiers()]),
+        *(
+            _make_package(
+                names[key],
+                [each for one in processes.values() if one.category == category for each in one.make_classifiers()],
+            )
+            for key, category in (("nodes", Process.category), ("devices", Device.category))
+        ),
         _make_package(names["hosts"], system.platform.classifiers),
         _make_package(names["system"], system.classifiers, system.comments),
     ]

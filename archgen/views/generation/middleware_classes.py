@@ -15,7 +15,8 @@ from archgen.views.generation.class_words import find_type_words
 from archgen.views.generation.generation_context import GenerationContext, tell_left_out, write_place
 from archgen.views.generation.middleware_names import (
     drop_clashes,
-    name_class,
+    name_component_class,
+    name_component_files,
     name_interface,
     name_member,
     shorten_name,
@@ -87,8 +88,8 @@ def name_classes(architecture: Architecture, classes: Iterable[ComponentClass]) 
         is_shared = len(own.components) > 1 or first.component_type is not None
         own.record.update(
             {
-                "name": name_class(own.words),
-                "module": name_member(own.words),
+                "name": name_component_class(own.words),
+                "module": name_component_files(own.words),
                 "title": first.component_type or own.words if is_shared else first.title,
                 "description": first.description or first.functionality or "",
                 "type": first.component_type or "",
@@ -150,22 +151,37 @@ def record_inputs(
         else:
             server = _find_server(sources, classes)
             if server is None:
-                findings.append(
-                    tell_left_out(
-                        f"`{port.id}` is left out: nobody of the architecture answers it",
-                        port.at,
-                        element=port.id,
-                        help_line="say which component has an output for it, or write it as an operation",
-                    )
-                )
+                findings.append(_tell_unanswered(port, sources))
                 continue
             called[port.id] = {**record, **server}
             names.append((interface, port.id, port.at))
     names += [(record["name"], key, port.at) for record, key, port in read]
-    clashing, clashes = drop_clashes(names, "name")
+    others = [*own.record["outputs"], *own.record["operations"]]
+    used = [(str(each["name"]), f"{own.first.id}.{each['title']}", own.first.at) for each in others]
+    clashing, clashes = drop_clashes([*used, *names], "name")
     own.record["inputs"] = [record for record, key, _ in read if key not in clashing]
     own.record["calls"] = [each for port_id, each in called.items() if port_id not in clashing]
+    own.record["headers"] = _list_foreign_files(own.record, "header")
+    own.record["typekits"] = _list_foreign_files(own.record, "typekit")
     return [*findings, *clashes]
+
+
+def _list_foreign_files(record: Mapping[str, Any], kind: str) -> list[str]:
+    """Return the headers or typekits of all types of others that a class sends, reads, is called with, or calls with."""
+    ports = [*record["inputs"], *record["outputs"]]
+    operations = [*record["operations"], *(each["operation"] for each in record["calls"])]
+    types = [each["type"] for each in (*ports, *(part for each in operations for part in each["arguments"]))]
+    types += [each["result"] for each in operations if each["result"]]
+    return sorted({str(each[kind]) for each in types if each[kind]})
+
+
+def _tell_unanswered(port: Input, sources: Iterable[Output]) -> Diagnostic:
+    source = next(iter(sources), None)
+    why = f"what it calls, `{source.id}`, is left out" if source else "nobody of the architecture answers it"
+    help_line = "say which component has an output for it, or write it as an operation"
+    return tell_left_out(
+        f"`{port.id}` is left out: {why}", port.at, element=port.id, help_line=None if source else help_line
+    )
 
 
 def _list_sources(architecture: Architecture, own: ComponentClass, name: str) -> list[Output]:

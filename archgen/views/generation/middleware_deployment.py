@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
@@ -12,7 +13,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.node import Qos
 from archgen.views.generation.component_records import read_own_hints
-from archgen.views.generation.generation_context import GenerationContext, write_place
+from archgen.views.generation.generation_context import GenerationContext, tell_left_out, write_place
 from archgen.views.generation.middleware_classes import ComponentClass, name_port_type
 from archgen.views.generation.middleware_names import drop_clashes, name_member, shorten_name
 from archgen.views.generation.player_interfaces import OPAQUE
@@ -46,14 +47,18 @@ def record_instance(context: GenerationContext, component: Component, own: Compo
         "period_s": float(period / _NANOSECONDS) if period else 0.0,
         "rate_hz": float(Fraction(_NANOSECONDS) / period) if period else 0.0,
         "values": values,
+        "data_ports": [each["name"] for each in (*own.record["inputs"], *own.record["outputs"])],
+        "calls": [each["name"] for each in own.record["calls"]],
+        "has_operations": bool(own.record["operations"]),
         "place": write_place(component.at),
     }
 
 
 def connect_instances(
     architecture: Architecture, classes: Mapping[str, ComponentClass], instances: Mapping[str, Mapping[str, Any]]
-) -> list[dict[str, Any]]:
+) -> tuple[list[dict[str, Any]], list[Diagnostic]]:
     """Return what joins instances: an output and the input that reads it, or an operation and who calls it."""
+    findings: list[Diagnostic] = []
     qos = {each.port: each.qos for each in architecture.list_endpoints() if each.port and each.use == "subscribes"}
     connections: list[dict[str, Any]] = []
     called = set[str]()
@@ -80,15 +85,28 @@ def connect_instances(
             connections.append(
                 {**ends, "is_call": False, "rtm": sent["type"]["rtm"], **_choose_buffer(qos.get(reader.id))}
             )
-        # A caller has one that answers: the first one.
-        elif served and call and call["server"] == source["name"] and reader.id not in called:
+        elif served and call and (call["server"] != source["name"] or reader.id in called):
+            findings.append(
+                tell_left_out(
+                    f"`{reader.id}` does not call `{output.id}`: "
+                    + (
+                        "it calls another one already"
+                        if reader.id in called
+                        else f"all instances of its type call one of the class `{call['server']}`"
+                    ),
+                    reader.at,
+                    element=reader.id,
+                    help_line="give it an input for each that it calls",
+                )
+            )
+        elif served and call:
             called.add(reader.id)
             connections.append({**ends, "is_call": True, "server": source["name"]})
-    return connections
+    return connections, findings
 
 
 def _record_end(end: str, instance: Mapping[str, Any], port: Mapping[str, Any] | None) -> dict[str, Any]:
-    words = {"id": instance["id"], "name": instance["name"], "host": instance["host"]}
+    words = {"id": instance["id"], "name": instance["name"], "class": instance["class"], "host": instance["host"]}
     if port:
         words.update(port=port["name"], wire=port["wire"])
     return {f"{end}_{key}": value for key, value in words.items()}
@@ -144,8 +162,8 @@ def require_interfaces(
             {**provided, "key": key, "wire": wire, "host": host, "address": _find_address(context, host)}
         )
     for instance in instances.values():
-        sources = [each["wire"] for each in instance["requires"]]
-        instance["source_counts"] = [{"wire": wire, "count": sources.count(wire)} for wire in dict.fromkeys(sources)]
+        sources = Counter(each["wire"] for each in instance["requires"])
+        instance["source_counts"] = [{"wire": wire, "count": count} for wire, count in sources.items()]
 
 
 def _find_address(context: GenerationContext, host: str) -> str:
@@ -155,28 +173,43 @@ def _find_address(context: GenerationContext, host: str) -> str:
     return written if _ADDRESS.match(written) else shorten_name(name_member(host)) if host else "localhost"
 
 
+def _list_joined_ports(connections: Iterable[Mapping[str, Any]]) -> dict[str, list[dict[str, str]]]:
+    """Return the ports of each instance, by its name, with the connections that they have."""
+    ports: dict[str, list[dict[str, str]]] = {}
+    for each in connections:
+        for end in ("source", "target") if not each["is_call"] else ():
+            ports.setdefault(each[f"{end}_name"], []).append({"port": each[f"{end}_port"], "connection": each["name"]})
+    return ports
+
+
 def record_hosts(
     context: GenerationContext, instances: Iterable[Mapping[str, Any]], connections: Iterable[Mapping[str, Any]]
 ) -> tuple[list[dict[str, Any]], list[Diagnostic]]:
     """Return what runs on each host, with what joins it to others; instances without a host stand at the end."""
     by_host: dict[str, list[Mapping[str, Any]]] = {}
-    known_instances = list(instances)
-    for instance in known_instances:
+    places: dict[object, int] = {}
+    for place, instance in enumerate(instances):
+        places[instance["id"]] = place
         by_host.setdefault(str(instance["host"]), []).append(instance)
     known = context.architecture.hosts
     order = [*(each for each in known if each in by_host), *(each for each in by_host if each not in known)]
     spans = {each: known[each].at if each in known else context.architecture.project.at for each in order}
     clashing, findings = drop_clashes([(name_member(each or NO_HOST), each, spans[each]) for each in order], "host")
-    listed = list(connections)
+    by_end: dict[str, list[Mapping[str, Any]]] = {}
+    for each in connections:
+        for host in dict.fromkeys((str(each["source_host"]), str(each["target_host"]))):
+            by_end.setdefault(host, []).append(each)
     hosts: list[dict[str, Any]] = []
     for host in order:
         if host in clashing:
             continue
-        ends = [each for each in listed if host in {each["source_host"], each["target_host"]}]
-        others = {
-            each[f"{end}_id"]: each for end in ("source", "target") for each in ends if each[f"{end}_host"] != host
+        ends = by_end.get(host, [])
+        remote = {
+            each[f"{end}_id"]: {"id": each[f"{end}_id"], "name": each[f"{end}_name"], "host": each[f"{end}_host"]}
+            for end in ("source", "target")
+            for each in ends
+            if each[f"{end}_host"] != host
         }
-        remote = [each for each in known_instances if each["id"] in others]
         hosts.append(
             {
                 "id": host,
@@ -184,7 +217,8 @@ def record_hosts(
                 "title": known[host].title if host in known else "",
                 "instances": by_host[host],
                 "connections": ends,
-                "remote": [{"id": each["id"], "name": each["name"], "host": each["host"]} for each in remote],
+                "remote": sorted(remote.values(), key=lambda each: places[each["id"]]),
+                "ports": _list_joined_ports(each for each in ends if each["target_host"] == host),
                 "place": write_place(spans[host]) if host in known else "",
             }
         )

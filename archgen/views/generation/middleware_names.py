@@ -32,6 +32,20 @@ _TASK_NAMES = frozenset(
     """.split()  # noqa: SIM905
 )
 """What every component of Orocos has already, in small letters."""
+_FILE_NAMES = frozenset(("encoding", "library", "main", "plugin", "transport", "typekit", "types", "values"))
+"""What the generators call files of their own, beside those of components."""
+_HELPER_WORDS = ("behaviour", "servant")
+"""How the classes end that stand beside those of components."""
+_CLASS_NAMES = frozenset(
+    """
+    addinterface boolproperty configfile device doubleproperty driver inqueue intproperty main mainquit mainsetup message
+    parameters peer preoperational processmessage processmessages publish queuepointer seterror stringproperty testcancel
+    threadeddriver wait
+    """.split()  # noqa: SIM905
+)
+"""What the code of components names without its namespace, in small letters."""
+_OWN_SPACES = frozenset(("calls", "encoding", "services", "timed", "values"))
+"""The namespaces that the generators make beside those of data."""
 _MOST_WIRE = 40
 _TAKEN_SPACES = frozenset(
     ("boost", "corba", "omniorb", "player", "posa", "posix", "rtc", "rtm", "rtt", "ocl", "coil", "sdopackage")
@@ -61,10 +75,28 @@ def name_class(words: str) -> str:
     return f"{name}_" if name.casefold() in IDL_KEYWORDS else name
 
 
+def name_component_class(words: str) -> str:
+    """Return a name as classes of components have it: other than all that is made beside them."""
+    name = name_class(words)
+    return f"{name}_" if name.casefold() in _CLASS_NAMES or name.casefold().endswith(_HELPER_WORDS) else name
+
+
+def name_component_files(words: str) -> str:
+    """Return a name as the files of components begin: other than all that is made beside them."""
+    name = name_member(words)
+    return f"{name}_" if name in _FILE_NAMES or name.endswith(_HELPER_WORDS) else name
+
+
+def name_data_space(package: str, outer_space: str) -> str:
+    """Return a name as namespaces of data have it, which stand inside of that of the project."""
+    space = name_space(package)
+    return f"{space}_" if space == outer_space else space
+
+
 def name_space(name: str) -> str:
     """Return a name as namespaces of C++ and modules of IDL have it."""
     space = name_member(name)
-    return f"{space}_" if space in _TAKEN_SPACES else space
+    return f"{space}_" if space in _TAKEN_SPACES | _OWN_SPACES else space
 
 
 def shorten_name(name: str) -> str:

@@ -39,15 +39,17 @@ def _record_operation(types: MiddlewareTypes, words: str, operation: Operation, 
     request = operation.request
     if isinstance(request, str):
         request = {"request": request}
-    arguments = [(name, types.find_written_type(written)) for name, written in (request or {}).items()]
-    if len(arguments) > _MOST_ARGUMENTS or len({name_member(name) for name, _ in arguments}) < len(arguments):
-        arguments = [("request", types.add_answer(f"{words} {operation.id} request", arguments, operation.at))]
+    given = dict(request or {})
+    arguments = [(name, types.find_called_type(written, operation.at)) for name, written in given.items()]
+    if len(given) > _MOST_ARGUMENTS or len({name_member(name) for name in given}) < len(given):
+        fields = [(name, types.find_written_type(written)) for name, written in given.items()]
+        arguments = [("request", types.add_answer(f"{words} {operation.id} request", fields, operation.at))]
     answer = operation.response
     if isinstance(answer, Mapping):
         fields = [(name, types.find_written_type(written)) for name, written in answer.items()]
         made = types.add_answer(f"{words} {operation.id} response", fields, operation.at) if fields else None
     else:
-        made = types.find_written_type(answer) if answer else None
+        made = types.find_called_type(answer, operation.at) if answer else None
     return {
         "element": f"{component.id} {operation.id}",
         "span": operation.at,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -12,45 +12,21 @@ from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interface, InterfaceField
 from archgen.views.generation.component_records import read_own_hints
 from archgen.views.generation.generation_context import tell_left_out, write_place
-from archgen.views.generation.middleware_names import drop_clashes, name_class, name_inside, name_member, name_space
+from archgen.views.generation.middleware_names import (
+    drop_clashes,
+    name_class,
+    name_data_space,
+    name_inside,
+    name_member,
+)
+from archgen.views.generation.middleware_primitives import ALIASES, PRIMITIVES
 from archgen.views.generation.player_interfaces import record_interface
 
-PRIMITIVES: Mapping[str, tuple[str, str, str, str]] = {
-    "bool": ("truth", "bool", "boolean", "Boolean"),
-    "byte": ("whole", "std::uint8_t", "octet", "Octet"),
-    "char": ("whole", "std::uint8_t", "octet", "Octet"),
-    "uint8": ("whole", "std::uint8_t", "octet", "Octet"),
-    "int8": ("whole", "std::int8_t", "short", "Short"),
-    "int16": ("whole", "std::int16_t", "short", "Short"),
-    "uint16": ("whole", "std::uint16_t", "unsigned short", "UShort"),
-    "int32": ("whole", "std::int32_t", "long", "Long"),
-    "uint32": ("whole", "std::uint32_t", "unsigned long", "ULong"),
-    "int64": ("whole", "std::int64_t", "long long", "LongLong"),
-    "uint64": ("whole", "std::uint64_t", "unsigned long long", "ULongLong"),
-    "time": ("whole", "std::int64_t", "long long", "LongLong"),
-    "duration": ("whole", "std::int64_t", "long long", "LongLong"),
-    "float32": ("number", "float", "float", "Float"),
-    "float64": ("number", "double", "double", "Double"),
-    "string": ("text", "std::string", "string", "String"),
-    "wstring": ("text", "std::string", "string", "String"),
-}
-"""What values are that are no records: their kind, and what C++, IDL and the mapping of IDL call them."""
-_ALIASES = {
-    **dict.fromkeys(("double", "real", "edouble"), "float64"),
-    **dict.fromkeys(("float", "efloat"), "float32"),
-    **dict.fromkeys(("int", "integer", "eint"), "int32"),
-    **dict.fromkeys(("boolean", "eboolean"), "bool"),
-    **dict.fromkeys(("text", "estring"), "string"),
-    "long": "int64",
-    "short": "int16",
-    "octet": "uint8",
-    "unlimitednatural": "uint32",
-}
-"""What UML and programming languages call such values."""
 _LIST = re.compile(r"\s*\[[^\[\]]*\]\Z")
 _FOREIGN_TYPE = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*\Z", re.ASCII)
 _FOREIGN_FILE = re.compile(r"[A-Za-z0-9_][\w.+-]*(?:/[\w+-][\w.+-]*)*\Z", re.ASCII)
 _TEXT_TYPE = "string"
+_IDL_BACKEND = "openrtm"
 
 
 class MiddlewareTypes:
@@ -99,6 +75,16 @@ class MiddlewareTypes:
             self._timed.setdefault(found["rtm"].rpartition("::")[2], found["idl"])
         return {**found, **foreign} if foreign else found
 
+    def find_called_type(self, written: str | None, span: Span) -> dict[str, Any]:
+        """Return what an operation takes or answers: what hints of its type say, else what it holds.
+
+        OpenRTM-aist has IDL for operations, which needs other words for a class than the class itself.
+        """
+        declared = None if self._backend == _IDL_BACKEND else self._architecture.types.get(written or "")
+        hints = read_own_hints(declared.annotations.hints, self._backend) if declared else {}
+        found = self.find_written_type(written)
+        return {**found, **self._read_foreign(hints, span, str(written))}
+
     def find_written_type(self, written: str | None) -> dict[str, Any]:
         """Return what a conceptual type, a message or a primitive type holds; of what nobody says the fields it is text."""
         text = (written or "").strip()
@@ -114,7 +100,7 @@ class MiddlewareTypes:
             if record:
                 return self._describe_record(record, is_list=is_list)
         word = base.casefold()
-        return self.describe_primitive(_ALIASES.get(word, word if word in PRIMITIVES else _TEXT_TYPE), is_list=is_list)
+        return self.describe_primitive(ALIASES.get(word, word if word in PRIMITIVES else _TEXT_TYPE), is_list=is_list)
 
     def find_call_parts(self, type_name: str | None) -> list[dict[str, Any] | None]:
         """Return the request and the answer of a service or an action: None for one without fields, and of what nobody says
@@ -197,19 +183,42 @@ class MiddlewareTypes:
             return None
         key = f"{message} {definition.part_names[part]}".rstrip()
         if key not in self._records:
-            # While its fields are looked at it is none: what holds itself is no record.
-            self._records[key] = None
-            made = self._make_record(key, definition, part)
-            del self._records[key]
-            self._records[key] = made if self._is_free(made) else None
+            for held in self._list_held_messages(definition, part):
+                self._records[held] = self._make_record(held, self._architecture.interfaces.definitions[held], 0)
+            self._records[key] = self._make_record(key, definition, part)
         return self._records[key]
 
-    def _make_record(self, key: str, definition: Interface, part: int) -> dict[str, Any]:
+    def _list_held_messages(self, definition: Interface, part: int) -> list[str]:
+        """Return the messages that a part of one holds and that have no record yet, each behind those that it holds.
+
+        Messages may hold one another to any depth: no call waits for another one here.
+        """
+        definitions = self._architecture.interfaces.definitions
+        held: list[str] = []
+        begun = {definition.name}
+        path: list[tuple[str, Iterator[InterfaceField]]] = [(definition.name, iter(definition.parts[part]))]
+        while path:
+            name, fields = path[-1]
+            base = next((each.type.partition("<=")[0] for each in fields), None)
+            if base is None:
+                path.pop()
+                held.append(name)
+            elif base in definitions and base not in begun and base not in self._records:
+                begun.add(base)
+                path.append((base, iter(definitions[base].parts[0])))
+        return held[:-1]
+
+    def _make_record(self, key: str, definition: Interface, part: int) -> dict[str, Any] | None:
+        """Return the record of a part of a message; None where another one has its name."""
         package, _, name = definition.name.split("/")
         definer = self._definers.get(definition.name)
         span = definer.at if definer else NO_SPAN
         record = self._start_record(
-            key, name_space(package), name_class(f"{name} {definition.part_names[part]}"), definition.name, span
+            key,
+            name_data_space(package, self.space),
+            name_class(f"{name} {definition.part_names[part]}"),
+            definition.name,
+            span,
         )
         record["comment"] = (definer.comment if definer else None) or definition.comment
         fields = [
@@ -219,7 +228,7 @@ class MiddlewareTypes:
         ]
         record["fields"] = self._record_fields(record, fields, span)
         record["is_fixed"] = all(each["type"]["is_fixed"] for each in record["fields"])
-        return record
+        return record if self._is_free(record) else None
 
     def _is_free(self, record: Mapping[str, Any]) -> bool:
         """Whether no other record has the name of a record, letters of either case; if one has, tell it."""
@@ -256,11 +265,16 @@ class MiddlewareTypes:
             return self.describe_primitive(base if base in PRIMITIVES else _TEXT_TYPE, is_list=is_list)
         if base not in self._architecture.interfaces.definitions:
             return self.describe_primitive(_TEXT_TYPE, is_list=is_list)
-        record = self._find_record(base, 0)
-        if record is None:
-            self._tell(f"the field `{field.name}` of `{key}` is left out: it holds `{key}` itself", span, key)
+        if base not in self._records:
+            # What it holds has its record already, unless it holds this one.
+            self._tell(f"the field `{field.name}` of `{key}` is left out: by it `{key}` would hold itself", span, key)
             return None
-        return self._describe_record(record, is_list=is_list)
+        record = self._records[base]
+        return (
+            self._describe_record(record, is_list=is_list)
+            if record
+            else self.describe_primitive(_TEXT_TYPE, is_list=is_list)
+        )
 
     def _tell(self, message: str, span: Span, element: str) -> None:
         if message not in self._told:

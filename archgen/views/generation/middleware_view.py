@@ -55,7 +55,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         own.record["is_periodic"] = bool(rates) and all(rates)
         own.record["rate_hz"] = rates[0] if rates else 0.0
     number_interfaces(classes, instances.values())
-    connections = connect_instances(architecture, classes, instances)
+    connections, unjoined = connect_instances(architecture, classes, instances)
     require_interfaces(context, instances, connections)
     hosts, host_clashes = record_hosts(context, instances.values(), connections)
     wanted = {key for key in context.wanted_components if key in instances}
@@ -65,7 +65,8 @@ def make_view(context: GenerationContext) -> GeneratedView:
         for host in hosts
         if any(each["id"] in wanted for each in host["instances"])
     ]
-    findings += clashes + host_clashes + [each for own in wanted_classes for each in told[own.words]]
+    unjoined = [each for each in unjoined if architecture.inputs[str(each.element)].component in wanted]
+    findings += clashes + unjoined + host_clashes + [each for own in wanted_classes for each in told[own.words]]
     data = {
         "title": architecture.project.title,
         "name": types.space,

@@ -13,7 +13,7 @@ from archgen.views.generation.generation_context import GenerationContext, tell_
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.program_parameters import convert_value, infer_ros_type
 from archgen.views.generation.simulated_types import name_java_field
-from archgen.views.record_values import to_plain
+from archgen.views.records.record_values import to_plain
 
 _KINDS = {
     "bool": ("boolean", "Boolean"),

@@ -24,7 +24,7 @@ _MAX_DEPTH = 2
 
 
 @dataclass(frozen=True)
-class ComponentSections:
+class ReportSections:
     """Makes the sections. `shows_nodes` is whether the document has the implementation level."""
 
     lookup: Lookup

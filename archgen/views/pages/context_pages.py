@@ -29,7 +29,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
 )
-from archgen.views.tables import architecture_tables, requirement_tables, type_fields
+from archgen.views.tables import deployment_tables, requirement_tables, type_fields, type_tables
 from archgen.views.timing import element_timing
 
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
@@ -42,7 +42,7 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
     """Make a page for each type and use case."""
-    for conceptual_type in sorted(architecture_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
+    for conceptual_type in sorted(type_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
         yield _type_page(lookup, conceptual_type)
     for name in lookup.architecture.use_cases:
         yield _use_case_page(lookup, name, keep_drawn)
@@ -87,11 +87,11 @@ def make_topic_tables(lookup: Lookup) -> Iterator[Table]:
     """List topics, services and actions, each kind in a table of its own; then what nodes exchange over other media."""
     for flow, title in (("topic", "Topics"), ("service", "Services"), ("action", "Actions")):
         flow_topics = [topic for topic in shown_topics(lookup) if topic.flow == flow]
-        table = architecture_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
+        table = deployment_tables.make_topic_table(lookup, flow_topics, f"table:{flow}s", title)
         if table:
             yield table
     channels = _list_shown_channels(lookup)
-    if table := architecture_tables.make_topic_table(lookup, channels, "table:channels", "Over other media than ROS"):
+    if table := deployment_tables.make_topic_table(lookup, channels, "table:channels", "Over other media than ROS"):
         yield table
 
 
@@ -223,10 +223,10 @@ def _shortest_period(node: Node) -> str | None:
 
 def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
     facts = [
-        ("Message", architecture_tables.message_cell(lookup, conceptual_type)),
+        ("Message", type_tables.message_cell(lookup, conceptual_type)),
         ("Size", _size_cell(lookup, conceptual_type)),
         ("Deprecated", write_deprecation(lookup.architecture, "type", conceptual_type)),
-        ("Remarks", inline_text.to_inlines(architecture_tables.describe_mapping(conceptual_type))),
+        ("Remarks", inline_text.to_inlines(type_tables.describe_mapping(conceptual_type))),
         *list_annotation_facts(lookup, conceptual_type),
     ]
     # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.

@@ -27,7 +27,7 @@ from archgen.views.shapes import (
     Table,
     Text,
 )
-from archgen.views.tables import architecture_tables, project_growth, requirement_tables
+from archgen.views.tables import finding_tables, project_growth, requirement_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 from archgen.views.timing import chain_status, timing_tables, value_format
 
@@ -159,7 +159,7 @@ def _point_card(lookup: Lookup) -> DashboardCard:
     findings = sorted(lookup.findings, key=lambda finding: -finding.effective_severity.rank)
     points: list[Inlines] = [
         (
-            *architecture_tables.finding_chip(finding),
+            *finding_tables.finding_chip(finding),
             Text(" "),
             *element_references.owner_cell(lookup.architecture, finding.element),
             *_on_new_line(element_references.link_message(lookup.architecture, finding)),

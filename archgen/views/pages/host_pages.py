@@ -14,7 +14,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import FigureFilter
 from archgen.views.shapes import Block, Facts, Inlines, Markdown, Page, Section, Text
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import deployment_tables
 from archgen.views.timing import element_timing
 from archgen.views.timing.host_waterfall import make_host_waterfall
 
@@ -75,7 +75,7 @@ def _list_link_facts(lookup: Lookup, host: Host) -> Iterator[tuple[str, Inlines]
     yield (
         "Devices",
         inline_text.join_inlines(
-            inline_text.to_inlines(*architecture_tables.device_link(lookup, device), f" (on {link.title})")
+            inline_text.to_inlines(*deployment_tables.device_link(lookup, device), f" (on {link.title})")
             for link in links
             for device in link.devices
         ),

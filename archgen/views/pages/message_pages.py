@@ -27,7 +27,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
 )
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import deployment_tables
 from archgen.views.used_messages import collect_messages, list_fields
 
 T = TypeVar("T")
@@ -181,7 +181,7 @@ class MessagePages:
     def _make_use_blocks(self, message: str) -> Iterator[Block]:
         """Yield who sends and reads it: on which topics, and by which ports of components."""
         topics = self._topics_by_message.get(message, ())
-        topic_table = architecture_tables.make_topic_table(
+        topic_table = deployment_tables.make_topic_table(
             self._lookup, topics, f"table:carriers/{message}", "Topics, services and actions that carry it"
         )
         if topic_table:

@@ -18,17 +18,20 @@ from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
-from archgen.views.pages.component_sections import ComponentSections
+from archgen.views.pages.component_sections import ReportSections
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.sequences.sequence_blocks import make_use_case_sections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 from archgen.views.tables import (
-    architecture_tables,
+    deployment_tables,
+    finding_tables,
     frame_table,
+    functional_tables,
     project_growth,
     property_tables,
     requirement_tables,
     start_table,
+    type_tables,
 )
 
 DetailLevel = Literal["functional", "implementation"]
@@ -110,7 +113,7 @@ def make_notices(lookup: Lookup, edition: DocumentEdition) -> tuple[Paragraph, .
     if edition.level == "functional":
         paragraphs.append(Paragraph(inline_text.to_inlines("This document shows the functional level only."), "note"))
     if edition.has_errors:
-        error_text = f"The architecture has errors ({architecture_tables.describe_severities(lookup.findings)}). What is sound is shown all the same."
+        error_text = f"The architecture has errors ({finding_tables.describe_severities(lookup.findings)}). What is sound is shown all the same."
         paragraphs.append(Paragraph(inline_text.to_inlines(error_text), "error"))
     return tuple(paragraphs)
 
@@ -151,7 +154,7 @@ class _ChapterMaker:
     def make_groups(self) -> list[Section]:
         """Make one section for each group, with its components and their nodes; then one for all component types."""
         shows_nodes = self.edition.level == "implementation"
-        return ComponentSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
+        return ReportSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
 
     def _keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
         """Drop figures that are not among this document's drawings."""
@@ -188,7 +191,7 @@ class _ChapterMaker:
         blocks = [
             *self._make_figures("hosts", "ros"),
             *_drop_missing(
-                architecture_tables.make_host_table(self.lookup), architecture_tables.make_link_table(self.lookup)
+                deployment_tables.make_host_table(self.lookup), deployment_tables.make_link_table(self.lookup)
             ),
         ]
         return [Section("page:hosts", "Hosts and links", tuple(blocks), page_break=True)] if blocks else []
@@ -231,13 +234,13 @@ class _ChapterMaker:
 
     def make_types(self) -> list[Section]:
         """Make the appendix that maps conceptual types to messages."""
-        return self._make_appendix("types", "Type mapping", architecture_tables.make_type_table(self.lookup))
+        return self._make_appendix("types", "Type mapping", type_tables.make_type_table(self.lookup))
 
     def make_connections(self) -> list[Section]:
         """Make the appendix of connections."""
-        shown_connections = architecture_tables.shown_connections(self.lookup)
+        shown_connections = functional_tables.shown_connections(self.lookup)
         return self._make_appendix(
-            "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
+            "connections", "Connections", functional_tables.make_connection_table(self.lookup, shown_connections)
         )
 
     def make_requirements(self) -> list[Section]:
@@ -266,13 +269,13 @@ class _ChapterMaker:
     def make_open_points(self) -> list[Section]:
         """Make the appendix of findings."""
         summary = Paragraph(
-            inline_text.to_inlines(f"The check finds {architecture_tables.describe_severities(self.lookup.findings)}.")
+            inline_text.to_inlines(f"The check finds {finding_tables.describe_severities(self.lookup.findings)}.")
         )
         return self._make_appendix(
             "findings",
             "Open points",
             summary,
-            architecture_tables.make_finding_table(self.lookup, self.lookup.findings),
+            finding_tables.make_finding_table(self.lookup, self.lookup.findings),
         )
 
     def make_statistics(self) -> list[Section]:

@@ -34,12 +34,15 @@ from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import (
-    architecture_tables,
+    deployment_tables,
+    finding_tables,
     frame_table,
+    functional_tables,
     project_growth,
     property_tables,
     requirement_tables,
     start_table,
+    type_tables,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.slack_waterfall import make_slack_waterfall
@@ -116,7 +119,7 @@ class PageMaker:
     def message_pages(self) -> MessagePages:
         """Return the maker of the pages on messages: those of shown types and, with the ROS side, of shown topics."""
         topics = context_pages.shown_topics(self.lookup) if self.edition.level == "implementation" else ()
-        return MessagePages(self.lookup, architecture_tables.shown_types(self.lookup), topics)
+        return MessagePages(self.lookup, type_tables.shown_types(self.lookup), topics)
 
     def make_figures(self, *names: str) -> Iterator[Figure]:
         """Yield figures for those of the named drawings that exist."""
@@ -131,7 +134,7 @@ class PageMaker:
         blocks: list[Block] = list(self.make_figures("overview"))
         blocks += [Markdown(project.description)] if project.description else []
         blocks.append(Facts(tuple(make_title_facts(self.lookup, self.edition))))
-        blocks += [table] if (table := architecture_tables.make_group_table(self.lookup)) else []
+        blocks += [table] if (table := functional_tables.make_group_table(self.lookup)) else []
         section = Section("page:index", project.title, tuple(blocks))
         return Page(
             "index.html",
@@ -169,7 +172,7 @@ class PageMaker:
     def _finding_sections(self, element_id: str) -> list[Section]:
         """Return a section with the findings about an element, or nothing."""
         findings = self.lookup.findings_of.get(element_id, ())
-        table = architecture_tables.make_finding_table(self.lookup, findings, f"table:findings/{element_id}")
+        table = finding_tables.make_finding_table(self.lookup, findings, f"table:findings/{element_id}")
         return [Section(f"findings:{element_id}", "Open points", (table,))] if table else []
 
     def node_pages(self) -> Iterator[Page]:
@@ -203,7 +206,7 @@ class PageMaker:
         crumbs = (HOME_CRUMB, ("Open points", "page:findings"))
         for name, text in self.edition.rule_pages.items():
             findings = [finding for finding in self.lookup.findings if finding.rule == name]
-            table = architecture_tables.make_finding_table(self.lookup, findings, f"table:rule/{name}")
+            table = finding_tables.make_finding_table(self.lookup, findings, f"table:rule/{name}")
             section = Section(f"rule:{name}", name, (*((table,) if table else ()), Markdown(text)))
             yield Page(f"rules/{name}.html", section.anchor, name, "rules", section, crumbs, "Rule")
 
@@ -219,11 +222,11 @@ class PageMaker:
         yield self._spanning_page(
             "components", "Components", *self.make_figures("components"), component_table if components else None
         )
-        shown_connections = architecture_tables.shown_connections(self.lookup)
+        shown_connections = functional_tables.shown_connections(self.lookup)
         yield self._spanning_page(
-            "connections", "Connections", architecture_tables.make_connection_table(self.lookup, shown_connections)
+            "connections", "Connections", functional_tables.make_connection_table(self.lookup, shown_connections)
         )
-        yield self._spanning_page("types", "Types", architecture_tables.make_type_table(self.lookup))
+        yield self._spanning_page("types", "Types", type_tables.make_type_table(self.lookup))
         yield self._spanning_page("messages", "Messages", self.message_pages().make_list())
         requirement_table = requirement_tables.make_requirement_table(
             self.lookup, requirement_tables.shown_requirements(self.lookup)
@@ -236,7 +239,7 @@ class PageMaker:
         )
         summary = Paragraph(
             inline_text.to_inlines(
-                f"archgen finds {architecture_tables.describe_severities(self.lookup.findings)} in this architecture."
+                f"archgen finds {finding_tables.describe_severities(self.lookup.findings)} in this architecture."
             )
         )
         chain_points = dashboard.make_chain_points(self.lookup)
@@ -246,7 +249,7 @@ class PageMaker:
             "findings",
             "Open points",
             summary,
-            architecture_tables.make_finding_table(self.lookup, self.lookup.findings),
+            finding_tables.make_finding_table(self.lookup, self.lookup.findings),
             *(chain_blocks if chain_points else ()),
         )
         growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
@@ -272,8 +275,8 @@ class PageMaker:
                 "topics", "Topics, services and actions", *context_pages.make_topic_tables(self.lookup)
             )
             host_tables = (
-                architecture_tables.make_host_table(self.lookup),
-                architecture_tables.make_link_table(self.lookup),
+                deployment_tables.make_host_table(self.lookup),
+                deployment_tables.make_link_table(self.lookup),
             )
             yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
             if start_blocks := start_table.make_start_blocks(self.lookup):

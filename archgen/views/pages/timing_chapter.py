@@ -8,7 +8,7 @@ from archgen.views import inline_text
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Figure, Paragraph, Section
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import functional_tables
 from archgen.views.timing import element_timing, interaction_timing, timing_tables, timing_verdicts, use_tables
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -84,7 +84,7 @@ def make_timing_blocks(
 
 def make_chain_overview(lookup: Lookup) -> tuple[Block, ...]:
     """Return the table of all chains, with their bounds where the timing analysis found some."""
-    table = architecture_tables.make_chain_table(lookup, lookup.architecture.chains.values())
+    table = functional_tables.make_chain_table(lookup, lookup.architecture.chains.values())
     if lookup.timing is not None and lookup.timing.chains:
         table = timing_verdicts.make_bound_table(lookup, lookup.timing)
     lead = Paragraph(

@@ -12,7 +12,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages.context_pages import shown_topics
 from archgen.views.report.ros_blocks import shorten_message
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text
-from archgen.views.tables import architecture_tables
+from archgen.views.tables import type_tables
 from archgen.views.used_messages import collect_messages
 
 _PART_TITLES = {"response": "answer"}
@@ -24,7 +24,7 @@ def make_message_annex(lookup: Lookup) -> Section | None:
     Those of ROS's packages are left out: each distribution documents them, and they would be three times as many.
     """
     interfaces = lookup.architecture.interfaces
-    used_messages = collect_messages(lookup.architecture, architecture_tables.shown_types(lookup), shown_topics(lookup))
+    used_messages = collect_messages(lookup.architecture, type_tables.shown_types(lookup), shown_topics(lookup))
     own_messages = [
         message
         for message in sorted(used_messages)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
+from archgen.frozen import replace
 from archgen.model.architecture import UseCase
 from archgen.model.port_media import is_physical
 from archgen.model.step_connections import ConnectedStep
@@ -21,9 +22,17 @@ _PRINTED_LIFELINES = 6
 """So many stand side by side on a page of the report."""
 _PRINTED_STEPS = 12
 """So many steps of a sequence stand on a page of the report."""
+_LEGEND_KEYS: dict[MessageStyle, str] = {
+    "data": "step:data",
+    "service": "step:service",
+    "action": "step:action",
+    "physical": "physical",
+    "inner": "step:inner",
+    "broken": "step:broken",
+}
+"""How the legend calls the styles of messages, in its order."""
 _MAX_TEXT = 160
 """Characters of what is said that stand beside an arrow; the table has all of it."""
-_LEGEND_ORDER: tuple[MessageStyle, ...] = ("data", "service", "action", "physical", "inner", "broken")
 
 
 def make_sequence_charts(lookup: Lookup, components: Collection[str] | None = None) -> Iterator[SequenceChart]:
@@ -42,15 +51,21 @@ def make_sequence_chart(lookup: Lookup, use_case_id: str) -> SequenceChart:
 
 
 def make_printed_charts(lookup: Lookup, use_case_id: str) -> tuple[SequenceChart, ...]:
-    """Return the sequence of a use case in pieces that fit on a page each; a short one is the whole sequence itself."""
+    """Return the sequence of a use case in pieces that fit on paper; a short one is the whole sequence itself.
+
+    Three pieces stand on a page if only the last one has the legend, and what the steps run along is left to the table below.
+    """
     pieces = list(_cut_steps(lookup.steps.by_use_case[use_case_id]))
     if len(pieces) == 1:
         return (make_sequence_chart(lookup, use_case_id),)
     use_case = lookup.architecture.use_cases[use_case_id]
-    return tuple(
-        _draw_steps(lookup, use_case, f"{CHART_PREFIX}{use_case_id}/{number}", piece)
+    charts = [
+        _draw_steps(lookup, use_case, f"{CHART_PREFIX}{use_case_id}/{number}", piece, is_printed=True)
         for number, piece in enumerate(pieces, 1)
-    )
+    ]
+    used_keys = {key for chart in charts for key in chart.legend}
+    legend = tuple(key for key in (*_LEGEND_KEYS.values(), "external") if key in used_keys)
+    return (*(replace(chart, legend=()) for chart in charts[:-1]), replace(charts[-1], legend=legend))
 
 
 def _cut_steps(steps: Sequence[ConnectedStep]) -> Iterator[tuple[ConnectedStep, ...]]:
@@ -75,7 +90,9 @@ def _cut_steps(steps: Sequence[ConnectedStep]) -> Iterator[tuple[ConnectedStep, 
         yield tuple(steps[start:end])
 
 
-def _draw_steps(lookup: Lookup, use_case: UseCase, chart_id: str, steps: Sequence[ConnectedStep]) -> SequenceChart:
+def _draw_steps(
+    lookup: Lookup, use_case: UseCase, chart_id: str, steps: Sequence[ConnectedStep], *, is_printed: bool = False
+) -> SequenceChart:
     positions: dict[str, int] = {}
     lifelines: list[Lifeline] = []
     for each in steps:
@@ -83,12 +100,12 @@ def _draw_steps(lookup: Lookup, use_case: UseCase, chart_id: str, steps: Sequenc
             if end.participant not in positions:
                 positions[end.participant] = len(lifelines)
                 lifelines.append(_make_lifeline(lookup, use_case, end))
-    messages = tuple(_make_message(lookup, use_case, each, positions) for each in steps)
+    messages = tuple(_make_message(lookup, use_case, each, positions, is_printed=is_printed) for each in steps)
     styles = {message.style for message in messages}
     numbers = f"steps {steps[0].number} to {steps[-1].number}" if len(steps) > 1 else f"step {steps[0].number}"
     is_whole = len(steps) == len(use_case.steps)
     title = use_case.title if is_whole else f"{use_case.title}: {numbers}"
-    legend = tuple(_LEGEND_KEYS[style] for style in _LEGEND_ORDER if style in styles)
+    legend = tuple(key for style, key in _LEGEND_KEYS.items() if style in styles)
     has_outside = any(lifeline.kind == "actor" for lifeline in lifelines)
     total = short_figures.shorten_bounds(step_words.describe_total(lookup, use_case.id)) if is_whole else ""
     return SequenceChart(
@@ -100,16 +117,6 @@ def _draw_steps(lookup: Lookup, use_case: UseCase, chart_id: str, steps: Sequenc
         notes=(f"All steps together: {total}. What stands outside takes its own time.",) if total else (),
         alt=_describe_chart(use_case, lifelines, messages),
     )
-
-
-_LEGEND_KEYS: dict[MessageStyle, str] = {
-    "data": "step:data",
-    "service": "step:service",
-    "action": "step:action",
-    "physical": "physical",
-    "inner": "step:inner",
-    "broken": "step:broken",
-}
 
 
 def _make_lifeline(lookup: Lookup, use_case: UseCase, end: StepEnd) -> Lifeline:
@@ -124,7 +131,7 @@ def _make_lifeline(lookup: Lookup, use_case: UseCase, end: StepEnd) -> Lifeline:
 
 
 def _make_message(
-    lookup: Lookup, use_case: UseCase, connected: ConnectedStep, positions: dict[str, int]
+    lookup: Lookup, use_case: UseCase, connected: ConnectedStep, positions: dict[str, int], *, is_printed: bool
 ) -> SequenceMessage:
     step = connected.step
     text = " ".join((step.say or "").split())
@@ -132,7 +139,7 @@ def _make_message(
     carriers = list(step_words.list_carriers(lookup, connected))
     shown = ", ".join(carriers[:2]) + (f" and {len(carriers) - 2} more" if len(carriers) > 2 else "")  # noqa: PLR2004
     time = step_words.describe_step_time(lookup, use_case.id, connected.number)
-    lines = (shown, short_figures.shorten_bounds(time))
+    lines = ("" if is_printed and text else shown, short_figures.shorten_bounds(time))
     detail = "no connection" if connected.is_broken else "\n".join(filter(None, lines))
     tooltip = "\n".join(filter(None, (text, ", ".join(carriers), time)))
     return SequenceMessage(

@@ -13,7 +13,7 @@ from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_o
 from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
-from archgen.views.tables import architecture_tables, requirement_tables
+from archgen.views.tables import functional_tables, requirement_tables, type_tables
 from archgen.views.tables.start_rows import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
@@ -46,7 +46,7 @@ def _list_further_columns(lookup: Lookup, kind: str) -> Iterator[tuple[str, list
     if kind == "topics" and lookup.architecture.channels:
         yield "medium", [word_of_medium(carrier) for carrier in _list_shown_carriers(lookup)]
     if kind == "connections":
-        connections = architecture_tables.shown_connections(lookup)
+        connections = functional_tables.shown_connections(lookup)
         yield "through", [connection.shell_port or "" for connection in connections]
         yield "medium", list(_describe_media(lookup, connections))
         words = [_describe_words(lookup, connection) for connection in connections]
@@ -139,7 +139,7 @@ def _group_rows(lookup: Lookup) -> Iterator[TextRow]:
 
 def _connection_rows(lookup: Lookup) -> Iterator[TextRow]:
     architecture = lookup.architecture
-    for c in architecture_tables.shown_connections(lookup):
+    for c in functional_tables.shown_connections(lookup):
         outputs = [architecture.outputs[output] for output in c.outputs]
         types = ", ".join(dict.fromkeys(output.type or "?" for output in outputs))
         messages = ", ".join(
@@ -179,12 +179,12 @@ def _list_shown_carriers(lookup: Lookup) -> list[Topic]:
 
 
 def _type_rows(lookup: Lookup) -> Iterator[TextRow]:
-    for conceptual_type in architecture_tables.shown_types(lookup):
+    for conceptual_type in type_tables.shown_types(lookup):
         yield (
             conceptual_type.name,
             conceptual_type.message or "",
             lookup.format_size(conceptual_type),
-            architecture_tables.describe_mapping(conceptual_type),
+            type_tables.describe_mapping(conceptual_type),
         )
 
 

@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
-from archgen.timing.analysis import ChainResult, ResponseTier
+from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text

@@ -8,11 +8,11 @@ from archgen import pipeline
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.message_pages import MessagePages
-from archgen.views.resolved_record import make_record
+from archgen.views.records.resolved_record import make_record
+from archgen.views.records.type_record import record_type
 from archgen.views.search.implementation_entries import make_message_entries
 from archgen.views.shapes import Facts, Table
-from archgen.views.tables import architecture_tables, type_fields
-from archgen.views.type_record import record_type
+from archgen.views.tables import type_fields, type_tables
 
 ROBOT = """\
 archgen: 1
@@ -73,7 +73,7 @@ def test_cards_and_lists(lookup: Lookup) -> None:
     assert dict(make_card(lookup, "type", "Mode").facts)["values"] == "IDLE, RUN"
     assert dict(make_card(lookup, "type", "Fetch").lists)["fields"][0] == "request.what: string"
     types = lookup.architecture.types
-    assert [architecture_tables.describe_mapping(types[name]) for name in ("Mode", "Box", "Box<Mode>")] == [
+    assert [type_tables.describe_mapping(types[name]) for name in ("Mode", "Box", "Box<Mode>")] == [
         "one of IDLE, RUN",
         "generic in T",
         "",

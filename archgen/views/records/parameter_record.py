@@ -8,7 +8,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.parameter import Operation, Parameter, ParameterValue
 from archgen.model.parameter_values import find_effective_parameters
-from archgen.views.record_values import drop_unknown, pick_fields, to_plain
+from archgen.views.records.record_values import drop_unknown, pick_fields, to_plain
 
 
 def record_parameter(parameter: Parameter) -> dict[str, object]:

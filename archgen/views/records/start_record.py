@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.start_up import StartUp
-from archgen.views.record_values import drop_unknown, record_quantity
+from archgen.views.records.record_values import drop_unknown, record_quantity
 
 
 def record_start(start: StartUp | None) -> dict[str, object]:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from archgen.bringup.plan_shapes import DroppedWait, RosLaunch, StartPlan, StartStep
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
-from archgen.views.record_values import drop_unknown, record_quantity, to_plain
+from archgen.views.records.record_values import drop_unknown, record_quantity, to_plain
 from archgen.views.start_phrases import NamedWait, name_waits
 
 VERSION = 1

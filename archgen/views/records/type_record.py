@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 
 from archgen.model.known_interfaces import InterfaceField, Interfaces
 from archgen.model.message_types import ConceptualType, DataField
-from archgen.views.promise_record import record_life
-from archgen.views.record_values import drop_unknown, pick_fields, record_quantity
+from archgen.views.records.promise_record import record_life
+from archgen.views.records.record_values import drop_unknown, pick_fields, record_quantity
 
 _PART_NAMES = {"request": ("request", "goal"), "response": ("response", "result"), "feedback": ("feedback",)}
 """What definitions of services and actions call the parts."""

@@ -7,7 +7,7 @@ import math
 from archgen.model.component import ComponentType, Output
 from archgen.model.message_types import ConceptualType
 from archgen.model.promise import Deprecation, Promise, describe_deprecation, format_range
-from archgen.views.record_values import drop_unknown, record_quantity
+from archgen.views.records.record_values import drop_unknown, record_quantity
 
 
 def record_words(output: Output) -> dict[str, object]:

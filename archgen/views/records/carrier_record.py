@@ -8,7 +8,7 @@ from dataclasses import asdict
 from archgen.model.node import Endpoint, Qos, Topic
 from archgen.model.port_media import ROS, name_on_medium
 from archgen.views.lookup import Lookup
-from archgen.views.record_values import drop_unknown, record_quantity
+from archgen.views.records.record_values import drop_unknown, record_quantity
 
 
 def record_carriers(lookup: Lookup) -> dict[str, object]:

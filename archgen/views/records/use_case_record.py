@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.views.lookup import Lookup
-from archgen.views.record_values import drop_unknown, pick_fields, record_annotations
+from archgen.views.records.record_values import drop_unknown, pick_fields, record_annotations
 
 
 def record_use_cases(lookup: Lookup) -> dict[str, object]:

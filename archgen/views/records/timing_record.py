@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.declared_timing import Timing, Trigger
-from archgen.views.record_values import drop_unknown, record_quantity, to_number
+from archgen.views.records.record_values import drop_unknown, record_quantity, to_number
 
 
 def record_timing(timing: Timing | None) -> dict[str, object] | None:

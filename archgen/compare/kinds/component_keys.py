@@ -1,0 +1,165 @@
+"""How the values of components are read for comparing, and by what marks a component is recognised."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from archgen.compare.compared_elements import SOME_PORTS
+from archgen.compare.element_relations import ElementRelations, ports_of
+from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.kinds.shared_keys import (
+    TIMING_KEYS,
+    key_values,
+    mark_values,
+)
+from archgen.compare.normal_values import freeze_value, normalize_text, normalize_title
+from archgen.model.component import Component
+from archgen.model.generic_names import read_generic_name
+from archgen.model.parameter import format_parameter
+from archgen.model.path_resolver import title_from_id
+
+
+def describe_ports(*, is_known: bool, ports: Mapping[str, object]) -> str | None:
+    """Return whether there are ports: these are elements of their own."""
+    return SOME_PORTS if ports else "none" if is_known else None
+
+
+def read_performance(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the performance by `id.key`: title, accuracy and execution time."""
+    return {
+        f"{performance.id}.{key}": value
+        for performance in component.performance
+        for key, value in (
+            ("title", normalize_title(performance.id, performance.title)),
+            ("accuracy", performance.accuracy),
+            ("execution_time", performance.execution_time),
+        )
+    }
+
+
+def read_node_timing(component: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return a component's timing: that of its node if it has exactly one, else what it says itself."""
+    component_nodes = context.nodes_by_component.get(component.id, [])
+    has_one_node = (
+        len(component_nodes) == 1
+        and context.matched_ids.common_id("component", component.id) not in context.split_components
+    )
+    timing = component_nodes[0].timing.get(component.id) if has_one_node else component.timing
+    return key_values(TIMING_KEYS, timing, context) if timing else {}
+
+
+def read_parameters(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the declared parameters: each value by the parameter's name, what else is declared by `name:key`."""
+    values: dict[str, object] = {}
+    for name, parameter in component.parameters.items():
+        # Without a value there is a parameter all the same.
+        values[name] = _freeze_parameter(parameter.value)
+        facets = {
+            "type": parameter.type,
+            "unit": parameter.unit,
+            "range": parameter.range and " to ".join(map(format_parameter, parameter.range)),
+            "choices": parameter.choices and ", ".join(map(format_parameter, parameter.choices)),
+            "description": normalize_text(parameter.description),
+            "read_only": parameter.read_only or None,
+            "visibility": parameter.visibility,
+            "from": parameter.handed_from,
+            "hints": format_parameter(parameter.hints) if parameter.hints else None,
+        }
+        values |= {f"{name}:{key}": freeze_value(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _freeze_parameter(value: object) -> object:
+    """Return a value for comparing; a list as a whole, since sentences would tell its items apart."""
+    if value is None:
+        return "no value"
+    return format_parameter(value) if isinstance(value, list) else freeze_value(value)
+
+
+def read_operations(component: Component, _context: ReadContext) -> Mapping[str, object]:
+    """Return the operations: whether there is one by its id, what is said of it by `id:key`."""
+    values: dict[str, object] = {}
+    for name, operation in component.operations.items():
+        values[name] = "there"
+        facets = {
+            "title": None if operation.title in {title_from_id(name), name} else operation.title,
+            "request": operation.request,
+            "response": operation.response,
+            "call": operation.call,
+            "visibility": operation.visibility,
+            "description": normalize_text(operation.description),
+        }
+        values |= {f"{name}:{key}": _describe_types(value) for key, value in facets.items() if value is not None}
+    return values
+
+
+def _describe_types(value: str | Mapping[str, str]) -> str:
+    return value if isinstance(value, str) else ", ".join(f"{name}: {type_name}" for name, type_name in value.items())
+
+
+def is_mapped(component: Component, context: ReadContext) -> bool | None:
+    """Whether a node that is written implements a component; None where none does."""
+    return any(node.written for node in context.nodes_by_component.get(component.id, ())) or None
+
+
+def mark_ports(_relations: ElementRelations, component: Component) -> frozenset[str]:
+    """Return the names of a component's ports with their direction, and their types."""
+    # The direction is part of the mark, so that an input and an output of one name are not alike.
+    ports = [f"> {port.name}" for port in component.inputs.values()]
+    ports += [f"{port.name} >" for port in component.outputs.values()]
+    return mark_values(*ports, *(port.type for port in ports_of(component)))
+
+
+def mark_neighbours(relations: ElementRelations, component: Component) -> frozenset[str]:
+    """Return the common ids of the components that a component reads from or is read by."""
+    sources = [source for port in component.inputs.values() for source in relations.outputs_by_input[port.id]]
+    readers = [reader for port in component.outputs.values() for reader in relations.readers_by_output[port.id]]
+    return relations.common_ids("component", list_port_holders([*sources, *readers]))
+
+
+def list_last_names(component_ids: Sequence[str]) -> list[str]:
+    """Return the last part of each component's id."""
+    return [component_id.rpartition(".")[2] for component_id in component_ids]
+
+
+def list_port_holders(ports: Sequence[str]) -> list[str]:
+    """Return the id of the component that has each port."""
+    return [port.rpartition(".")[0] for port in ports]
+
+
+def mark_performance(_relations: ElementRelations, component: Component) -> frozenset[str]:
+    """Return each performance of a component as one mark."""
+    return mark_values(
+        *(
+            f"{performance.id} {performance.accuracy} {performance.execution_time}"
+            for performance in component.performance
+        )
+    )
+
+
+def mark_timing(_relations: ElementRelations, component: Component) -> frozenset[str]:
+    """Return behaviour, rate and longest execution time of a component."""
+    timing = component.timing
+    return mark_values(timing.behaviour, timing.rate, timing.wcet) if timing else frozenset()
+
+
+def name_common_type(type_text: str | None, context: ReadContext) -> str | None:
+    """Return the name of a component type with common ids in it, `lib.filter<Pose>`; None for none."""
+    return None if type_text is None else _name_with_common_ids(type_text.strip(), "component_type", context)
+
+
+def _name_with_common_ids(text: str, kind: str, context: ReadContext) -> str:
+    name, arguments = read_generic_name(text)
+    bound_names = ", ".join(_name_with_common_ids(each, "type", context) for each in arguments)
+    return f"{context.common_id(kind, name)}<{bound_names}>" if arguments else str(context.common_id(kind, name))
+
+
+def read_component_type(component: Component, context: ReadContext) -> str | None:
+    """Return the component type that a component is made from; one that is exactly it says so."""
+    type_name = name_common_type(component.component_type, context)
+    return f"exactly {type_name}" if component.is_reference else type_name
+
+
+def read_claimed_timing(shell: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return what a composed component says of the timing of the whole."""
+    return key_values(TIMING_KEYS, shell.timing, context) if shell.timing else {}

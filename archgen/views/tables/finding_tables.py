@@ -1,0 +1,80 @@
+"""Tables of findings, their states as chips, and how many there are in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
+from archgen.views import element_references, inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Column, Inlines, Status, Table, Text
+
+_SEVERITY_STATES: Mapping[Severity, Status] = {
+    Severity.ERROR: "error",
+    Severity.WARNING: "warning",
+    Severity.NOTE: "note",
+    Severity.OFF: "note",
+}
+
+
+def make_finding_table(
+    lookup: Lookup, findings: Iterable[Diagnostic], anchor: str = "table:open_points"
+) -> Table | None:
+    """List findings with their help, who owns what they are about, their place and their rule; errors first."""
+    rows = tuple(
+        (
+            severity_chip(finding),
+            inline_text.join_lines(_finding_lines(lookup, finding)),
+            element_references.owner_cell(lookup.architecture, finding.element),
+            element_references.place_cell(lookup, finding),
+            inline_text.to_inlines(Text(finding.rule, ref=f"rule:{finding.rule}")),
+        )
+        for finding in sorted(findings, key=lambda each: -each.effective_severity.rank)
+    )
+    columns = (
+        Column("Severity", 0.6),
+        Column("Finding", 3),
+        Column("Owner", 0.8),
+        Column("Place", 1.3),
+        Column("Rule", 1),
+    )
+    return Table(anchor, "Open points", columns, rows) if rows else None
+
+
+_RULE_STATES: Mapping[str, tuple[str, Status]] = {
+    "uncovered-requirement": ("uncovered", "uncovered"),
+    "unjustified-component": ("unjustified", "uncovered"),
+    "unjustified-node": ("unjustified", "uncovered"),
+    "unread-output": ("unread", "warning"),
+}
+"""Rules whose findings are states of their own; the others show how serious they are."""
+
+
+def finding_chip(finding: Diagnostic) -> Inlines:
+    """Return the state that a finding tells as a chip: the rule's own word, else its severity."""
+    severity = finding.effective_severity
+    if severity is Severity.WARNING and finding.rule in _RULE_STATES:
+        word, status = _RULE_STATES[finding.rule]
+        return (Text(word, status=status),)
+    return severity_chip(finding)
+
+
+def severity_chip(finding: Diagnostic) -> Inlines:
+    """Return how serious a finding is, as a chip."""
+    severity = finding.effective_severity
+    return (Text(severity, strong=severity is Severity.ERROR, status=_SEVERITY_STATES[severity]),)
+
+
+def _finding_lines(lookup: Lookup, finding: Diagnostic) -> list[Inlines]:
+    """Return the message of a finding and, muted, its help."""
+    lines = (
+        element_references.link_message(lookup.architecture, finding),
+        element_references.link_help(lookup.architecture, finding),
+    )
+    return [line for line in lines if line]
+
+
+def describe_severities(findings: Iterable[Diagnostic]) -> str:
+    """Count findings in words: `1 error, 2 warnings and 3 notes`, or `nothing`."""
+    return join_words(phrase_severity_counts(findings)) or "nothing"

@@ -1,0 +1,122 @@
+"""Tables of the functional level: groups, connections and chains of effect.
+
+Each function returns None where there would be no rows, because a `Table` without rows must not exist.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from archgen.model.architecture import Chain
+from archgen.model.component import Connection
+from archgen.model.component_nesting import find_component
+from archgen.model.port_media import label_of_medium
+from archgen.views import element_references, inline_text
+from archgen.views.elements.functional_level import first_sentence
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Column, Inlines, Table, Text
+
+
+def make_group_table(lookup: Lookup) -> Table | None:
+    """List the shown groups with owners, size and purpose."""
+    architecture = lookup.architecture
+    rows = tuple(
+        (
+            inline_text.to_inlines(inline_text.group_link(architecture, name)),
+            inline_text.owner_links(architecture, architecture.groups[name].owners),
+            inline_text.to_inlines(str(len(architecture.groups[name].components))),
+            inline_text.value_or_unknown(first_sentence(architecture.groups[name].description)),
+        )
+        for name in lookup.shown_groups()
+    )
+    columns = (Column("Group", 1.1), Column("Owner"), Column("Components", 0.6, "right"), Column("Purpose", 2.5))
+    return Table("table:groups", "Groups of components", columns, rows) if rows else None
+
+
+def make_connection_table(
+    lookup: Lookup, selected_connections: Iterable[Connection], anchor: str = "table:connections"
+) -> Table | None:
+    """List connections: input, source, type, message and number of edges."""
+    architecture = lookup.architecture
+    rows = tuple(
+        (
+            inline_text.port_link(architecture, architecture.inputs[connection.input]),
+            inline_text.describe_source(architecture, connection),
+            _type_cell(lookup, connection),
+            _message_cell(lookup, connection),
+            inline_text.to_inlines(str(len(connection.outputs))),
+        )
+        for connection in selected_connections
+    )
+    columns = (
+        Column("Input", 1.6),
+        Column("Comes from", 1.6),
+        Column("Type", 1.2),
+        Column("Message", 1.6),
+        Column("Edges", 0.5, "right"),
+    )
+    return Table(anchor, "All connections", columns, rows, wide=True) if rows else None
+
+
+def _type_cell(lookup: Lookup, connection: Connection) -> Inlines:
+    names = dict.fromkeys(lookup.architecture.outputs[output].type for output in connection.outputs)
+    return inline_text.join_inlines(inline_text.type_link(name) for name in names)
+
+
+def _message_cell(lookup: Lookup, connection: Connection) -> Inlines:
+    """Return the messages that a connection carries."""
+    architecture = lookup.architecture
+    outputs = [architecture.outputs[output] for output in connection.outputs]
+    cells: dict[str, Inlines] = {}
+    for output in outputs:
+        name = architecture.message_of(output)
+        # What is no ROS has a remark in place of a message, hence neither code nor a link.
+        remark = label_of_medium(output)
+        link = (element_references.message_link(name),) if name else inline_text.UNKNOWN_INLINES
+        cells[remark or name or ""] = (Text(remark),) if remark else link
+    return inline_text.join_inlines(cells.values())
+
+
+def shown_connections(lookup: Lookup) -> list[Connection]:
+    """Return the connections with at least one end in scope."""
+    architecture = lookup.architecture
+    return [
+        connection
+        for connection in architecture.connections
+        if lookup.scope.shows_component(architecture.inputs[connection.input].component)
+        or any(lookup.scope.shows_component(architecture.outputs[output].component) for output in connection.outputs)
+    ]
+
+
+def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table | None:
+    """List chains of effect with their deadlines."""
+    architecture = lookup.architecture
+    chain_list = list(selected_chains)
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(chain.title, ref=f"chain:{chain.id}")),
+            inline_text.join_inlines((waypoint_link(lookup, point.kind, point.id) for point in chain.through), " → "),
+            inline_text.quantity_to_inlines(chain.deadline),
+            inline_text.join_inlines(
+                inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
+            ),
+        )
+        for chain in chain_list
+    )
+    columns = (Column("Chain"), Column("Through", 3), Column("Deadline", 0.7, "right"), Column("Requirements", 0.8))
+    # Rows take references only in this table. Where timing judged the chains, `make_bound_table` replaces it, and each
+    # chain has a section with this anchor; anchors must be unique in a document.
+    anchors = tuple(f"chain:{chain.id}" for chain in chain_list)
+    return Table("table:chains", "Chains of effect and their deadlines", columns, rows, anchors) if rows else None
+
+
+def waypoint_link(lookup: Lookup, kind: str, element_id: str) -> Inlines:
+    """Link to one element of a chain: a node, a component or an output."""
+    architecture = lookup.architecture
+    if kind == "node":
+        return (inline_text.node_link(architecture.nodes[element_id]),)
+    if kind == "component":
+        return (inline_text.component_link(find_component(architecture, element_id)),)
+    output = architecture.outputs.get(element_id)
+    holder, _, name = element_id.rpartition(".")
+    return inline_text.port_link(architecture, output or architecture.shells[holder].outputs[name])
