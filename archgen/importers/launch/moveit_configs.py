@@ -108,8 +108,10 @@ class _MoveItReader:
             merged |= parts.get(name, {})
         for key, limits in parts.get("pilz_cartesian_limits", {}).items():
             known = merged.get(key)
-            both = isinstance(known, dict) and isinstance(limits, dict)
-            merged[key] = {**known, **limits} if both else limits if key not in merged else known
+            if isinstance(known, dict) and isinstance(limits, dict):
+                merged[key] = {**known, **limits}
+            else:
+                merged.setdefault(key, limits)
         values: dict[str, LaunchValue] = {name: parts.get(name, {}) for name in (*_STEPS, "moveit_cpp", *_YAML_STEPS)}
         return RecordValue({**values, "package_path": self._builder.package, "to_dict": merged})
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from archgen.importers.launch.command_words import split_words
+from archgen.importers.launch.file_changes import FileChanges
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, join_names
@@ -186,7 +187,7 @@ class NodeMaker:
             words += ["--ros-args", *given] if key == "ros_arguments" and given else given
         node.arguments = words
         if not self._run.context.is_ros_1:
-            read_ros_arguments(node, lambda path: self._add_file(node, path, "", {}))
+            read_ros_arguments(node, lambda path: self._add_file(node, path, "", None))
         elif action.get("keeps_arguments") is not True:
             read_nodelet(node)
 
@@ -224,20 +225,19 @@ class NodeMaker:
         if isinstance(entry, Substitution) and entry.kind == "typed":
             entry = entry.parts[0]
         is_file = isinstance(entry, Substitution) and entry.kind == FILE_KIND
-        value, namespace, rewrites = entry.parts if is_file else (entry, "", {})
+        value, namespace, changes = entry.parts if is_file else (entry, "", None)
         text = self._run.context.resolve(value)
         if isinstance(text, UnknownValue):
             self._run.tell_computed(action.word, "a parameter file", text, action.span)
             return
         self._keep_written(node, "parameter_files", value)
-        changes = evaluate_parameter(rewrites, self._run.context) if isinstance(rewrites, Mapping) else {}
-        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, dict) else {})
+        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, FileChanges) else None)
 
     def _resolve_text(self, value: LaunchValue) -> str:
         text = self._run.context.resolve("" if value is None else value)
         return text if isinstance(text, str) else ""
 
-    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: dict[str, Any]) -> None:
+    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileChanges | None) -> None:
         """Add a parameter file: its name, and what it says to the node where it can be read."""
         if not text:
             return
@@ -256,10 +256,12 @@ class NodeMaker:
             words = "it is not read" if path is None else "it is no file of parameters of ROS 2"
             self._run.add_note(FILE_KIND, f"`{text}`: {words}", node.span, fate="noted")
             return
-        for name, value in values.items():
-            # What is written over a file by its last name, as Nav2's RewrittenYaml has it.
-            changed = changes.get(name, changes.get(name.rpartition(".")[2]))
-            node.parameters[name] = value if changed is None else changed
+        for name, value in (changes.change_values(values, self._run.context) if changes else values).items():
+            if isinstance(value, UnknownValue):
+                node.parameters.pop(name, None)
+                self._run.tell_computed(node.word, f"the parameter `{name}`", value, node.span)
+            else:
+                node.parameters[name] = value
 
     def _add_ros_1_file(self, node: LaunchedNode, text: str, path: Path | None, inner_name: str) -> None:
         """Add a file that ROS 1 loads below a node's name, or deeper."""

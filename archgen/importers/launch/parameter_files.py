@@ -17,7 +17,7 @@ _YAML_1_1_WORDS = {"yes": True, "on": True, "no": False, "off": False}
 """What ROS 1 reads as booleans besides `true` and `false`."""
 _MAX_BYTES = 4_000_000
 FILE_KIND = "parameter file"
-"""The substitution for a file among parameters: its path, the namespace of its values, and values written over it."""
+"""The substitution for a file among parameters: its path, the namespace of its values, and its FileChanges."""
 
 
 class ParameterFileReader:

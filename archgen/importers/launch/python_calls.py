@@ -6,7 +6,8 @@ import ast
 import posixpath
 from collections.abc import Callable, Mapping
 
-from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.file_changes import FileChanges
+from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
 from archgen.importers.launch.opened_files import OpenedFileReader
 from archgen.importers.launch.parameter_files import FILE_KIND
@@ -168,10 +169,20 @@ class CallReader(OpenedFileReader):
         self.tell_noted(
             "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
         )
-        return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "" if root is None else root, changes))
+        source = arguments.get(0, "source_file")
+        if isinstance(source, Substitution) and source.kind == FILE_KIND and isinstance(source.parts[2], FileChanges):
+            source, _, earlier = source.parts
+            made = FileChanges(changes, earlier.texts, earlier.condition)
+        else:
+            made = FileChanges(changes)
+        return Substitution(FILE_KIND, (source, "" if root is None else root, made))
 
-    def _call_replacestring(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return arguments.get(0, "source_file")
+    def _call_replacestring(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        texts, condition = arguments.get(1, "replacements"), arguments.get(2, "condition")
+        if not isinstance(texts, Mapping):
+            return self.quote(node)
+        made = FileChanges({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
+        return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return Substitution("env", tuple(arguments.positional[:2]))

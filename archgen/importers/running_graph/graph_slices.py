@@ -14,7 +14,6 @@ _STATE_SERVICE = "/change_state"
 _LOADING_SERVICE = "/_container/load_node"
 _HIDDEN = ("/_", "/parameter_events", "/rosout", "/rosout_agg")
 _NO_NODES = frozenset({"/rosout"})
-_HIDDEN_NODES = ("/_ros2cli", "/_")
 
 
 def write_graph(graph: RunningGraph) -> dict[str, dict[str, Any]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen.importers.launch.launch_import import read_launch
-from tests.importers.launch.test_launch_import import messages_of, nodes_of, read_python, write_files
+from tests.importers.launch.test_launch_import import PYTHON_HEAD, messages_of, nodes_of, read_python, write_files
 
 MANIFEST = "<package><name>{}</name></package>"
 NODE = 'Node(package="p", executable="e", name="n", parameters=[values])'
@@ -192,3 +192,60 @@ def test_elements_inside_of_nodes_of_ros_1_have_conditions(tmp_path: Path) -> No
         "n": {"package": "p", "executable": "e", "parameters": {"a": 1}},
     }
     assert messages_of(imported)[1:] == ["not taken: node:5: what counts only if $(var open) is left out"]
+
+
+@pytest.mark.parametrize(
+    ("source", "given", "expected", "computed"),
+    [
+        ("path", {}, {"topic": "<ns>/scan", "deep": {"rate": 5.0, "on": False}, "words": ["<ns>", "b"]}, []),
+        (
+            "RewrittenYaml(source_file=path, param_rewrites={'rate': LaunchConfiguration('rate'), 'on': 'true'}, convert_types=True)",
+            {"rate": "7.5"},
+            {"topic": "<ns>/scan", "deep": {"rate": 7.5, "on": True}, "words": ["<ns>", "b"]},
+            [],
+        ),
+        (
+            "RewrittenYaml(path, {'rate': ask()})",
+            {},
+            {"topic": "<ns>/scan", "deep": {"on": False}, "words": ["<ns>", "b"]},
+            ["deep.rate"],
+        ),
+        (
+            "RewrittenYaml(ReplaceString(path, {'<ns>': ('/', LaunchConfiguration('ns'))}), {'rate': '6'})",
+            {},
+            {"topic": "/r1/scan", "deep": {"rate": 6, "on": False}, "words": ["/r1", "b"]},
+            [],
+        ),
+        (
+            "ReplaceString(source_file=path, replacements={'<ns>': 'x'}, condition=IfCondition(LaunchConfiguration('sure')))",
+            {"sure": "false"},
+            {"topic": "<ns>/scan", "deep": {"rate": 5.0, "on": False}, "words": ["<ns>", "b"]},
+            [],
+        ),
+        (
+            "ReplaceString(source_file=path, replacements={'<ns>': 'x'}, condition=IfCondition(LaunchConfiguration('sure')))",
+            {},
+            {"deep": {"rate": 5.0, "on": False}},
+            ["topic", "words"],
+        ),
+    ],
+)
+def test_what_is_written_over_files_counts(
+    source: str, given: dict[str, str], expected: dict[str, object], computed: list[str], tmp_path: Path
+) -> None:
+    body = f"""
+from nav2_common.launch import ReplaceString, RewrittenYaml
+path = os.path.join(get_package_share_directory("bot"), "config", "main.yaml")
+return LaunchDescription([
+    DeclareLaunchArgument("ns", default_value="r1"), DeclareLaunchArgument("sure"), DeclareLaunchArgument("rate", default_value="1.5"),
+    Node(package="p", executable="e", name="n", parameters=[{source}]),
+])
+"""
+    values = "n:\n  ros__parameters: {topic: <ns>/scan, deep: {rate: 5.0, on: false}, words: [<ns>, b]}\n"
+    lines = textwrap.indent(body, "    ")
+    text = f"{PYTHON_HEAD}\ndef generate_launch_description():\n{lines}\n"
+    files = {"package__xml": MANIFEST.format("bot"), "config___main__yaml": values}
+    imported = read_launch([write_files(tmp_path, launch___robot__launch__py=text, **files)], given)
+    assert nodes_of(imported)["n"]["parameters"] == expected
+    names = [note.message.split("`")[1] for note in imported.notes if note.message.startswith("the parameter ")]
+    assert names == computed
