@@ -13,7 +13,7 @@ from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substituti
 from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
 from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
-from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
+from archgen.importers.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
 
 if TYPE_CHECKING:
     from archgen.importers.launch.launch_run import LaunchRun
@@ -167,7 +167,7 @@ class NodeMaker:
         else:
             node.directory = directory
         prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
-        rest = prefix.reason if isinstance(prefix, UnknownValue) else _read_prefix(node, prefix)
+        rest = prefix.reason if isinstance(prefix, UnknownValue) else read_prefix(node, prefix)
         if rest:
             self._run.add_note(action.word, f"what runs it is left out: `{rest}`", action.span)
         host = context.resolve(action.get("host")) if action.get("host") is not None else ""
@@ -285,16 +285,3 @@ def list_items(value: LaunchValue) -> list[LaunchValue]:
 
 def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
     return [(each[0], each[1]) for each in list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004
-
-
-def _read_prefix(node: LaunchedNode, prefix: str) -> str:
-    """Set the user and the folder that a prefix such as `sudo -u robot -- env -C /opt` says; return what is left of it."""
-    words = split_words(prefix)
-    if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
-        place = words.index("-u")
-        node.user = words[place + 1]
-        words = words[place + 2 :]
-        words = words[1:] if words[:1] == ["--"] else words
-    if words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
-        node.directory, words = words[2], []
-    return " ".join(words)
