@@ -36,6 +36,8 @@ class LaunchFiles:
         self._own_folders = [folder for path in paths if (folder := _find_package_folder(path.resolve())) is not None]
         self._packages: dict[str, Path] | None = None
         self._walked: dict[Path, list[tuple[Path, list[str]]]] = {}
+        self._by_name: dict[Path, dict[str, list[Path]]] = {}
+        self._folders: dict[Path, dict[Path, list[str]]] = {}
 
     def list_launch_files(self) -> list[Path]:
         """Return the launch files of all packages and folders, by path."""
@@ -82,7 +84,7 @@ class LaunchFiles:
         inner = posixpath.normpath(match[2] or ".") if match else ".."
         if folder is None or inner.startswith(("/", "..")):
             return []
-        return next((names for path, names in self._walk(folder) if path == folder / inner), [])
+        return self._list_folders(folder).get(folder / inner, [])
 
     def _find_in_package(self, folder: Path, inner_path: str) -> Path | None:
         inner = posixpath.normpath(inner_path)
@@ -93,13 +95,24 @@ class LaunchFiles:
             return found
         # What a package installs need not lie so in its sources: `launch/x.py` may come from `bringup/launch/x.py`.
         name = posixpath.basename(inner)
-        others = [
-            path / name
-            for path, names in self._walk(folder)
-            if name in names and not _TEST_FOLDERS & set(path.relative_to(folder).parts)
-        ]
+        others = self._index_names(folder).get(name, [])
         alike = [path for path in others if path.as_posix().endswith(f"/{inner}")] or others
         return self._check(alike[0]) if len(alike) == 1 else None
+
+    def _index_names(self, folder: Path) -> dict[str, list[Path]]:
+        """Return the files of a package by their names, without those of its tests."""
+        if folder not in self._by_name:
+            self._by_name[folder] = index = {}
+            for path, names in self._walk(folder):
+                if not _TEST_FOLDERS & set(path.relative_to(folder).parts):
+                    for name in names:
+                        index.setdefault(name, []).append(path / name)
+        return self._by_name[folder]
+
+    def _list_folders(self, folder: Path) -> dict[Path, list[str]]:
+        if folder not in self._folders:
+            self._folders[folder] = dict(self._walk(folder))
+        return self._folders[folder]
 
     def _check(self, path: Path) -> Path | None:
         """Return a path of a file below a root, to which no link leads outside."""

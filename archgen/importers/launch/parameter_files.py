@@ -16,6 +16,8 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_
 _YAML_1_1_WORDS = {"yes": True, "on": True, "no": False, "off": False}
 """What ROS 1 reads as booleans besides `true` and `false`."""
 _MAX_BYTES = 4_000_000
+MAX_OPENED_BYTES = 32_000_000
+"""How much YAML launch files in Python may open altogether."""
 FILE_KIND = "parameter file"
 """The substitution for a file among parameters: its path, the namespace of its values, and its FileChanges."""
 
@@ -25,6 +27,8 @@ class ParameterFileReader:
 
     def __init__(self) -> None:
         self._texts: dict[Path, ParameterText | None] = {}
+        self._sizes: dict[Path, int] = {}
+        self._opened = 0
 
     def read_for_node(self, path: Path, full_name: str) -> dict[str, Any] | None:
         """Return the values that a file of ROS 2 gives to a node, by their dotted names; None where it cannot be read."""
@@ -48,7 +52,10 @@ class ParameterFileReader:
     def read_mapping(self, path: Path) -> dict[str, Any] | None:
         """Return what a file in YAML says, with its keys as they are; None where it cannot be read."""
         text = self._read(path)
-        return _read_tree(text.root, "") if text is not None and text.root is not None else None
+        # A launch file may open the same file in a loop.
+        self._opened += self._sizes.get(path, 0)
+        is_read = text is not None and text.root is not None and self._opened <= MAX_OPENED_BYTES
+        return _read_tree(text.root, "") if is_read and text is not None and text.root is not None else None
 
     def _read(self, path: Path) -> ParameterText | None:
         if path not in self._texts:
@@ -57,6 +64,7 @@ class ParameterFileReader:
             except ForeignFileError:
                 self._texts[path] = None
             else:
+                self._sizes[path] = len(data)
                 text = read_parameter_text(path.name, data)
                 self._texts[path] = None if text.problem else text
         return self._texts[path]

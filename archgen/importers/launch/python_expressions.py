@@ -57,6 +57,10 @@ class ExpressionReader:
         """Note what is left out because only running it would tell; by the reader of the whole file."""
         raise NotImplementedError
 
+    def count_steps(self, number: int) -> None:
+        """Count what takes the time of several steps."""
+        self._steps += number
+
     def count_step(self) -> bool:
         """Whether one more step may be taken."""
         self._steps += 1

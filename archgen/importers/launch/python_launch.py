@@ -96,7 +96,8 @@ class _FileReader(CallReader):
         values = None if file is None else self._run.parameter_reader.read_mapping(file)
         if values is None:
             is_far = file is None
-            words = "it does not lie in the folders that were given" if is_far else "it is no mapping in YAML"
+            near_words = "it is no mapping in YAML, or more is opened than archgen reads"
+            words = "it does not lie in the folders that were given" if is_far else near_words
             help_line = "give the folder of its package, too" if is_far else ""
             self._run.add_note("open", f"`{text}` is not read: {words}", self.place(node), help_line)
             return UnknownValue(text, getattr(node, "lineno", 0), self.file)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen.importers.launch import parameter_files
 from archgen.importers.launch.launch_import import read_launch
 from tests.importers.launch.test_launch_import import PYTHON_HEAD, messages_of, nodes_of, read_python, write_files
 
@@ -54,7 +55,7 @@ return LaunchDescription([{NODE}])
         ("'$(find-pkg-share bot)/../secret.yaml'", "does not lie in the folders that were given"),
         ("'/etc/passwd'", "does not lie in the folders that were given"),
         ("get_package_share_directory('far') + '/a.yaml'", "does not lie in the folders that were given"),
-        ("get_package_share_directory('bot') + '/list.yaml'", "is no mapping in YAML"),
+        ("get_package_share_directory('bot') + '/list.yaml'", "is no mapping in YAML, or"),
     ],
 )
 def test_what_lies_elsewhere_or_is_none_is_not_read(place: str, message: str, tmp_path: Path) -> None:
@@ -249,3 +250,19 @@ return LaunchDescription([
     assert nodes_of(imported)["n"]["parameters"] == expected
     names = [note.message.split("`")[1] for note in imported.notes if note.message.startswith("the parameter ")]
     assert names == computed
+
+
+def test_files_that_are_opened_in_a_loop_take_bounded_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parameter_files, "MAX_OPENED_BYTES", 10 * len(VALUES))
+    body = f"""
+    import yaml
+    path = os.path.join(get_package_share_directory("bot"), "config", "main.yaml")
+    read = []
+    for number in range(100):
+        values = yaml.safe_load(open(path))
+        read.append(values)
+    return LaunchDescription([{NODE}])
+    """
+    imported = read_python(tmp_path, body, package__xml=MANIFEST.format("bot"), config___main__yaml=VALUES)
+    assert [message[:30] for message in messages_of(imported)][:1] == ["not taken: open:19: `$(find-pk"]
+    assert "parameters" not in nodes_of(imported)["n"]
