@@ -102,7 +102,8 @@ class LaunchFiles:
     def _index_names(self, folder: Path) -> dict[str, list[Path]]:
         """Return the files of a package by their names, without those of its tests."""
         if folder not in self._by_name:
-            self._by_name[folder] = index = {}
+            index: dict[str, list[Path]] = {}
+            self._by_name[folder] = index
             for path, names in self._walk(folder):
                 if not _TEST_FOLDERS & set(path.relative_to(folder).parts):
                     for name in names:
