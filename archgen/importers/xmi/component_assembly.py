@@ -80,17 +80,14 @@ class ComponentAssembly:
             if owner.sort == "data":
                 continue
             for part in list_children(owner.element, "Property"):
-                reference = self._index.find_reference(part, "type")
-                part_type = self._sorting.facts.get(reference.element) if reference and reference.element else None
+                part_type, arguments = self._sorting.find_part_type(part)
                 if part_type is None or part_type.sort != "component_type":
-                    continue
-                if part_type.element not in self._sorting.with_ports or not self._sorting.is_place(part):
                     continue
                 if is_true(part_type.element, "isAbstract"):
                     words = f"{call(part)} is not taken: `{get_name(part_type.element)}` is abstract"
                     self._ledger.leave(part, words)
                     continue
-                facts = ClassFacts(part, "component", owner=owner, base=part_type)
+                facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
                 owner.inside.append(facts)
                 self._sorting.parts[part] = facts
 

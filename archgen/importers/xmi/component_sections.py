@@ -10,7 +10,7 @@ from archgen.importers.xmi.class_features import ClassFeatures
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
-from archgen.importers.xmi.made_names import choose_id, name_type, say_title
+from archgen.importers.xmi.made_names import choose_id, say_title
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts, name_interface
 from archgen.importers.xmi.port_wiring import PortWiring, list_inner_references, name_port
 from archgen.importers.xmi.uml_catalogue import read_description
@@ -90,7 +90,7 @@ class ComponentSections:
                 ):
                     self._make_type(user, ports)
                 else:
-                    self._type_of[user] = base.id
+                    self._type_of[user] = user.say_base()
                     if user is users[0]:
                         self._given_ports[base] = ports
 
@@ -110,7 +110,7 @@ class ComponentSections:
     def _make_type(self, facts: ClassFacts, ports: list[PortFacts]) -> None:
         used = {*self._assembly.types, *self._made_types}
         type_id = make_unique_id(facts.id, used)
-        body: dict[str, object] = {"is": facts.base.id} if facts.base else {}
+        body: dict[str, object] = {"is": facts.say_base()} if facts.base else {}
         body |= self._write_ports(ports, facts, is_type=True)
         features = self._assembly.features[facts.element]
         body |= features.list_sections()
@@ -129,8 +129,10 @@ class ComponentSections:
             body |= read_description(self._index, self._ledger, element)
             if is_true(element, "isAbstract"):
                 body["abstract"] = True
+            if facts.generic_names:
+                body["generic"] = list(facts.generic_names)
             if facts.base is not None:
-                body["is"] = facts.base.id
+                body["is"] = facts.say_base()
             body |= self._write_ports([*facts.ports, *self._given_ports[facts]], facts, is_type=True)
             body |= self._assembly.features[element].list_sections()
             body |= self._write_inside(facts)
@@ -223,7 +225,7 @@ class ComponentSections:
         if not name and not (is_fed and not port.is_output):
             # What an input reads says its type; the interface does where nobody provides it.
             name = self._uses.find_data_type(port)
-        return {"type": find_field_type(name) or name_type(name)} if name else {}
+        return {"type": find_field_type(name) or name} if name else {}
 
     @staticmethod
     def _make_hints(port: PortFacts, *, is_fed: bool = False) -> dict[str, object]:

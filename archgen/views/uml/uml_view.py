@@ -36,7 +36,7 @@ def make_uml_view(
     components = UmlComponents(architecture, registry, types, wants, bodies)
     groups = {} if types_only else read_mapping(packed.get("groups"))
     shown_types = _list_shown_types(architecture, bodies, selected if not types_only else None)
-    classes = {name: components.write_type(name) for name in shown_types if name in components.class_ids}
+    classes = {name: components.write_type(name) for name in shown_types}
     packages = [components.write_group(name, read_mapping(body)) for name, body in groups.items()]
     wiring = UmlWiring(architecture, registry, types, components)
     wiring.write_outputs()
@@ -52,7 +52,9 @@ def make_uml_view(
     model = make_tree("uml:Model", "", registry.claim("project"), title)
     model["children"] += [
         *_make_package(registry, "types", "Types", written_types),
-        *_make_package(registry, "classes", "Component types", list(classes.values())),
+        *_make_package(
+            registry, "classes", "Component types", [*classes.values(), *components.templates.bound_classes]
+        ),
         *(each for each in packages if any(child["tag"] == "packagedElement" for child in each["children"])),
         *_make_package(registry, "interfaces", "Interfaces", wiring.relations),
         *_make_package(registry, "deployment", "Deployment", deployment),
@@ -101,7 +103,8 @@ def _list_shown_types(
             shown.add(name)
             body = read_mapping(bodies[name])
             inner = read_mapping(body.get("components")).values()
-            waiting += [str(body.get("is") or ""), *(str(read_mapping(each).get("is") or "") for each in inner)]
+            made_from = (str(read_mapping(each).get("is") or "") for each in (body, *inner))
+            waiting += [each.partition("<")[0] for each in made_from]
     return [each for each in bodies if each in shown]
 
 

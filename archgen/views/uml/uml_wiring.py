@@ -58,7 +58,7 @@ class UmlWiring:
 
     def write_inputs(self, bodies: Mapping[str, Any]) -> None:
         """Write what each input reads. `bodies` are the packed component types, for references inside of them."""
-        shells = {each.component_type: each.id for each in reversed(list(self._architecture.shells.values()))}
+        shells = {each.type_name: each.id for each in reversed(list(self._architecture.shells.values()))}
         for (path, name), hints in self._components.inputs.items():
             if (path, name) not in self._components.port_ids:
                 continue
@@ -125,7 +125,7 @@ class UmlWiring:
 
     def write_delegations(self, composed: Iterator[tuple[str, Mapping[str, Any]]]) -> None:
         """Write what outputs of composed components give on. `composed` are these with their paths."""
-        shells = {f"type.{each.component_type}": each.id for each in reversed(list(self._architecture.shells.values()))}
+        shells = {f"type.{each.type_name}": each.id for each in reversed(list(self._architecture.shells.values()))}
         for path, body in composed:
             place = shells.get(path, "" if _is_type(path) else path)
             for name, port in read_mapping(body.get("outputs")).items():
