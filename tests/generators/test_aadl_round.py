@@ -11,7 +11,7 @@ import yaml
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PROJECT = """\
 archgen: 1
@@ -150,7 +150,7 @@ def list_differences(old: Any, new: Any, path: str = "") -> list[tuple[str, str]
 
 
 def pack(folder: Path, to: Path) -> Any:  # noqa: ANN401 - what YAML holds
-    archgen("pack", folder, "-o", to, cwd=folder)
+    archgen_here("pack", folder, "-o", to, cwd=folder)
     return yaml.safe_load(to.read_text(encoding="utf-8"))
 
 
@@ -160,8 +160,8 @@ def differences(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str
     source, back = folder / "source", folder / "back"
     source.mkdir()
     (source / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
-    archgen("generate", "aadl", "-C", source, "-o", folder / "ws", cwd=folder)
-    archgen("import", "aadl", *sorted((folder / "ws" / "aadl").iterdir()), "-o", back, cwd=folder)
+    archgen_here("generate", "aadl", "-C", source, "-o", folder / "ws", cwd=folder)
+    archgen_here("import", "aadl", *sorted((folder / "ws" / "aadl").iterdir()), "-o", back, cwd=folder)
     return list_differences(pack(source, folder / "source.yaml"), pack(back, folder / "back.yaml"))
 
 
@@ -185,7 +185,7 @@ def test_nothing_comes_back_as_something_else(differences: list[tuple[str, str]]
 def test_examples_are_read_back(example: str, tmp_path: Path) -> None:
     project = check_project(ROOT / example)
     write_workspace(project, OutputOptions(), "aadl", tmp_path / "ws")
-    archgen("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
+    archgen_here("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
     again = check_project(tmp_path / "back")
     assert not again.has_errors, [each.message for each in again.findings if each.effective_severity == "error"]
     assert len(again.architecture.groups) >= len(project.architecture.groups)
@@ -205,9 +205,9 @@ def drop_classifiers(data: Any) -> Any:  # noqa: ANN401 - what YAML holds
 def test_the_talker_of_the_paper_goes_back(tmp_path: Path) -> None:
     models = ROOT / "tests" / "importers" / "aadl" / "models"
     files = [models / f"{name}.aadl" for name in ("chatter", "chat_msgs", "ros", "cnc", "topic_properties")]
-    archgen("import", "aadl", *files, "-o", tmp_path / "talking", cwd=tmp_path)
-    archgen("generate", "aadl", "-C", tmp_path / "talking", "-o", tmp_path / "ws", cwd=tmp_path)
-    archgen("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
+    archgen_here("import", "aadl", *files, "-o", tmp_path / "talking", cwd=tmp_path)
+    archgen_here("generate", "aadl", "-C", tmp_path / "talking", "-o", tmp_path / "ws", cwd=tmp_path)
+    archgen_here("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
     first, again = (pack(tmp_path / name, tmp_path / f"{name}.yaml") for name in ("talking", "back"))
     assert "talk" in str(first)
     assert "talker.schema.json" in str(first)
