@@ -154,6 +154,18 @@ def test_select_type_gives_the_classes_of_a_library_abstract_ones_too(library: P
     assert {*list_names(root, "Operation")} >= {"get_image"}
 
 
+def test_classes_of_a_library_with_ids_of_a_tool_come_back_as_types(tmp_path: Path) -> None:
+    text = "component_types: {eye: {outputs: {image: Image}, hints: {uml: {id: _1}}}}\nproject: {id: lab}\n"
+    (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
+    file = tmp_path / "library.uml"
+    file.write_bytes(archgen_here("export", "xmi", "--select", "type:", cwd=tmp_path).stdout)
+    sections = {key: value for each in read_xmi([file]).slices.values() for key, value in each.items()}
+    assert sections["component_types"] == {
+        "eye": {"outputs": {"image": {"type": "Image"}}, "hints": {"uml": {"id": "_1"}}}
+    }
+    assert "groups" not in sections
+
+
 def test_other_exports_still_ask_for_a_value_of_type(library: Path) -> None:
     refused = archgen_here("export", "graphml", "--select", "type:", cwd=library, status=2)
     assert b"`type:` needs a value" in refused.stderr

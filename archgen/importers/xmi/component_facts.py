@@ -14,6 +14,7 @@ from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_children
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
+_LIBRARY_ID = f"{OWN_PREFIX}package.classes"
 _COMPONENT_PREFIX = f"{OWN_PREFIX}component."
 _DATA_PREFIX = f"{OWN_PREFIX}type."
 
@@ -170,6 +171,7 @@ class ClassSorting:
             if element in self.with_ports:
                 is_type = (
                     own_id.startswith(_TYPE_PREFIX)
+                    or self._is_in_library(element)
                     or is_true(element, "isAbstract")
                     or element in part_types
                     or element in self._templates.generic_names
@@ -213,6 +215,11 @@ class ClassSorting:
                 words = f"{call(facts.element)} would be made from itself"
                 self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
+
+    def _is_in_library(self, element: XmlElement) -> bool:
+        """Whether archgen wrote a class as a component type that has its id from another tool."""
+        package = self._index.get_parent(element)
+        return package is not None and get_id(package) == _LIBRARY_ID
 
     def _is_template(self, element: XmlElement) -> bool:
         return element in self._templates.generic_names or element in self._templates.bindings

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import ChainMap, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures
@@ -24,17 +24,17 @@ PortKey = tuple[str, str]
 """`inputs` or `outputs`, and the id of a port."""
 
 
-def assign_port_ids(assembly: ComponentAssembly) -> None:
+def assign_port_ids(assembly: ComponentAssembly, known_ids: Mapping[str, str]) -> None:
     """Give each port its ids. What a type made from another, or an instance, has again is the same port."""
     done: set[int] = set()
     for facts in (*assembly.types.values(), *assembly.components):
         for each in (*reversed(facts.list_bases()), facts):
             if id(each) not in done:
                 done.add(id(each))
-                _assign_own_ids(each)
+                _assign_own_ids(each, known_ids)
 
 
-def _assign_own_ids(facts: ClassFacts) -> None:
+def _assign_own_ids(facts: ClassFacts, known_ids: Mapping[str, str]) -> None:
     bases = facts.list_bases()
     # Not one set of all ids: a hundred types made from one of a hundred ports would make a hundred of them.
     taken = ChainMap(facts.port_ids, *(base.port_ids for base in bases))
@@ -43,7 +43,7 @@ def _assign_own_ids(facts: ClassFacts) -> None:
         port_id = next((each for each in inherited if each is not None), None)
         if port_id is None or port_id in facts.port_ids:
             # Two ports of one name in one class are two: the second one is not the inherited one again.
-            port_id = choose_id(port.element, "port", taken, name_port(port) or "port")
+            port_id = choose_id(port.element, "port", taken, name_port(port) or "port", known_ids)
         facts.port_ids[port_id] = port.name
         facts.ids_by_port_name.setdefault(port.name, port_id)
         port.input_id = port.output_id = port_id
