@@ -88,10 +88,12 @@ def keep_places(
     The groups are the project's: others refer to components by them, and people may have sorted them anew.
     """
     old_places = _list_places(old.values(), tool)
+    # Where another component of the model stands by now, none can stay.
+    taken = {f"{group}.{name}" for data in new.values() for group, name, _ in _list_components(data)}
     moves = {
         place: old_places[tool_id]
         for tool_id, place in _list_places(new.values(), tool).items()
-        if old_places.get(tool_id, place) != place
+        if old_places.get(tool_id, place) not in taken
     }
     if not moves:
         return dict(new), {}
@@ -108,11 +110,17 @@ def _list_places(slices: Iterable[Mapping[str, Any]], tool: str) -> dict[str, st
     """Return group and id of each component that stands directly in a group, by its id in another tool."""
     places: dict[str, str] = {}
     for data in slices:
-        for group_id, group in _read_mapping(data.get("groups")).items():
-            for name, body in _read_mapping(_read_mapping(group).get("components")).items():
-                if tool_id := read_tool_id(_read_mapping(body), tool):
-                    places.setdefault(tool_id, f"{group_id}.{name}")
+        for group_id, name, body in _list_components(data):
+            if tool_id := read_tool_id(body, tool):
+                places.setdefault(tool_id, f"{group_id}.{name}")
     return places
+
+
+def _list_components(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Mapping[str, Any]]]:
+    """Yield group, id and body of each component that stands directly in a group."""
+    for group_id, group in _read_mapping(data.get("groups")).items():
+        for name, body in _read_mapping(_read_mapping(group).get("components")).items():
+            yield group_id, name, _read_mapping(body)
 
 
 def _read_mapping(value: object) -> Mapping[str, Any]:

@@ -88,6 +88,17 @@ def test_a_component_in_another_package_stays_where_it_is(run: Run) -> None:
     assert "as before" in merge(run, moved)
 
 
+def test_where_another_component_stands_by_now_none_stays(run: Run) -> None:
+    merge(run, MODEL)
+    moved = MODEL.replace('xmi:id="cam" name="Camera"', 'xmi:id="new" name="Camera"').replace(
+        'xmi:id="view" name="Viewer"', 'xmi:id="cam" name="Camera"'
+    )
+    merge(run, moved)
+    text = read()
+    assert text.count("camera:\n") == 2
+    assert (text.count("id: cam\n"), text.count("id: new\n")) == (1, 1)
+
+
 def test_what_is_deleted_stays_and_is_told(run: Run) -> None:
     merge(run, MODEL)
     port = '<ownedAttribute xmi:type="uml:Port" xmi:id="tmp" name="temperature"/>'
