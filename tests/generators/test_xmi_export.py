@@ -203,53 +203,6 @@ def test_types_parameters_and_values_come_back(library: Path, tmp_path: Path) ->
     assert components["screen"]["inputs"] == {"image": {"from": ["g.front.image"]}}
 
 
-GENERICS = """\
-archgen: 1
-project: {id: lab, title: The lab}
-types: {Envelope: {generic: [T], fields: {sender: string, payload: T, old: "T[]"}}, Pose: {}, Parcel: {fields: {inside: Envelope<Pose>}}}
-component_types:
-  filter: {generic: [T], inputs: {raw: T}, outputs: {clean: T}, parameters: {gain: {type: float, value: 1.5}}}
-  pair: {generic: [A, B], inputs: {first: A, second: B}, outputs: {both: Envelope<A>}}
-  strong: {is: filter<Pose>, title: Strong filter}
-  chain:
-    generic: [X]
-    inputs: {raw: X}
-    outputs: {clean: {from: second.clean}}
-    components: {first: {is: filter<X>, inputs: {raw: self.raw}}, second: {is: filter<X>, inputs: {raw: first.clean}}}
-groups:
-  g:
-    components:
-      source: {functionality: Makes., outputs: {pose: Pose, twist: Twist}}
-      smooth: {is: filter<Pose>, inputs: {raw: source.pose}, parameters: {gain: 0.5}}
-      tough: {is: strong, inputs: {raw: source.pose}}
-      both: {is: "pair<Pose, Twist>", inputs: {first: source.pose, second: source.twist}}
-      long: {is: chain<Twist>, inputs: {raw: source.twist}}
-      reader: {functionality: Reads., inputs: {x: long.clean, y: both.both}}
-"""
-
-
-def test_generic_types_go_out_as_templates_and_come_back(tmp_path: Path) -> None:
-    (tmp_path / "archgen.yaml").write_text(GENERICS, encoding="utf-8")
-    original = check_project(tmp_path)
-    assert not original.has_errors
-    text = export(original)
-    root = check_model(text)
-    bound = {"Filter<Pose>", "Filter<X>", "Pair<Pose, Twist>", "Chain<Twist>"}
-    assert bound <= {*list_names(root, "Class")}
-    back = check_project(import_back(text, tmp_path / "back"))
-    assert export(back) == text
-    packed, before = back.pack_project().data, original.pack_project().data
-    assert packed["component_types"] == before["component_types"]
-    assert packed["types"] == before["types"]
-    assert list_facts(back) == list_facts(original)
-
-
-def test_a_selection_has_the_generic_types_of_its_components(tmp_path: Path) -> None:
-    (tmp_path / "archgen.yaml").write_text(GENERICS, encoding="utf-8")
-    root = check_model(export(check_project(tmp_path), "long"))
-    assert {*list_names(root, "Class")} == {"Filter", "Chain", "Filter<X>", "Chain<Twist>", "T", "X"}
-
-
 @pytest.mark.parametrize("kind", hostile.TEXTS)
 def test_hostile_texts_stay_texts(kind: str, tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text(hostile.written(hostile.project(hostile.TEXTS[kind])), "utf-8")

@@ -37,6 +37,8 @@ class UmlComponents:
         self.outputs: dict[PortPath, object] = {}
         """The hints of each output."""
         self.inputs: dict[PortPath, object] = {}
+        self.written_sources: dict[PortPath, object] = {}
+        """What each input reads, as it is written."""
         self.class_ids: dict[str, str] = {}
         self.component_ids: dict[str, str] = {}
         for name, body in component_types.items():
@@ -101,7 +103,8 @@ class UmlComponents:
             # What `same_as` names has no class: what the component has from there is its own.
             body = {**_write_out(component), **body}
         tree["children"] += make_comments(element_id, body)
-        known = _list_ports(component) if type_name and component else {}
+        known = _list_ports(component) if component else self._list_declared_ports(type_name)
+        known = known if type_name else {}
         if self.templates.is_in_scope:
             # An instance shows which ports there are, but its types are not those of the generic type.
             known = dict.fromkeys(known, "")
@@ -119,6 +122,18 @@ class UmlComponents:
                 )
             )
         return tree
+
+    def _list_declared_ports(self, type_name: str) -> dict[tuple[str, str], str]:
+        """Return the ports of a type and of all that it is made from: nothing shows them where it has no instance."""
+        ports: dict[tuple[str, str], str] = {}
+        seen: set[str] = set()
+        base = type_name.partition("<")[0]
+        while base in self._bodies and base not in seen:
+            seen.add(base)
+            body = read_mapping(self._bodies[base])
+            ports |= {(side, name): "" for side in ("inputs", "outputs") for name in read_mapping(body.get(side))}
+            base = str(body.get("is") or "").partition("<")[0]
+        return ports
 
     def _find_component(self, place: str) -> Component | None:
         return self._architecture.components.get(place) or self._architecture.shells.get(place)
@@ -142,6 +157,8 @@ class UmlComponents:
             for name in names:
                 port = read_mapping(written.get(name))
                 known[path, name] = port.get("hints")
+                if side == "inputs":
+                    self.written_sources[path, name] = port.get("from")
                 type_name = str(port.get("type") or inherited.get((side, name)) or "")
                 if side == "inputs" and self._reads_others(path, name, type_name):
                     type_name = ""

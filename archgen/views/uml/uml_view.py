@@ -79,13 +79,21 @@ def _list_type_bodies(packed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the component types of the project, and those of its libraries with the library's id before them."""
     bodies = dict(read_mapping(packed.get("component_types")))
     for library, body in read_mapping(packed.get("libraries")).items():
-        for name, each in read_mapping(read_mapping(body).get("component_types")).items():
-            inner = dict(read_mapping(each))
-            # Types of a library name one another without its id.
-            if inner.get("is") and "." not in str(inner["is"]):
-                inner["is"] = f"{library}.{inner['is']}"
-            bodies[f"{library}.{name}"] = inner
+        own = read_mapping(read_mapping(body).get("component_types"))
+        for name, each in own.items():
+            bodies[f"{library}.{name}"] = _name_fully(read_mapping(each), library, own)
     return bodies
+
+
+def _name_fully(body: Mapping[str, Any], library: str, own: Collection[str]) -> dict[str, Any]:
+    """Return a body in which `is` names types as the project does: those of a library do without its id among themselves."""
+    named = dict(body)
+    base = str(named.get("is") or "")
+    if base.partition("<")[0] in own:
+        named["is"] = f"{library}.{base}"
+    if inside := read_mapping(named.get("components")):
+        named["components"] = {name: _name_fully(read_mapping(each), library, own) for name, each in inside.items()}
+    return named
 
 
 def _list_shown_types(
