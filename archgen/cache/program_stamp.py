@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import sys
 import zlib
 from collections.abc import Iterable, Iterator
@@ -24,6 +25,7 @@ WRITER_LIBRARIES = (
     "pyyaml",
 )
 """The libraries that decide what is written. The command line uses click beside them."""
+_FOLDER_SUFFIX = ".dist-info"
 _EMIT_FOLDER = Path(__file__).resolve().parents[1] / "emit"
 
 
@@ -72,13 +74,31 @@ def _walk_files(top: Path) -> Iterator[str]:
 @cache
 def _describe_libraries() -> str:
     """Describe the libraries: their versions, and for Graphviz's shared objects their sizes and dates."""
-    versions = [f"{name} {_library_version(name)}" for name in WRITER_LIBRARIES]
+    folder_versions = _read_folder_versions()
+    versions = [f"{name} {folder_versions.get(name) or _library_version(name)}" for name in WRITER_LIBRARIES]
     # zlib decides the bytes of all that Python compresses, docx files above all.
     return f"{sys.version} {zlib.ZLIB_RUNTIME_VERSION} {versions} {sorted(_describe_graphviz())}"
 
 
+def _read_folder_versions() -> dict[str, str]:
+    """Return the versions of installed libraries by their names, as the folders that installers leave tell them."""
+    versions: dict[str, str] = {}
+    for place in sys.path:
+        try:
+            entries = os.listdir(place or ".")  # noqa: PTH208 - names are enough
+        except OSError:
+            continue
+        # Sorted: which of two is first must not hang on the order of the disk.
+        for name, _, version in sorted(
+            entry[: -len(_FOLDER_SUFFIX)].partition("-") for entry in entries if entry.endswith(_FOLDER_SUFFIX)
+        ):
+            # What is first on the path is what is imported.
+            versions.setdefault(re.sub("[-_.]+", "-", name).lower(), version)
+    return versions
+
+
 def _library_version(name: str) -> str:
-    # Imported here, and below: it takes long to load, and a process that only draws stamps nothing.
+    # Imported here, and below: it takes long to load (it parses mails), and few installations lack such folders.
     from importlib import metadata
 
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from archgen.importers.foreign.foreign_import import ForeignImport, ImportNote
 
 _NAME_WIDTH = 9
+_LAUNCH_ARGUMENT = re.compile(r"([A-Za-z_][^\s:=]*):=(.*)", re.DOTALL)
 
 
 def _list_formats() -> str:
@@ -28,7 +30,7 @@ def _list_formats() -> str:
 
 
 @click.command("import", epilog=_list_formats())
-@click.argument("words", metavar="[FORMAT] FILE...", nargs=-1, required=True)
+@click.argument("words", metavar="[FORMAT] FILE... [NAME:=VALUE...]", nargs=-1, required=True)
 @click.option(
     "-o",
     "--output",
@@ -57,10 +59,14 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Take over a model of another tool: what it says becomes slices, and what is not taken is listed with its place.
 
-    FORMAT may be left out where the file's name tells it. Nothing that is there is overwritten, nothing of the file is
+    FORMAT may be left out where the file's name tells it. NAME:=VALUE sets an argument of launch files. Nothing that is there is overwritten, nothing of the file is
     run, and nothing is invented: what it does not say is absent.
     """
-    import_format, files = _split_words(words)
+    file_words, arguments = _take_arguments(words)
+    import_format, files = _split_words(file_words)
+    if arguments and not import_format.takes_arguments:
+        msg = f"{import_format.name} takes no arguments such as {next(iter(arguments))}:=..., as launch files do"
+        raise click.UsageError(make_visible(msg))
     if import_format.name == REQIF:
         from archgen.cli.requirement_import import import_requirements
 
@@ -71,7 +77,18 @@ def command(  # noqa: PLR0913 - one for each option
         import_requirements(files[0], into, project, dry_run=dry_run)
         return
     _refuse_options(import_format, {"--into": into})
-    _import_slices(import_format, files, _find_target(output, project), form, merge=merge, dry_run=dry_run)
+    target = _find_target(output, project)
+    _import_slices(import_format, files, arguments, target, form, merge=merge, dry_run=dry_run)
+
+
+def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
+    """Return the words without launch arguments, and these by name: the last value counts, as for `ros2 launch`."""
+    matches = [None if Path(word).exists() else _LAUNCH_ARGUMENT.fullmatch(word) for word in words]
+    files = [word for word, match in zip(words, matches, strict=True) if match is None]
+    if not files:
+        msg = "name a file, too"
+        raise click.UsageError(msg)
+    return files, {match[1]: match[2] for match in matches if match is not None}
 
 
 def _split_words(words: Sequence[str]) -> tuple[ImportFormat, list[Path]]:
@@ -131,16 +148,24 @@ def _find_target(output: Path | None, project: Path | None) -> Path:
 
 
 def _import_slices(  # noqa: PLR0913 - what, where and how
-    import_format: ImportFormat, files: list[Path], target: Path, form: str, *, merge: bool, dry_run: bool
+    import_format: ImportFormat,
+    files: list[Path],
+    arguments: dict[str, str],
+    target: Path,
+    form: str,
+    *,
+    merge: bool,
+    dry_run: bool,
 ) -> None:
     from archgen.edit.imported_slices import ImportOrigin, ImportRefusedError, plan_import
 
-    imported = _read_model(import_format, files)
+    imported = _read_model(import_format, files, arguments)
     if not imported.slices:
         _print_account(imported, None, form)
         click.echo("Nothing was written: there is nothing in it that archgen takes.", err=True)
         raise click.exceptions.Exit(1)
-    origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files))
+    shown_arguments = tuple(f"{name}:={value}" for name, value in arguments.items())
+    origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files), shown_arguments)
     try:
         plan = plan_import(imported, origin, target, merge=merge)
     except ImportRefusedError as refusal:
@@ -155,11 +180,12 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
         raise click.exceptions.Exit(1)
 
 
-def _read_model(import_format: ImportFormat, files: list[Path]) -> ForeignImport:
+def _read_model(import_format: ImportFormat, files: list[Path], arguments: dict[str, str]) -> ForeignImport:
     from archgen.importers.foreign.foreign_import import ForeignFileError
 
     try:
-        return import_format.load_reader()(files)
+        given = {"arguments": arguments} if import_format.takes_arguments else {}
+        return import_format.load_reader()(files, **given)
     except ForeignFileError as error:
         _print_problem(str(error.span), error.message, error.help_line)
         click.echo("Nothing was written.", err=True)

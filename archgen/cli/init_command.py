@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     from archgen.importers import ImportResult
     from archgen.pipeline import CheckedProject
+    from archgen.start.project_plan import ProjectPlan
     from archgen.start.start_answers import StartAnswers
-    from archgen.start.start_plan import StartPlan
 
 
 @click.command("init")
@@ -208,16 +208,17 @@ def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[s
 
 def _write_project(target: Path, answers: StartAnswers, imported: ImportResult | None) -> None:
     from archgen.emit import new_files
-    from archgen.start import start_plan, starter_slices
+    from archgen.start import starter_slices
+    from archgen.start.project_plan import has_other_yaml, judge_files, plan_files
 
-    other_files = start_plan.has_other_yaml(target)
+    other_files = has_other_yaml(target)
     files = (
         starter_slices.imported_files(answers, imported.data, other_files)
         if imported
         else starter_slices.example_files(answers, other_files)
     )
-    checked_project = start_plan.judge_files(files, answers.id)
-    project_plan = start_plan.plan_files(target, answers, files, checked_project)
+    checked_project = judge_files(files, answers.id)
+    project_plan = plan_files(target, answers, files, checked_project)
     _refuse_replacing_slices(project_plan, target, files)
     with command_support.explain_write_errors():
         new_files.write_new_files(project_plan.files, project_plan.repository_folder)
@@ -228,7 +229,7 @@ def _write_project(target: Path, answers: StartAnswers, imported: ImportResult |
     _print_outcome(target, checked_project, project_plan)
 
 
-def _refuse_replacing_slices(project_plan: StartPlan, target: Path, files: Mapping[str, bytes]) -> None:
+def _refuse_replacing_slices(project_plan: ProjectPlan, target: Path, files: Mapping[str, bytes]) -> None:
     existing_slices = [
         path for path in project_plan.existing_files if path in {target.resolve() / name for name in files}
     ]
@@ -237,7 +238,7 @@ def _refuse_replacing_slices(project_plan: StartPlan, target: Path, files: Mappi
         raise click.ClickException(msg)
 
 
-def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: StartPlan) -> None:
+def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: ProjectPlan) -> None:
     """Print what there is now, and what comes next."""
     from archgen.emit.terminal.findings_text import format_summary
     from archgen.products.schema_renewal import SCHEMA_FILE

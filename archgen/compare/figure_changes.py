@@ -35,7 +35,7 @@ class WireNames:
     names: tuple[str, ...]
 
 
-Figure = TimingValue | Qos | TravelPath | WireNames
+ComparedFigure = TimingValue | Qos | TravelPath | WireNames
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +43,8 @@ class FigureChange:
     """A figure before and after; None where the interface was not there, or had no such figure."""
 
     key: FigureKey
-    before: Figure | None
-    after: Figure | None
+    before: ComparedFigure | None
+    after: ComparedFigure | None
 
 
 @dataclass(frozen=True, slots=True)

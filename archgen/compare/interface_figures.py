@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from archgen.compare.figure_changes import Figure, FigureChange, FigureKey, TravelPath
+from archgen.compare.figure_changes import ComparedFigure, FigureChange, FigureKey, TravelPath
 from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
@@ -38,7 +38,7 @@ _SIZE_NAMES = {
 }
 
 
-InterfaceFigures = Mapping[FigureKey, Figure]
+InterfaceFigures = Mapping[FigureKey, ComparedFigure]
 
 
 @dataclass
@@ -68,7 +68,7 @@ class FigureReader:
         """Whether somebody wrote a node of these endpoints; figures of others are those of a plan."""
         return any(self.architecture.nodes[endpoint.node].written for endpoint in endpoints)
 
-    def _read_paces(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
+    def _read_paces(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         if self.analysis is None:
             return
         givers = list_givers(self.architecture, interface)
@@ -82,12 +82,14 @@ class FigureReader:
         yield from self._read_sizes(interface)
         yield FigureKey(_AGE_NAME), self._find_age(self.analysis, interface)
 
-    def _read_pace(self, analysis: Analysis, endpoint: Endpoint, node: str) -> Iterator[tuple[FigureKey, Figure]]:
+    def _read_pace(
+        self, analysis: Analysis, endpoint: Endpoint, node: str
+    ) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         pace = find_pace(analysis, self._activity_names, endpoint)
         yield FigureKey("rate", node), pace.rate
         yield FigureKey("largest gap", node), pace.gap
 
-    def _read_sizes(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
+    def _read_sizes(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         if interface.flow != "topic":
             for arc in self._list_arcs(interface):
                 if name := _SIZE_NAMES[interface.flow].get(arc.role):
@@ -121,7 +123,7 @@ class FigureReader:
         arcs = (arc for name in sorted(givers | takers) for arc in arcs_from.get(name, ()) if arc.topic in names)
         return [arc for arc in arcs if {arc.source, arc.target} & givers and {arc.source, arc.target} & takers]
 
-    def _read_qos(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
+    def _read_qos(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         if interface.flow != "topic" or is_ros_1(self.architecture.distro):
             return
         sides = ("QoS offered", interface.giver_endpoints), ("QoS asked", interface.taker_endpoints)
@@ -130,7 +132,7 @@ class FigureReader:
             for endpoint in endpoints:
                 yield FigureKey(name, self._common_node(endpoint) if len(nodes) > 1 else ""), endpoint.qos
 
-    def _read_path(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, Figure]]:
+    def _read_path(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         senders, receivers = (
             self._list_hosts(endpoints) for endpoints in (interface.giver_endpoints, interface.taker_endpoints)
         )
@@ -155,7 +157,7 @@ def find_pace(analysis: Analysis, activity_names: activity_builder.ActivityNames
     return analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
 
 
-def is_same_figure(name: str, before: Figure | None, after: Figure | None) -> bool:
+def is_same_figure(name: str, before: ComparedFigure | None, after: ComparedFigure | None) -> bool:
     """Whether two figures of a name say the same; what is unknown for another reason is not the same."""
     if isinstance(before, Qos) and isinstance(after, Qos):
         return before == after or _plain_qos(before) == _plain_qos(after)
@@ -191,7 +193,7 @@ def is_close_value(before: TimingValue, after: TimingValue, negligible_share: Fr
     )
 
 
-def _is_unknown(figure: Figure | None) -> bool:
+def _is_unknown(figure: ComparedFigure | None) -> bool:
     return figure is None or (isinstance(figure, TimingValue) and figure.value is None)
 
 

@@ -76,11 +76,13 @@ class ImportOrigin:
 
     format_name: str
     file_names: tuple[str, ...]
+    arguments: tuple[str, ...] = ()
+    """Launch arguments as they were given, `NAME:=VALUE`: with others the same file is another model."""
 
     @property
     def header(self) -> str:
         """Return the first line of each slice."""
-        names = " ".join(" ".join(name.split()) for name in self.file_names)
+        names = " ".join(" ".join(word.split()) for word in (*self.file_names, *self.arguments))
         return f"# From {names} by `archgen import {self.format_name}`; with --merge it is brought up to date.\n"
 
 

@@ -55,19 +55,19 @@ class PropertyDeclaration:
     at: Span = field(compare=False, repr=False, kw_only=True)
 
 
-class Figure(NamedTuple):
+class NumberWithUnit(NamedTuple):
     """A number with its unit, empty for a bare number."""
 
     value: Decimal
     unit: str = ""
 
 
-def read_figure(text: str) -> Figure | None:
+def read_figure(text: str) -> NumberWithUnit | None:
     """Return the number and unit that a text is: `12 kg`, `5`; None for any other text."""
     match = _FIGURE.fullmatch(text.strip())
     if match is None or len(match[2]) + len(match[3] or "") > MAX_DIGITS:
         return None
-    return Figure(Decimal(match[1]), match[4] or "")
+    return NumberWithUnit(Decimal(match[1]), match[4] or "")
 
 
 def is_date(text: str) -> bool:
@@ -75,7 +75,7 @@ def is_date(text: str) -> bool:
     return _DATE.fullmatch(text) is not None
 
 
-def compare_values(text: str, other_text: str) -> int | None:
+def order_values(text: str, other_text: str) -> int | None:
     """Return -1, 0 or 1 as the first value is less, equal or greater; None where they have no order.
 
     Figures are compared only in the same unit, days with days; any other text has no order.

@@ -20,8 +20,6 @@ from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.lookup import Lookup, add_timing
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition, RosPlace
-from archgen.views.report.printed_report import make_printed_report, walk_sections
-from archgen.views.report.report_drawings import make_report_drawings
 from archgen.views.shapes import Figure, Outline, Page
 from archgen.views.timing.timing_lookup import complete_with_chains
 
@@ -79,6 +77,9 @@ class ProductInputs:
     @cached_property
     def printed_report(self) -> Outline:
         """The contents of the Word report."""
+        # Here and below: nothing but the report reads these, and a site has enough to load.
+        from archgen.views.report.printed_report import make_printed_report
+
         return make_printed_report(self.views.lookup, self._report_edition)
 
     @property
@@ -96,6 +97,9 @@ class ProductInputs:
     @cached_property
     def report_drawings(self) -> Mapping[str, Drawing]:
         """The pictures of the Word report by their own ids: those that it shows."""
+        from archgen.views.report.printed_report import walk_sections
+        from archgen.views.report.report_drawings import make_report_drawings
+
         outline = self.printed_report
         shown_ids = {
             block.graph

@@ -8,8 +8,6 @@ from pathlib import Path
 
 from archgen.emit import file_tree
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_choice import choose_backends
-from archgen.products.backend_products import render_single_file
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.product_table import PACKED, REPORT, SITE, make_diagrams_product
@@ -21,7 +19,6 @@ from archgen.products.product_writing import (
     write_started,
 )
 from archgen.products.project_views import make_scoped_lookup
-from archgen.views.records import resolved_record
 
 
 def write_report(
@@ -97,6 +94,7 @@ def write_packed(checked_project: CheckedProject, target: Path) -> None:
 def write_resolved(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
     """Write the resolved model as YAML for other programs."""
     from archgen.syntax import yaml_writer
+    from archgen.views.records import resolved_record
 
     data = resolved_record.make_record(make_scoped_lookup(checked_project, options))
     write_product_file(checked_project, target, yaml_writer.write_yaml(data).encode())
@@ -106,5 +104,8 @@ def render_exported(checked_project: CheckedProject, options: OutputOptions, bac
     """Return the single file of a text backend. Raise OutputError where none of this name makes
     one, or where its template fails.
     """
+    from archgen.products.backend_choice import choose_backends
+    from archgen.products.backend_products import render_single_file
+
     (backend,) = choose_backends(checked_project, (backend_name,), "file", options.trusted_revision)
     return render_single_file(ProductInputs(checked_project, options), backend)

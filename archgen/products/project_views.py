@@ -24,7 +24,6 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
 from archgen.views.agreement import SignedTag
-from archgen.views.changes.site_changes import mark_drawings
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
@@ -94,6 +93,8 @@ def make_views(
     )
     all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
     if options.changes:
+        from archgen.views.changes.site_changes import mark_drawings
+
         all_drawings = mark_drawings(all_drawings, options.changes)
     revision = choose_revision(checked_project, options)
     edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)

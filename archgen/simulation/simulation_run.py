@@ -15,7 +15,7 @@ from archgen.simulation.executor_state import (
 )
 from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, SimulationPlan
-from archgen.simulation.start_up import StartUp
+from archgen.simulation.start_up import AwaitedData
 
 JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
 """The order of events at one moment; two bits of the heap's keys."""
@@ -64,7 +64,7 @@ class SimulationRun:
         self.is_critical = seed % CRITICAL_INTERVAL == 0
         self.activities = ActivityStates(plan, dice, watched)
         self.wires = WireStates(plan, logged)
-        self.start_up = StartUp(plan)
+        self.start_up = AwaitedData(plan)
         last_turn = find_last_turn(seed)
         self.callbacks = CallbackStates(plan)
         self.executors = ExecutorStates(plan, dice, last_turn)

@@ -10,7 +10,7 @@ from archgen.model.graph_search import find_strong_components
 from archgen.simulation.simulation_plan import PERIODIC, SLOT_SAMPLED, SimulationPlan
 
 
-class StartUp:
+class AwaitedData:
     """What each activity of a run still awaits; `first_counted` is the number of its first activation behind that, or -1."""
 
     def __init__(self, plan: SimulationPlan) -> None:

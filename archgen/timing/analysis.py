@@ -11,32 +11,13 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.timing.figures.figure_wording import describe_value, format_duration
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 if TYPE_CHECKING:
-    from archgen.timing.load.event_models import PropagationState
-
-ResponseTier = Literal[
-    "declared",
-    "dedicated",
-    "host",
-    "non_preemptive",
-    "fifo",
-    "ros2_executor",
-    "edf",
-    "priorities",
-    "executor",
-    "cores",
-    "whole host",
-    "unknown",
-]
-"""How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
-of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `executor`,
-single-threaded; `cores`, several; `whole host`, several taken as one; the words of an order (`non_preemptive`, `fifo`,
-`edf`, `ros2_executor`): one thread or core that keeps to it.
-"""
+    from archgen.timing.load.propagation_state import PropagationState
 
 
 ChainVerdict = Literal["met", "missed", "not proven", "open"]

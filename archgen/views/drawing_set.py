@@ -15,11 +15,13 @@ from archgen.views.timing import chain_charts
 
 COMPONENT_KINDS: frozenset[GraphKind] = frozenset({"component", "implementation"})
 """The kinds of pictures of which there is one for each component."""
-GROUP_KINDS: frozenset[GraphKind] = frozenset({"group", "group-timing"})
+TIMING_KINDS: frozenset[GraphKind] = frozenset({"group-timing"})
+"""The kinds of which there is one for each group, and which show how its components run."""
+GROUP_KINDS: frozenset[GraphKind] = frozenset({"group", *TIMING_KINDS})
 """The kinds of which there is one for each group."""
 MAX_PICTURED_COMPONENTS = 300
-"""With more, the site has no picture of each component unless it is asked for: of 1,000 they take minutes to draw, and
-the map shows the same at once.
+"""With more, the site has no picture of each component, nor of each group's timing, unless it is asked for: of 1,000 they
+take minutes to draw, and the map shows the same at once.
 """
 MAX_PICTURED_GROUPS = 200
 """The same for groups: a picture takes as long as five checks of its components."""
@@ -60,8 +62,11 @@ def list_undrawn_kinds(components: int, groups: int, *, wish: bool | None) -> fr
     """Return the kinds of pictures that a site of so many components and groups has none of, unless it is wished."""
     leaves_out_components = components > MAX_PICTURED_COMPONENTS if wish is None else not wish
     leaves_out_groups = groups > MAX_PICTURED_GROUPS and not wish
-    return (COMPONENT_KINDS if leaves_out_components else frozenset()) | (
-        GROUP_KINDS if leaves_out_groups else frozenset()
+    leaves_out_timing = components > MAX_PICTURED_COMPONENTS and not wish
+    return (
+        (COMPONENT_KINDS if leaves_out_components else frozenset())
+        | (TIMING_KINDS if leaves_out_timing else frozenset())
+        | (GROUP_KINDS if leaves_out_groups else frozenset())
     )
 
 

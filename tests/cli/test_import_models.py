@@ -139,6 +139,9 @@ def test_errors_that_come_with_a_model_are_shown(run: Run) -> None:
         (("robot.toy", "--into", "x.yaml"), "--into does not go with toy"),
         (("robot.toy",), "there is no project here: `-o FOLDER` makes a new one of the model"),
         (("reqif", "notes.txt", "-o", "x"), "--output does not go with reqif"),
+        (("robot.toy", "rate:=3", "-o", "x"), "toy takes no arguments such as rate:=..., as launch files do"),
+        (("launch", "rate:=3", "-o", "x"), "there is no file launch"),
+        (("rate:=3", "-o", "x"), "name a file, too"),
     ],
 )
 def test_wrong_words_are_told(words: tuple[str, ...], message: str, run: Run) -> None:
@@ -147,6 +150,21 @@ def test_wrong_words_are_told(words: tuple[str, ...], message: str, run: Run) ->
     done = run("import", *words)
     assert done.status == 2
     assert message in done.err
+
+
+def test_launch_arguments_are_given_and_remembered(run: Run) -> None:
+    Path("a.launch.xml").write_text('<launch><arg name="n"/><node pkg="p" exec="e" name="$(var n)"/></launch>')
+    assert run("import", "launch", "a.launch.xml", "n:=first", "-o", "robot").status == 0
+    text = Path("robot/a_launch.yaml").read_text()
+    assert text.startswith("# From a.launch.xml n:=first by `archgen import launch`;")
+    assert "\n  first:\n" in text
+    assert run("import", "a.launch.xml", "n:=first", "-o", "robot", "--merge").status == 0
+    done = run("import", "a.launch.xml", "n:=second", "-o", "robot", "--merge")
+    assert done.status == 2
+    assert "a_launch.yaml does not come from this file: nothing was written" in done.err
+    done = run("import", "a.launch.xml", "m:=first", "-o", "other")
+    assert done.status == 1
+    assert "declares an argument `m`\n  = help: did you mean `n`?" in done.err
 
 
 def test_a_file_that_is_none_and_one_with_nothing_in_it(run: Run) -> None:

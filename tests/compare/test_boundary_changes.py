@@ -16,7 +16,7 @@ from archgen.compare.boundary_changes import _follow_topics as follow_topics
 from archgen.compare.boundary_changes import _InterfaceVersion as InterfaceVersion
 from archgen.compare.boundary_changes import _merge_pairs as merge_pairs
 from archgen.compare.boundary_changes import find_boundary_changes
-from archgen.compare.figure_changes import BoundaryChange, Figure, FigureKey, WireNames
+from archgen.compare.figure_changes import BoundaryChange, ComparedFigure, FigureKey, WireNames
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.model.node import Qos
@@ -30,7 +30,7 @@ AB = ("a", "b")
 
 def read_version(figures: str = "", wire: str = "/x", lacks: str = "", own_id: str = "") -> InterfaceVersion:
     """Return an interface: `rate=10 asked=5`; `lacks` says which ends nobody wrote, a QoS is its deadline in ns (`-`)."""
-    values: dict[FigureKey, Figure] = {}
+    values: dict[FigureKey, ComparedFigure] = {}
     for word in figures.split():
         name, value = word.split("=")
         if name in {"asked", "offered"}:

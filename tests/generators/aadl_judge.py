@@ -136,7 +136,7 @@ def judge_packages(files: dict[str, str]) -> dict[str, dict[str, Classifier]]:
             assert f"{unit}::" in text, f"{name} does not use {unit}"
     for text in files.values():
         used = {match.lower() for match in re.findall(r"\b(\w+)::", re.sub(r'"[^"]*"|--[^\n]*', "", text))}
-        for unit in used - {"base_types"}:
+        for unit in used - {"base_types", "data_model"}:
             assert unit in units, unit
         own = re.findall(r"^(?:package|property set) (\w+)", text, re.MULTILINE)[0].lower()
         listed = re.search(r"^  with ([^;]*);", text, re.MULTILINE)

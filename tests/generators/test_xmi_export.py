@@ -16,7 +16,7 @@ from archgen.products.project_outputs import render_exported
 from archgen.products.project_views import select_elements
 from archgen.syntax.yaml_writer import write_yaml
 from tests import hostile
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 ID = "{http://www.omg.org/spec/XMI/20131001}id"
 TYPE = "{http://www.omg.org/spec/XMI/20131001}type"
@@ -143,7 +143,7 @@ def list_names(root: ET.Element, kind: str) -> list[str]:
 
 
 def test_select_type_gives_the_classes_of_a_library_abstract_ones_too(library: Path) -> None:
-    root = check_model(archgen("export", "xmi", "--select", "type:", cwd=library).stdout.decode())
+    root = check_model(archgen_here("export", "xmi", "--select", "type:", cwd=library).stdout.decode())
     assert list_names(root, "Class") == ["Sensor", "Camera head", "Viewer"]
     abstract = [each.attrib["name"] for each in root.iter() if each.attrib.get("isAbstract") == "true"]
     assert abstract == ["Sensor"]
@@ -154,7 +154,7 @@ def test_select_type_gives_the_classes_of_a_library_abstract_ones_too(library: P
 
 
 def test_other_exports_still_ask_for_a_value_of_type(library: Path) -> None:
-    refused = archgen("export", "graphml", "--select", "type:", cwd=library, status=2)
+    refused = archgen_here("export", "graphml", "--select", "type:", cwd=library, status=2)
     assert b"`type:` needs a value" in refused.stderr
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from archgen import importers
-from archgen.start import start_answers, start_plan, starter_slices
+from archgen.start import project_plan, start_answers, starter_slices
 from tests.importers.test_cell_ledger import find_silent_losses
 
 TABLES = Path(__file__).parent / "partner_tables"
@@ -88,7 +88,7 @@ def test_the_project_of_a_partners_table_has_no_errors(name: str) -> None:
     imported = _import(name)
     answers = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
     files = starter_slices.imported_files(answers, imported.data, has_other_yaml=False)
-    assert [d.message for d in start_plan.judge_files(files, "r").findings if d.severity == "error"] == []
+    assert [d.message for d in project_plan.judge_files(files, "r").findings if d.severity == "error"] == []
 
 
 def test_a_suppliers_workbook_keeps_what_it_says() -> None:

@@ -9,7 +9,7 @@ import pytest
 from archgen import importers
 from archgen.importers import table_cells
 from archgen.pipeline import CheckedProject
-from archgen.start import start_answers, start_plan, starter_slices
+from archgen.start import project_plan, start_answers, starter_slices
 
 
 def read(text: str | bytes) -> importers.ImportResult:
@@ -29,7 +29,7 @@ def said(text: str | bytes) -> list[str]:
 def made(imported: importers.ImportResult) -> CheckedProject:
     """Check the files that the data become."""
     given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    return start_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
+    return project_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
 
 
 CONNECTIONS = """\

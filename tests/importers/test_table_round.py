@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from archgen import importers
 from archgen.cli import main as verbs
 from archgen.pipeline import CheckedProject, check_project
-from archgen.start import start_answers, start_plan, starter_slices
+from archgen.start import project_plan, start_answers, starter_slices
 from tests.property_sizes import count_examples
-from tests.running import RAMCIP, ROOT, archgen
+from tests.running import RAMCIP, ROOT, archgen_here
 
 FIRST = ROOT / "examples" / "first_robot"
 
@@ -25,7 +25,7 @@ def read(data: bytes) -> importers.ImportResult:
 def made(imported: importers.ImportResult) -> CheckedProject:
     """Check the files that the data become."""
     given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    return start_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
+    return project_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
 
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12) | st.sampled_from(
@@ -115,7 +115,7 @@ def test_what_archgen_list_writes_comes_back() -> None:
 
 
 def test_connections_as_listed_come_back(tmp_path: Path) -> None:
-    table = archgen("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
+    table = archgen_here("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
     before, after = (
         check_project(FIRST).architecture,
         made(importers.import_tables([("c.csv", table)], "jazzy")).architecture,

@@ -87,6 +87,15 @@ def test_pages_say_that_their_picture_is_left_out_for_its_number(
     assert "No picture" not in (tmp_path / "all" / "groups" / "g.html").read_text()
 
 
+def test_timing_of_groups_is_left_out_with_pictures_of_components_unless_they_are_asked_for() -> None:
+    assert drawing_set.list_undrawn_kinds(300, 200, wish=None) == frozenset()
+    assert drawing_set.list_undrawn_kinds(301, 200, wish=None) == {"component", "implementation", "group-timing"}
+    assert drawing_set.list_undrawn_kinds(301, 200, wish=True) == frozenset()
+    # Who wants no pictures of components in a small site keeps those of groups.
+    assert drawing_set.list_undrawn_kinds(300, 200, wish=False) == {"component", "implementation"}
+    assert drawing_set.list_undrawn_kinds(2, 201, wish=None) == {"group", "group-timing"}
+
+
 def test_a_site_with_kept_pictures_has_the_bytes_of_a_fresh_one(
     project: CheckedProject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

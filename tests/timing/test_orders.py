@@ -12,7 +12,8 @@ from typing import get_args
 import pytest
 
 from archgen.emit.terminal import timing_legend
-from archgen.timing.analysis import Analysis, ResponseTier
+from archgen.timing.analysis import Analysis
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.load import host_loads
 from archgen.views.timing import timing_tables
 from tests.timing.sketches import analyse_sketch

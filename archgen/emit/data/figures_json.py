@@ -8,7 +8,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from archgen.compare.figure_changes import BoundaryChange, Figure, FigureChange, LoadChange, TravelPath, WireNames
+from archgen.compare.figure_changes import (
+    BoundaryChange,
+    ComparedFigure,
+    FigureChange,
+    LoadChange,
+    TravelPath,
+    WireNames,
+)
 from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
 from archgen.model.node import Qos
 from archgen.views.inline_text import list_qos_settings
@@ -41,7 +48,7 @@ def _figure_record(change: FigureChange) -> dict[str, Any]:
     }
 
 
-def _figure_value(name: str, figure: Figure | None) -> object:
+def _figure_value(name: str, figure: ComparedFigure | None) -> object:
     if figure is None:
         return None
     if isinstance(figure, Qos):

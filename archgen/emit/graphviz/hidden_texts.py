@@ -93,21 +93,21 @@ class HiddenTexts:
 
     def _restore_dot(self, dot: str) -> str:
         dot = _DOT_LINK.sub(self._write_dot_link, dot)
-        return _DOT_TIP.sub(lambda found: quote_value(self.tips[found[1]]), dot)
+        return _DOT_TIP.sub(lambda match: quote_value(self.tips[match[1]]), dot)
 
     def _restore_svg(self, svg: str) -> str:
         svg = _SVG_LINK.sub(self._write_svg_link, svg)
-        svg = _SVG_TIP.sub(lambda found: f"<title>{_escape_tip(self.tips[found[1]])}</title>\n", svg)
+        svg = _SVG_TIP.sub(lambda match: f"<title>{_escape_tip(self.tips[match[1]])}</title>\n", svg)
         description = f"<desc>{escape(clean_label_text(self.alt, _MAX_ALT))}</desc>\n" if self.alt else ""
         return _SVG_ALT.sub(lambda _: description, svg, count=1)
 
-    def _write_svg_link(self, found: re.Match[str]) -> str:
-        mark, attributes, inner = found.groups()
+    def _write_svg_link(self, match: re.Match[str]) -> str:
+        mark, attributes, inner = match.groups()
         address = self.addresses.get(mark)
         return f'<a xlink:href="{escape(address)}"{attributes}>\n{inner}</a>\n' if address else inner
 
-    def _write_dot_link(self, found: re.Match[str]) -> str:
-        address = self.addresses.get(found[1])
+    def _write_dot_link(self, match: re.Match[str]) -> str:
+        address = self.addresses.get(match[1])
         return f'URL={quote_value(address)} target="_top" ' if address else ""
 
 

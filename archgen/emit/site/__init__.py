@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from archgen.emit import backend_manifests
 from archgen.emit.file_tree import FileTree, make_file_tree
@@ -22,9 +21,9 @@ from archgen.emit.site.explorer_files import (
     list_explorer_scripts,
 )
 from archgen.emit.site.html_blocks import PageWriter
-from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.matrix_files import build_matrix_files
 from archgen.emit.site.matrix_html import write_matrix
+from archgen.emit.site.page_frame import PageFrame, write_frame
 from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
 from archgen.emit.site.page_policy import LIVE_PAGE_POLICY, PAGE_POLICY
 from archgen.emit.site.search_files import build_search_files
@@ -33,9 +32,6 @@ from archgen.frozen import dataclass, replace
 from archgen.views.explorer.map_shapes import ExplorerMap
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, Paragraph
-
-if TYPE_CHECKING:
-    from jinja2 import Environment, Template
 
 FONT_FOLDER = Path(__file__).resolve().parent.parent / "fonts"
 """The font that pictures are laid out with. Pages load the same, so that text fits its boxes in every browser."""
@@ -106,17 +102,9 @@ def write_page(
     path: str, page: Page, pictures: Mapping[str, Picture], frame: SiteFrame, chapter_writer: ChapterWriter
 ) -> bytes:
     """Write one page, which is at this path of the site."""
-    template = _page_template(_read_backend().folder)
     writer = PageWriter(open_page(path, frame.links), pictures, chapter_writer)
-    variables = _page_variables(page, writer, frame.navigation, frame.notices)
-    variables |= _explorer_variables(page, writer, frame.map_parts)
-    return template.render(
-        variables,
-        title=replace_forbidden(frame.title),
-        revision=replace_forbidden(frame.revision),
-        version=frame.version,
-        policy=LIVE_PAGE_POLICY if frame.version else PAGE_POLICY,
-    ).encode()
+    framed_page = _frame_page(page, writer, frame)
+    return write_frame(_add_explorer(framed_page, page, writer, frame.map_parts)).encode()
 
 
 def write_picture(picture_id: str, picture: Picture, links: SiteLinks) -> bytes | None:
@@ -125,7 +113,7 @@ def write_picture(picture_id: str, picture: Picture, links: SiteLinks) -> bytes 
         return None
     current_page = open_page(drawing.picture_path(picture_id), links)
     svg = drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
-    return drawing.write_signs(svg.decode()).encode()
+    return drawing.write_picture_signs(svg.decode()).encode()
 
 
 @cache
@@ -133,71 +121,51 @@ def _read_backend() -> backend_manifests.Backend:
     return backend_manifests.read_shipped_backend("site")
 
 
-def _page_variables(
-    page: Page, writer: PageWriter, navigation: SiteNavigation, notices: Sequence[Paragraph]
-) -> dict[str, object]:
-    """Return the variables of a page's template."""
-    current_page = writer.current_page
-    return {
-        "heading": replace_forbidden(page.title),
-        "lead": replace_forbidden(page.lead),
-        "place": writer.write_inlines((page.place,)) if page.place else "",
-        "verdict": writer.write_inlines(page.verdict),
-        "root": current_page.root,
-        "start": current_page.root + navigation.start,
-        "crumbs": [(replace_forbidden(text), href) for text, href in navigation.page_crumbs(page, current_page.root)],
-        "navigation": navigation.write_tree(page, current_page.root),
-        "notices": [writer.write_paragraph(notice) for notice in notices],
-        "contents": [
-            (replace_forbidden(section.title), current_page.id_for(section.anchor)) for section in page.section.sections
-        ],
-        "matrix": write_matrix(page.matrix, current_page) if page.matrix else "",
-        "dashboard": writer.write_dashboard(page.dashboard) if page.dashboard else "",
-        "waterfall": writer.write_waterfall(page.waterfall) if page.waterfall else "",
-        "content": writer.write_content(page.section),
-    }
+def _frame_page(page: Page, writer: PageWriter, frame: SiteFrame) -> PageFrame:
+    """Write a page's parts, and put them into its frame."""
+    current_page, navigation = writer.current_page, frame.navigation
+    root = current_page.root
+    return PageFrame(
+        site_title=frame.title,
+        revision=frame.revision,
+        version=frame.version,
+        policy=LIVE_PAGE_POLICY if frame.version else PAGE_POLICY,
+        root=root,
+        start=root + navigation.start,
+        heading=page.title,
+        lead=page.lead,
+        crumbs=navigation.page_crumbs(page, root),
+        contents=[(section.title, current_page.id_for(section.anchor)) for section in page.section.sections],
+        navigation=navigation.write_tree(page, root),
+        verdict=writer.write_inlines(page.verdict),
+        place=writer.write_inlines((page.place,)) if page.place else "",
+        notices=[writer.write_paragraph(notice) for notice in frame.notices],
+        matrix=write_matrix(page.matrix, current_page) if page.matrix else "",
+        dashboard=writer.write_dashboard(page.dashboard) if page.dashboard else "",
+        waterfall=writer.write_waterfall(page.waterfall) if page.waterfall else "",
+        content=writer.write_content(page.section),
+    )
 
 
-def _explorer_variables(page: Page, writer: PageWriter, map_parts: Sequence[str]) -> dict[str, object]:
-    """Return what the explorer adds to a page: its scripts to its own, a link to those of elements on the map."""
+def _add_explorer(framed_page: PageFrame, page: Page, writer: PageWriter, map_parts: Sequence[str]) -> PageFrame:
+    """Add what the explorer adds to a page: its scripts to its own, a link to those of elements on the map."""
     root = writer.current_page.root
-    style = begin_script = link = ""
-    scripts: tuple[str, ...] = ()
     if page.anchor != EXPLORER_ANCHOR:
         address = find_explorer_address(page, writer.current_page.links)
-        link = root + address if address else ""
-    elif map_parts:
-        style = root + EXPLORER_STYLE
-        begin_script, scripts = list_explorer_scripts(map_parts)
-    return {
-        "explorer_style": style,
-        "explorer_begin": root + begin_script,
-        "explorer_scripts": [root + script for script in scripts],
-        "explorer_link": link,
-    }
+        return replace(framed_page, explorer_link=root + address) if address else framed_page
+    if not map_parts:
+        return framed_page
+    begin_script, scripts = list_explorer_scripts(map_parts)
+    return replace(
+        framed_page,
+        explorer_style=root + EXPLORER_STYLE,
+        explorer_begin=root + begin_script,
+        explorer_scripts=[root + script for script in scripts],
+    )
 
 
 def _navigation_kinds(backend: backend_manifests.Backend) -> tuple[tuple[str, str], ...]:
     return tuple((entry["kind"], entry["title"]) for entry in backend.options["navigation"])
-
-
-@cache
-def _page_template(folder: Path) -> Template:
-    """Compile the template of pages, once for all pages and all runs of a process."""
-    return page_environment(folder).get_template("page.html.j2")
-
-
-def page_environment(folder: Path) -> Environment:
-    """Create Jinja's environment for the site's own templates: all that is not marked safe is escaped."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    return Environment(
-        loader=FileSystemLoader(folder / "templates"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
 
 
 def _picture_files(pictures: Mapping[str, Picture], links: SiteLinks) -> Iterator[tuple[str, bytes]]:

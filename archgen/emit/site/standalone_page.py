@@ -86,6 +86,14 @@ def _page_style(folder: Path) -> str:
 
 @cache
 def _standalone_template(folder: Path) -> Template:
-    from archgen.emit.site import page_environment
+    """Compile the template of the page: all that is not marked safe is escaped."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    return page_environment(folder).get_template("alone.html.j2")
+    environment = Environment(
+        loader=FileSystemLoader(folder / "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("alone.html.j2")

@@ -112,40 +112,40 @@ class _Planner:
         if other_runs:
             self.entries[path] = replace(entry, runs=other_runs)
             return
-        found = self.disk.read(path)
-        if found.exists and entry.is_own:
+        on_disk = self.disk.read(path)
+        if on_disk.exists and entry.is_own:
             self.steps.append(FileStep(path, "yours", "nothing that is generated needs it any more"))
-        elif found.exists and path in self.choices.kept:
+        elif on_disk.exists and path in self.choices.kept:
             self.steps.append(FileStep(path, "left", "it is no longer made, and kept: it is yours now"))
-        elif found.digest in entry.digests:
+        elif on_disk.digest in entry.digests:
             self.removals.append(path)
             self.steps.append(FileStep(path, "removed"))
-        elif found.exists:
+        elif on_disk.exists:
             self.steps.append(FileStep(path, "left", "it is no longer made, but was changed by hand: it is yours now"))
         # With a link, a folder or the like in its place it is gone as well, and folders behind a link are not archgen's.
-        elif not found.obstacle:
+        elif not on_disk.obstacle:
             self.vanished.append(path)
 
     def plan_wanted(self, file: GeneratedFile) -> None:
         """Plan what happens at the path of a file that this run makes."""
         entry = self.old_record.files.get(file.path)
-        found = self._ignore_leaving(self.disk.read(file.path), file.path)
+        on_disk = self._ignore_leaving(self.disk.read(file.path), file.path)
         digest = hashlib.sha256(file.data).hexdigest()
-        if found.obstacle:
-            self._keep(file, entry, "blocked", f"`{found.obstacle_path}` {found.obstacle}")
-        elif not found.exists:
-            self._write(file, entry, digest, found, "new")
+        if on_disk.obstacle:
+            self._keep(file, entry, "blocked", f"`{on_disk.obstacle_path}` {on_disk.obstacle}")
+        elif not on_disk.exists:
+            self._write(file, entry, digest, on_disk, "new")
         elif self._is_users_own(file, entry):
             words = _find_missing_words(file, self.disk.read_data(file.path)) if file.expected_words else ()
             self._keep_own(file, entry, digest, f"it lacks {', '.join(words)}" if words else "")
         elif file.path in self.choices.kept and not (entry and file.path in self.choices.overwritten):
             self._keep_own(file, entry, digest, "")
-        elif found.digest == digest:
-            self._keep_same(file, entry, digest, found)
-        elif found.digest in self.known_digests[fold_path(file.path)] or (
+        elif on_disk.digest == digest:
+            self._keep_same(file, entry, digest, on_disk)
+        elif on_disk.digest in self.known_digests[fold_path(file.path)] or (
             entry and file.path in self.choices.overwritten
         ):
-            self._write(file, entry, digest, found, "changed")
+            self._write(file, entry, digest, on_disk, "changed")
         else:
             self._keep(file, entry, "edited" if entry else "foreign")
 
@@ -153,30 +153,30 @@ class _Planner:
         was_taken_over = entry is not None and entry.kept and file.path not in self.choices.overwritten
         return file.once or was_taken_over
 
-    def _ignore_leaving(self, found: DiskFile, path: str) -> DiskFile:
+    def _ignore_leaving(self, on_disk: DiskFile, path: str) -> DiskFile:
         """Return what stands at a path once the files are gone that this run removes."""
-        leaving = set(self.removals) if found.obstacle else set()
-        if found.obstacle == "is a file" and found.obstacle_path in leaving:
+        leaving = set(self.removals) if on_disk.obstacle else set()
+        if on_disk.obstacle == "is a file" and on_disk.obstacle_path in leaving:
             return DiskFile()
-        if found.obstacle == "is a folder" and leaving.issuperset(self.disk.list_below(path)):
+        if on_disk.obstacle == "is a folder" and leaving.issuperset(self.disk.list_below(path)):
             return DiskFile()
-        return found
+        return on_disk
 
     def _write(
-        self, file: GeneratedFile, entry: RecordedFile | None, digest: str, found: DiskFile, verb: FileVerb
+        self, file: GeneratedFile, entry: RecordedFile | None, digest: str, on_disk: DiskFile, verb: FileVerb
     ) -> None:
         self.writes[file.path] = file
-        if found.exists:
-            self.modes[file.path] = _choose_mode(file, entry, found)
+        if on_disk.exists:
+            self.modes[file.path] = _choose_mode(file, entry, on_disk)
         self.entries[file.path] = self._record(file, entry, digest)
         self.steps.append(FileStep(file.path, verb))
 
-    def _keep_same(self, file: GeneratedFile, entry: RecordedFile | None, digest: str, found: DiskFile) -> None:
-        mode = _choose_mode(file, entry, found)
-        if mode != found.mode:
+    def _keep_same(self, file: GeneratedFile, entry: RecordedFile | None, digest: str, on_disk: DiskFile) -> None:
+        mode = _choose_mode(file, entry, on_disk)
+        if mode != on_disk.mode:
             self.modes[file.path] = mode
         self.entries[file.path] = self._record(file, entry, digest)
-        self.steps.append(FileStep(file.path, "changed" if mode != found.mode else "same"))
+        self.steps.append(FileStep(file.path, "changed" if mode != on_disk.mode else "same"))
 
     def _keep_own(self, file: GeneratedFile, entry: RecordedFile | None, digest: str, note: str) -> None:
         own = self._record(file, entry, digest)
@@ -214,12 +214,12 @@ class _Planner:
         )
 
 
-def _choose_mode(file: GeneratedFile, entry: RecordedFile | None, found: DiskFile) -> int:
+def _choose_mode(file: GeneratedFile, entry: RecordedFile | None, on_disk: DiskFile) -> int:
     """Return the permissions of a file that is there already: its own, but for running it."""
     if file.executable:
-        return found.mode | (found.mode & 0o444) >> 2
+        return on_disk.mode | (on_disk.mode & 0o444) >> 2
     # What the user made executable himself stays so.
-    return found.mode & ~0o111 if entry and entry.executable else found.mode
+    return on_disk.mode & ~0o111 if entry and entry.executable else on_disk.mode
 
 
 def _find_missing_words(file: GeneratedFile, data: bytes) -> tuple[str, ...]:

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.aadl.aadl_tree import Property
+from archgen.importers.aadl.aadl_tokens import MAX_TOKENS, AadlText, TooManyTokensError
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
-from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
+from archgen.importers.aadl.classifier_names import ClassifierNames
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
 from archgen.importers.aadl.data_types import DataTypes
 from archgen.importers.aadl.hardware_mapping import HardwareMapper
@@ -24,45 +24,19 @@ from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.robot_groups import GroupBuilder
 from archgen.importers.aadl.structures import Structure, StructureFinder
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
+from archgen.importers.aadl.untaken_notes import tell_untaken
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
-
-MAX_BYTES = 16_000_000
-_TAKEN_PROPERTIES = frozenset(
-    [
-        "dispatch_protocol",
-        "period",
-        "deadline",
-        "dispatch_jitter",
-        "compute_execution_time",
-        "priority",
-        "queue_size",
-        "source_text",
-        "source_name",
-        "actual_processor_binding",
-        "actual_connection_binding",
-        "scheduling_protocol",
-        "latency",
-        "transmission_time",
-        "actual_latency",
-        "topic_properties::name",
-        "topic_properties::default_name",
-        "sei::bandwidthcapacity",
-        "bus_properties::bandwidth",
-        "data_model::data_representation",
-        "data_model::enumerators",
-        "data_model::element_names",
-        "data_model::base_type",
-    ]
-)
 
 
 def read_aadl(files: Sequence[Path]) -> ForeignImport:
     """Return what files in AADL say. Raise ForeignFileError for one that cannot be read at all."""
     notes = NoteList()
     names = ClassifierNames()
+    tokens_left = MAX_TOKENS
     for file in files:
-        parsed = _read_file(file, notes)
+        parsed = _read_file(file, notes, tokens_left)
+        tokens_left -= parsed.token_count
         names.add_packages(parsed.packages)
         names.add_property_sets(parsed.property_sets)
     for name, span, first in names.repeated:
@@ -72,9 +46,14 @@ def read_aadl(files: Sequence[Path]) -> ForeignImport:
     return _ModelImport(names, notes).make_import()
 
 
-def _read_file(file: Path, notes: NoteList) -> ParsedText:
-    text = _decode(str(file), read_bounded(file, MAX_BYTES), notes)
-    parsed = parse_text(str(file), text)
+def _read_file(file: Path, notes: NoteList, max_tokens: int) -> ParsedText:
+    text = _decode(str(file), read_bounded(file), notes)
+    try:
+        parsed = parse_text(str(file), text, max_tokens)
+    except TooManyTokensError as error:
+        words = f"up to here the model has more than {MAX_TOKENS:,} words and signs"
+        span = AadlText(str(file), text).span(error.offset, error.offset + 1)
+        raise ForeignFileError(words, span, "import the packages that you need") from None
     if not parsed.packages and not parsed.property_sets:
         fault = parsed.faults[0] if parsed.faults else None
         words = "there is no AADL in it: neither a package nor a property set"
@@ -166,7 +145,7 @@ class _ModelImport:
         }
         taken = self._count_taken(roots, data_count)
         taken |= {"processor": len(hardware.hosts), "bus": len(hardware.links), "end to end flow": len(chains.chains)}
-        self._tell_left()
+        tell_untaken(self._resolver, self._used, self._notes)
         title = next((find_own_text(system.scope, (), "title") for system in groups.systems), "")
         if not title and len(self._names.packages) == 1:
             title = next(iter(self._names.packages.values())).name
@@ -204,43 +183,6 @@ class _ModelImport:
             waiting += [part.structure for part in structure.parts.values() if part.structure]
         counts["data"] = data_count
         return dict(sorted(counts.items()))
-
-    def _tell_left(self) -> None:
-        """Tell of properties, annexes and classifiers that were not taken."""
-        known_sets = set(self._names.property_sets)
-        for known in self._names.known.values():
-            classifier = known.classifier
-            for name, span in classifier.annexes:
-                self._notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
-            for association in _list_associations(known):
-                self._tell_property(association, known_sets)
-            if classifier.modes:
-                words = "modes are read over: what is in some modes alone counts always"
-                self._notes.add_counted("modes", words, classifier.span)
-            if classifier.calls and classifier.category != "subprogram":
-                self._notes.add_counted("calls", "sequences of calls are not taken", classifier.span)
-        for package in self._names.packages.values():
-            for name, span in package.annexes:
-                self._notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
-
-    def _tell_property(self, association: Property, known_sets: set[str]) -> None:
-        name = fold_property_name(association.name)
-        set_name = name.rpartition("::")[0]
-        if id(association) in self._used.ids or set_name == "archgen" or name in _TAKEN_PROPERTIES:
-            return
-        words = "archgen has no word for this property"
-        if set_name and set_name not in known_sets:
-            words = f"the property set {set_name} is in none of the files, and archgen has no word for this property"
-        self._notes.add_counted(f"property {association.name}", words, association.span)
-
-
-def _list_associations(known: KnownClassifier) -> list[Property]:
-    classifier = known.classifier
-    found = list(classifier.properties)
-    elements = (classifier.features, classifier.subcomponents, classifier.connections, classifier.flows)
-    for written in elements:
-        found += [association for element in written for association in element.properties]
-    return found
 
 
 def _list_owners(bodies: Mapping[str, Body]) -> Iterator[str]:

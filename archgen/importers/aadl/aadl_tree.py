@@ -9,6 +9,8 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 
 Path = tuple[str, ...]
 """A path of names, as `publisher.msg_out`; in lower case only where it is compared."""
+Modes = tuple[str, ...]
+"""The modes in which something counts, as they are written; empty where it counts in all."""
 
 
 @dataclass(slots=True)
@@ -76,7 +78,11 @@ class Property:
     span: Span
     paths: tuple[Path, ...] = ()
     appended: bool = False
-    in_modes: bool = False
+    modes: Modes = ()
+    other_values: tuple[tuple[AadlValue, Modes], ...] = ()
+    """Further values, with the modes in which they count."""
+    made_from: tuple[Property, ...] = ()
+    """The associations that it was put together from: what its list goes on behind, or the one with all values."""
 
 
 @dataclass(slots=True)
@@ -125,7 +131,7 @@ class Subcomponent:
     bindings: dict[str, Binding] = field(default_factory=dict)
     refined: bool = False
     dimensions: tuple[str, ...] = ()
-    in_modes: bool = False
+    modes: Modes = ()
     properties: list[Property] = field(default_factory=list)
 
 
@@ -141,6 +147,7 @@ class Connection:
     both_ways: bool = False
     refined: bool = False
     properties: list[Property] = field(default_factory=list)
+    modes: Modes = ()
 
 
 @dataclass(slots=True)
@@ -153,6 +160,7 @@ class Flow:
     span: Span
     refined: bool = False
     properties: list[Property] = field(default_factory=list)
+    modes: Modes = ()
 
 
 @dataclass(slots=True)
@@ -173,6 +181,7 @@ class Classifier:
     calls: list[Subcomponent] = field(default_factory=list)
     flows: list[Flow] = field(default_factory=list)
     modes: list[str] = field(default_factory=list)
+    initial_mode: str = ""
     properties: list[Property] = field(default_factory=list)
     annexes: list[tuple[str, Span]] = field(default_factory=list)
 

@@ -42,7 +42,9 @@ def is_marked(scope: Scope, path: Path, key: str) -> bool:
 
 def read_component_words(scope: Scope) -> dict[str, Any]:
     """Return what archgen says of a component or group."""
-    return {key: text for key in _COMPONENT_KEYS if (text := find_own_text(scope, (), key))}
+    words: dict[str, Any] = {key: text for key in _COMPONENT_KEYS if (text := find_own_text(scope, (), key))}
+    tags = [decode_text(text) for text in read_texts(scope.value((), "archgen::tags"))]
+    return {**words, "tags": tags} if tags else words
 
 
 def read_node_words(scope: Scope) -> dict[str, Any]:

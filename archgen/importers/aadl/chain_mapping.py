@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from archgen.frozen import dataclass
 from archgen.importers.aadl.aadl_tree import Flow, Path
 from archgen.importers.aadl.archgen_words import find_own_texts
 from archgen.importers.aadl.component_bodies import Body
@@ -12,6 +13,16 @@ from archgen.importers.aadl.property_values import Scope, read_time_range
 from archgen.importers.aadl.robot_groups import LaunchedSystem
 from archgen.importers.aadl.structures import Structure
 from archgen.model.element_ids import make_id, make_unique_id
+
+
+@dataclass(frozen=True, slots=True)
+class _FlowPlace:
+    """Where end to end flows stand: the ids from the group on, and what archgen says of the flows there, by their names."""
+
+    structure: Structure
+    scope: Scope
+    ids: tuple[str, ...]
+    own_words: Mapping[str, Mapping[str, str]]
 
 
 class ChainMapper:
@@ -29,34 +40,44 @@ class ChainMapper:
         places += [(frame.structure, frame.scope, (frame.group_id,)) for frame in system.frames if frame.path]
         places += [(inst.structure, inst.scope, inst.ids) for inst in system.instances.values() if inst.structure.parts]
         for structure, scope, ids in places:
+            own_words = {key: find_own_texts(scope, (), key) for key in ("flow_ways", "flow_ids", "flow_titles")}
             for flow in structure.resolved.flows.values():
                 if flow.kind == "end to end":
-                    self._add_chain(system, structure, scope, ids, flow)
+                    self._add_chain(system, _FlowPlace(structure, scope, ids, own_words), flow)
 
-    def _add_chain(
-        self, system: LaunchedSystem, structure: Structure, scope: Scope, ids: tuple[str, ...], flow: Flow
-    ) -> None:
-        own_ways = find_own_texts(scope, (), "flow_ways")
-        through = own_ways[flow.name].split(", ") if flow.name in own_ways else []
+    def _add_chain(self, system: LaunchedSystem, place: _FlowPlace, flow: Flow) -> None:
+        own_way = place.own_words["flow_ways"].get(flow.name, "")
+        through = own_way.split(", ") if own_way else []
         for step in () if through else flow.steps:
-            for reference in _name_step(system, structure, ids, step):
+            if _leads_nowhere(place.structure, step):
+                words = f"step {'.'.join(step)} of flow {flow.name} is neither a part nor a connection; it is left out"
+                self._notes.add_contradiction("end to end flow", words, flow.span)
+            for reference in _name_step(system, place.structure, place.ids, step):
                 if not through or through[-1] != reference:
                     through.append(reference)
         if len(through) <= 1:
             words = f"flow {flow.name} leads through fewer than two components"
             self._notes.add("end to end flow", words, flow.span)
             return
-        own_id = find_own_texts(scope, (), "flow_ids").get(flow.name, "")
+        own_id = place.own_words["flow_ids"].get(flow.name, "")
         chain_id = make_unique_id(make_id(own_id or flow.name, "chain"), self.chains.keys())
         body: Body = {"through": through}
-        if title := find_own_texts(scope, (), "flow_titles").get(flow.name):
+        if title := place.own_words["flow_titles"].get(flow.name):
             body["title"] = title
-        lowest, highest = read_time_range(scope.value((flow.name.lower(),), "latency"))
+        lowest, highest = read_time_range(place.scope.value((flow.name.lower(),), "latency"))
         body |= {"deadline": highest} if highest else {}
         hints = {"name": flow.name} if flow.name != chain_id and not own_id else {}
         if lowest and lowest != highest and not lowest.startswith("0 "):
             hints["shortest"] = lowest
         self.chains[chain_id] = {**body, "hints": {"aadl": hints}} if hints else body
+
+
+def _leads_nowhere(structure: Structure, step: Path) -> bool:
+    """Whether a step of a flow names nothing that stands there."""
+    name, resolved = step[0].lower(), structure.resolved
+    return not any(name in known for known in (resolved.parts, resolved.connections, resolved.ports)) and not any(
+        (name, is_inner) in resolved.flows for is_inner in (False, True)
+    )
 
 
 def _name_step(system: LaunchedSystem, structure: Structure, ids: tuple[str, ...], step: Path) -> Iterator[str]:

@@ -67,7 +67,6 @@ class ClassifierNames:
     def add_packages(self, packages: Iterable[Package]) -> None:
         """Add packages; the same package in several files is one (its public part may stand apart)."""
         for package in packages:
-            own_names: set[str] = set()
             first = self.packages.setdefault(package.name.lower(), package)
             if first is not package:
                 first.renames.update(package.renames)
@@ -76,7 +75,6 @@ class ClassifierNames:
                 earlier = self.known.get(entry.key)
                 if earlier is None:
                     self.known[entry.key] = entry
-                    own_names.add(entry.key)
                 else:
                     self.repeated.append((entry.full_name, classifier.span, earlier.classifier.span))
 

@@ -189,7 +189,7 @@ def parse_subcomponent(cursor: TokenCursor) -> Subcomponent:
     if found.dimensions and cursor.at("("):
         _parse_array_elements(cursor)
     found.properties = parse_property_list(cursor)
-    found.in_modes = parse_modes(cursor)
+    found.modes = parse_modes(cursor)
     cursor.expect(";")
     found.span = cursor.span_from(start)
     return found
@@ -222,7 +222,7 @@ def _parse_connection(cursor: TokenCursor) -> Connection:
             cursor.expect("->")
         found.target = parse_contained_path(cursor)
     found.properties = parse_property_list(cursor)
-    parse_modes(cursor)
+    found.modes = parse_modes(cursor)
     cursor.expect(";")
     found.span = cursor.span_from(start)
     return found
@@ -259,9 +259,9 @@ def _parse_flow(cursor: TokenCursor) -> Flow:
         while cursor.accept("->"):
             steps.append(parse_contained_path(cursor))
     properties = parse_property_list(cursor)
-    parse_modes(cursor)
+    modes = parse_modes(cursor)
     cursor.expect(";")
-    return Flow(name, kind, tuple(steps), cursor.span_from(start), refined, properties)
+    return Flow(name, kind, tuple(steps), cursor.span_from(start), refined, properties, modes)
 
 
 def _parse_mode(cursor: TokenCursor, found: Classifier) -> None:
@@ -272,6 +272,7 @@ def _parse_mode(cursor: TokenCursor, found: Classifier) -> None:
         initial = cursor.accept("initial")
         if cursor.accept("mode") or initial:
             found.modes.append(name)
+            found.initial_mode = name if initial else found.initial_mode
             parse_property_list(cursor)
             cursor.expect(";")
             return

@@ -24,6 +24,14 @@ _BASE_TYPES = {
     **{f"unsigned_{size}": f"uint{size}" for size in (8, 16, 32, 64)},
 }
 _SIZELESS_TYPES = {"integer": "int32", "natural": "uint32", "float": "float64"}
+_CALL_PARTS = {
+    "request": "request",
+    "response": "response",
+    "goal": "request",
+    "result": "response",
+    "feedback": "feedback",
+}
+"""The parts of services and actions, by what an export of archgen's calls them."""
 _MAX_ARRAY = 1_000_000
 _BASE_PACKAGES = frozenset({"base_types", "data_model"})
 _KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
@@ -132,14 +140,30 @@ class DataTypes:
         return {**body, "hints": {"aadl": hints}} if hints else body
 
     def _describe_call(self, resolved: Resolved) -> dict[str, Any]:
+        if self._resolver.names.is_own:
+            return self._read_call_parts(resolved)
         parts: dict[str, dict[str, Any]] = {"request": {}, "response": {}}
         for port in resolved.ports.values():
-            if port.kind == "parameter" and not self._is_part(port.use.known):
+            if port.kind == "parameter":
                 name = self._name_field(port.use)
                 for word, part in (("in", "request"), ("out", "response")):
                     if word in port.direction.split() and name:
                         parts[part][_fold_field_name(port.written.name)] = name
         return {key: value for key, value in parts.items() if value} and parts
+
+    def _read_call_parts(self, resolved: Resolved) -> dict[str, Any]:
+        """Return what an export of archgen's says of the parts of a call: their fields, or a type."""
+        parts: dict[str, Any] = {}
+        for name, port in resolved.ports.items():
+            known = port.use.known
+            if name not in _CALL_PARTS or known is None:
+                continue
+            content = self._only_implementations.get(known.key)
+            if not self._is_part(known):
+                parts[_CALL_PARTS[name]] = self.name_use(port.use)
+            elif content and (data := self._resolver.resolve(Use(content.full_name, content))):
+                parts[_CALL_PARTS[name]] = self._read_fields(data, Scope(self._resolver, self._used, data))
+        return parts
 
     def _read_enumerators(self, scope: Scope) -> list[str]:
         value = scope.value((), "data_model::data_representation")

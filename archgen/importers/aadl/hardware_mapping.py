@@ -20,7 +20,7 @@ from archgen.importers.aadl.property_values import (
     write_number,
 )
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
-from archgen.importers.aadl.robot_groups import LaunchedSystem, drill
+from archgen.importers.aadl.robot_groups import LaunchedSystem, list_leaf_ports
 from archgen.importers.aadl.structures import Structure
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.port_media import MEDIUM_NAMES
@@ -70,11 +70,16 @@ class HardwareMapper:
                 self._add_container(container, hardware, host_ids.get(tree.bindings.get(path, ()), ""))
                 system.containers[path] = container
         self._bind_containers(tree, system)
-        hosts = {path: host for path in system.instances if (host := self._find_host(tree, path, host_ids, system))}
+        finder_of_hosts = HostFinder(tree, host_ids)
+        hosts = {
+            path: host
+            for path, instance in system.instances.items()
+            if (host := finder_of_hosts.find_host(path, is_node=instance.structure.is_node))
+        }
         for path, hardware in tree.parts.items():
             if hardware.part.category in _BUSES:
                 ends = _list_ends(tree, path, system, host_ids, hosts)
-                names = [name for _, name in tree.bound_connections.get(path, [])]
+                names = [name for _, name in tree.bound_connections.get(path, ())]
                 if len(ends) > 1:
                     self._add_link(hardware, ends, names)
                 elif hardware.part.use.full_name.lower() not in _LIBRARY_BUSES:
@@ -127,23 +132,6 @@ class HardwareMapper:
         self.hosts[host_id] = {**body, "hints": {"aadl": hints}} if hints else body
         return host_id
 
-    @staticmethod
-    def _find_host(tree: HardwareTree, path: Path, host_ids: dict[Path, str], system: LaunchedSystem) -> str:
-        """Return the host of an instance: what it, what is around it, or all of its threads are bound to."""
-        bound = next(
-            (tree.bindings[path[:size]] for size in range(len(path), -1, -1) if path[:size] in tree.bindings), None
-        )
-        if bound is None and system.instances[path].structure.is_node:
-            inner = {target for source, target in tree.bindings.items() if source[: len(path)] == path}
-            bound = min(inner) if len(inner) == 1 else None
-        for _ in range(5):
-            if bound is None or bound in host_ids:
-                break
-            # A virtual processor is bound to a processor; a system stands for its only one.
-            below = [processor for processor in host_ids if processor[: len(bound)] == bound]
-            bound = tree.bindings.get(bound) or (below[0] if len(below) == 1 else None)
-        return host_ids.get(bound, "") if bound else ""
-
     def _add_link(self, hardware: HardwarePart, ends: list[str], connection_names: list[str]) -> None:
         part, scope = hardware.part, hardware.scope
         own_id = find_own_text(scope, (), "id")
@@ -161,6 +149,37 @@ class HardwareMapper:
         self.links[link_id] = {**body, "hints": {"aadl": hints}} if hints else body
 
 
+class HostFinder:
+    """Finds on which host something runs."""
+
+    def __init__(self, tree: HardwareTree, host_ids: Mapping[Path, str]) -> None:
+        """Look at all bindings and hosts once."""
+        self._bindings, self._host_ids = tree.bindings, host_ids
+        self._targets_below: dict[Path, set[Path]] = {}
+        self._hosts_below: dict[Path, list[Path]] = {}
+        for source, target in tree.bindings.items():
+            for size in range(len(source) + 1):
+                self._targets_below.setdefault(source[:size], set()).add(target)
+        for path in host_ids:
+            for size in range(len(path) + 1):
+                self._hosts_below.setdefault(path[:size], []).append(path)
+
+    def find_host(self, path: Path, *, is_node: bool) -> str:
+        """Return the host of an instance: what it, what is around it, or all threads of a program are bound to."""
+        ways = (path[:size] for size in range(len(path), -1, -1))
+        bound = next((self._bindings[way] for way in ways if way in self._bindings), None)
+        if bound is None and is_node:
+            inner = self._targets_below.get(path, set())
+            bound = min(inner) if len(inner) == 1 else None
+        for _ in range(5):
+            if bound is None or bound in self._host_ids:
+                break
+            # A virtual processor is bound to a processor; a system stands for its only one.
+            below = self._hosts_below.get(bound, [])
+            bound = self._bindings.get(bound) or (below[0] if len(below) == 1 else None)
+        return self._host_ids.get(bound, "") if bound else ""
+
+
 def _keep_bus(hardware: HardwarePart, connection_names: list[str]) -> Body:
     """Return what is kept of a bus beside what a link says."""
     part = hardware.part
@@ -176,22 +195,21 @@ def _list_ends(
     tree: HardwareTree, path: Path, system: LaunchedSystem, host_ids: Mapping[Path, str], hosts: Mapping[Path, str]
 ) -> list[str]:
     """Return the hosts and devices that have access to a bus, or whose connections are bound to it."""
-    ends: dict[str, None] = {}
-    root = tree.find_root(path)
-    for access, owner in tree.devices.items():
-        if tree.find_root(access) == root:
-            ends |= _name_end(owner, system, host_ids)
+    owners = tree.list_joined_devices(path)
+    ends: dict[str, None] = {host_ids[owner]: None for owner in owners if owner in host_ids}
+    for owner in owners:
+        ends |= _name_device(tree, owner, system)
     if len(ends) > 1:
         return list(ends)
-    for place, connection_name in tree.bound_connections.get(path, []):
+    for place, connection_name in tree.bound_connections.get(path, ()):
         for leaf_path in _list_wired(system, place, connection_name):
             ends |= {hosts[leaf_path]: None} if leaf_path in hosts else {}
     return list(ends)
 
 
-def _name_end(owner: Path, system: LaunchedSystem, host_ids: Mapping[Path, str]) -> dict[str, None]:
-    if owner in host_ids:
-        return {host_ids[owner]: None}
+def _name_device(tree: HardwareTree, owner: Path, system: LaunchedSystem) -> dict[str, None]:
+    if component_id := tree.device_ids.get(owner):
+        return {component_id: None}
     instance = system.instances.get(owner)
     return {".".join(instance.ids): None} if instance else {}
 
@@ -200,15 +218,14 @@ def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> li
     """Return the processes and devices that a connection joins."""
     structure: Structure | None = system.structure if not place else None
     if place:
-        instance = system.instances.get(place)
-        frame = next((frame for frame in system.frames if frame.path == place), None)
+        instance, frame = system.instances.get(place), system.find_frame(place)
         structure = instance.structure if instance else frame.structure if frame else None
-    found: list[Path] = []
-    for wire in structure.wires if structure else ():
-        if wire.connection.name.lower() == connection_name:
-            for end in (wire.producer, wire.consumer):
-                found += [path for path, _ in drill(end.part, end, (*place, end.part.name))] if end.part else []
-    return found
+    ends = (
+        (end for wire in structure.find_wires(connection_name) for end in (wire.producer, wire.consumer))
+        if structure
+        else ()
+    )
+    return [path for end in ends for path, _ in list_leaf_ports(end, place)]
 
 
 def _read_speed(scope: Scope) -> Body:
@@ -221,9 +238,13 @@ def _read_speed(scope: Scope) -> Body:
         scope.value((), "sei::bandwidthcapacity", "bus_properties::bandwidth")
     )
     transmission = scope.value((), "transmission_time")
-    if not bandwidth and isinstance(transmission, AadlRecord):
-        slowest = next((value for name, value in transmission.fields.items() if name.lower() == "perbyte"), None)
-        bandwidth = _read_byte_time(slowest)
+    if isinstance(transmission, AadlRecord):
+        parts = {name.lower(): value for name, value in transmission.fields.items()}
+        bandwidth = bandwidth or _read_byte_time(parts.get("perbyte"))
+        lowest, highest = read_time_range(parts.get("fixed"))
+        if highest and not highest.startswith("0 ") and "latency" not in body:
+            # What each message takes, whatever its size.
+            body["latency"] = {"best": lowest or highest, "worst": highest}
     return {**body, "bandwidth": bandwidth} if bandwidth else body
 
 

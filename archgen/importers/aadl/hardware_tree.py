@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.aadl_tree import Path, Property
+from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.bus_names import read_bound_path
+from archgen.importers.aadl.classifier_names import fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_references
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
@@ -36,17 +39,32 @@ class HardwareTree:
     """A forest: paths of accesses and buses, each with another one that it is joined to."""
     devices: dict[Path, Path] = field(default_factory=dict)
     """Accesses of processors and devices, with who has them."""
+    device_ids: dict[Path, str] = field(default_factory=dict)
+    """The components that devices are of, where an export of archgen's says it, by complete id."""
     bindings: dict[Path, Path] = field(default_factory=dict)
     """What is bound to processors, with the processor."""
-    bound_connections: dict[Path, list[tuple[Path, str]]] = field(default_factory=dict)
+    bound_connections: dict[Path, dict[tuple[Path, str], None]] = field(default_factory=dict)
     """By bus: the connections bound to it, as where they stand and what they are called."""
     count: int = 0
+    _owners_by_root: dict[Path, list[Path]] | None = None
 
     def find_root(self, path: Path) -> Path:
         """Return what all paths joined to this one have in common."""
-        while self.joined.get(path, path) != path:
-            path = self.joined[path]
-        return path
+        root = path
+        while (above := self.joined.get(root, root)) != root:
+            root = above
+        while path != root:
+            # Long ways are cut short, else a daisy chain takes the square of its length.
+            self.joined[path], path = root, self.joined[path]
+        return root
+
+    def list_joined_devices(self, path: Path) -> list[Path]:
+        """Return who has access to what is joined to a path."""
+        if self._owners_by_root is None:
+            self._owners_by_root = {}
+            for access, owner in self.devices.items():
+                self._owners_by_root.setdefault(self.find_root(access), []).append(owner)
+        return self._owners_by_root.get(self.find_root(path), [])
 
     def join(self, one: Path, other: Path) -> None:
         """Join two paths."""
@@ -81,14 +99,16 @@ class HardwareFinder:
             if part.category in PROCESSORS or part.category == "device":
                 accesses = (key for key, port in inner.ports.items() if port.kind in _BUS_ACCESSES)
                 tree.devices |= {(*inner_path, access): inner_path for access in accesses}
+                if component_id := find_own_text(inner_scope, (), "component"):
+                    tree.device_ids[inner_path] = component_id
             if len(path) < _MAX_DEPTH:
                 self.walk(inner, inner_scope, inner_path)
 
     def _add_bindings(self, resolved: Resolved, scope: Scope, path: Path) -> None:
         # What is written farther out was found before, and counts.
-        for (target, name), (association, _) in resolved.properties.items():
+        for (target, name), association in _list_bindings(resolved):
             if name == "actual_processor_binding":
-                scope.used.ids.add(id(association))
+                scope.used.add(association)
                 references = read_references(association.value)
                 if references:
                     self.tree.bindings.setdefault((*path, *target), (*path, *references[0]))
@@ -96,15 +116,23 @@ class HardwareFinder:
                     words = "of several processors the first is taken"
                     self._notes.add("Actual_Processor_Binding", words, association.span, fate="noted")
             elif name == "actual_connection_binding" and target:
-                scope.used.ids.add(id(association))
+                scope.used.add(association)
                 for reference in read_references(association.value)[:1]:
-                    self.tree.bound_connections.setdefault((*path, *reference), []).append((path, target[-1]))
+                    self.tree.bound_connections.setdefault((*path, *reference), {})[path, target[-1]] = None
         for connection in resolved.connections.values():
             if connection.properties and (bus := read_bound_path(scope, connection.name)):
-                entry = (path, connection.name.lower())
-                bound = self.tree.bound_connections.setdefault((*path, *bus), [])
-                if entry not in bound:
-                    bound.append(entry)
+                self.tree.bound_connections.setdefault((*path, *bus), {})[path, connection.name.lower()] = None
+
+
+def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], Property]]:
+    """Yield what is bound in a classifier, in braces of its parts as well; references there begin at the classifier, too."""
+    yield from resolved.properties.items()
+    for name, part in resolved.parts.items():
+        for association in part.written.properties:
+            key = fold_property_name(association.name)
+            if key in {"actual_processor_binding", "actual_connection_binding"}:
+                for path in association.paths or ((),):
+                    yield ((name, *_lower(path)), key), association
 
 
 def _lower(path: Path) -> Path:

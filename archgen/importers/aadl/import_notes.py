@@ -19,8 +19,9 @@ class NoteList:
 
     def add_counted(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
         """Add a note that stands for all of its kind; the first place is shown, with how many there are."""
-        note, count = self._notes.get(kind, (ImportNote(kind, message, span, help_line, fate), 0))
-        self._notes[kind] = (note, count + 1)
+        key = kind.lower()
+        note, count = self._notes.get(key, (ImportNote(kind, message, span, help_line, fate), 0))
+        self._notes[key] = (note, count + 1)
 
     def add_contradiction(self, kind: str, message: str, span: Span) -> None:
         """Add a note about what the model itself says wrongly."""

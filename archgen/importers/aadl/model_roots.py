@@ -26,6 +26,7 @@ class ModelRoots:
         self._part_keys: set[str] = set()
         self._type_ids: dict[int, str] = {}
         self._only: dict[str, KnownClassifier] = {}
+        self._root_ids: set[int] = set()
         self._find_all()
 
     def find_type_id(self, structure: Structure) -> str:
@@ -59,6 +60,7 @@ class ModelRoots:
                 continue
             if known.key not in self._part_keys and known.key not in extended_keys:
                 self.roots.append(self._find_structure(known))
+        self._root_ids = {id(root) for root in self.roots}
         for root in self.roots:
             self._count_uses(root)
         for known in known_classifiers:
@@ -71,7 +73,7 @@ class ModelRoots:
         """Count what stands in no system: it becomes a component type, too."""
         structure = self._find_structure(known)
         is_told_otherwise = known.key in implemented and known.key not in self._part_keys
-        if is_told_otherwise or structure in self.roots or not _has_content(structure):
+        if is_told_otherwise or id(structure) in self._root_ids or not _has_content(structure):
             return
         if known.key in extended_keys and known.key not in self._only:
             self._extended.add(id(structure))

@@ -20,7 +20,7 @@ _MAX_PORTS = 20_000
 _OPPOSITE = {"in": "out", "out": "in", "requires": "provides", "provides": "requires"}
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class MappedPort:
     """An input or output that a feature became; `path` is the feature's name, below those of its groups."""
 
@@ -42,6 +42,8 @@ class MappedPorts:
     accesses: dict[str, dict[str, str]] = field(default_factory=dict)
     internal: list[Port] = field(default_factory=list)
     """What a node has that is no port of a component."""
+    call_paths: set[Path] = field(default_factory=set)
+    """What an export of archgen's wrote for flows through calls."""
     by_path: dict[Path, list[MappedPort]] = field(default_factory=dict)
     groups: dict[Path, list[MappedPort]] = field(default_factory=dict)
     """All ports in a feature group, by the group's path."""
@@ -102,6 +104,10 @@ class PortMapper:
             self._notes.add_counted(port.kind, words, written.span)
             return []
         is_call = port.kind == "subprogram access"
+        if is_marked(mapped.scope, path, "is_call"):
+            # The request or the answer of a call, which has a port of its own.
+            mapped.call_paths.add(path)
+            return []
         if is_marked(mapped.scope, path, "is_internal"):
             mapped.internal.append(port)
             return []

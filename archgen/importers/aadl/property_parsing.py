@@ -14,6 +14,7 @@ from archgen.importers.aadl.aadl_tree import (
     AadlRecord,
     AadlText,
     AadlValue,
+    Modes,
     Path,
     Property,
     PropertySet,
@@ -22,6 +23,7 @@ from archgen.importers.aadl.token_cursor import SECTION_WORDS, TokenCursor
 
 _LINK_WORDS = ("reference", "classifier", "compute")
 _VALUE_ENDS = frozenset({",", ";", ")", "]", "}", "applies", "in", "::", ".."})
+_BEHIND_NUMBERS = frozenset({"applies", "in", "delta", "units"})
 _MAX_EXPONENT = 400
 
 
@@ -49,17 +51,15 @@ def parse_property(cursor: TokenCursor) -> Property:
     if not appended:
         cursor.expect("=>")
     cursor.accept("constant")
-    value = parse_value(cursor)
-    in_modes = parse_modes(cursor)
+    values = [(parse_value(cursor), parse_modes(cursor))]
     while cursor.accept(","):
-        parse_value(cursor)
-        in_modes = parse_modes(cursor) or in_modes
+        values.append((parse_value(cursor), parse_modes(cursor)))
     paths = parse_targets(cursor)
     if cursor.accept("in", "binding"):
         _skip_brackets(cursor)
-    in_modes = parse_modes(cursor) or in_modes
+    modes = parse_modes(cursor) or values[0][1]
     cursor.expect(";")
-    return Property(name, value, cursor.span_from(start), paths, appended, in_modes)
+    return Property(name, values[0][0], cursor.span_from(start), paths, appended, modes, tuple(values[1:]))
 
 
 def parse_targets(cursor: TokenCursor) -> tuple[Path, ...]:
@@ -72,22 +72,24 @@ def parse_targets(cursor: TokenCursor) -> tuple[Path, ...]:
     return tuple(paths)
 
 
-def parse_modes(cursor: TokenCursor) -> bool:
-    """Go over `in modes (...)` if it stands here."""
+def parse_modes(cursor: TokenCursor) -> Modes:
+    """Return what stands in the brackets of `in modes (...)`, if that stands here."""
     if not (cursor.accept("in", "modes") or cursor.accept("in", "mode")):
-        return False
-    _skip_brackets(cursor)
-    return True
+        return ()
+    return tuple(filter(None, "".join(_skip_brackets(cursor)).split(",")))
 
 
-def _skip_brackets(cursor: TokenCursor) -> None:
+def _skip_brackets(cursor: TokenCursor) -> list[str]:
+    """Go behind `(...)`, whatever stands there; return the words in it."""
     cursor.expect("(")
-    depth = 1
+    depth, words = 1, list[str]()
     while depth:
         if cursor.token.kind == END or cursor.at(";"):
             cursor.fail("`)` is missing here")
-        word = cursor.advance().word
-        depth += (word == "(") - (word == ")")
+        token = cursor.advance()
+        depth += (token.word == "(") - (token.word == ")")
+        words.append(token.text)
+    return words[:-1]
 
 
 def parse_contained_path(cursor: TokenCursor) -> Path:
@@ -174,13 +176,9 @@ def _parse_number(cursor: TokenCursor) -> AadlValue:
         cursor.fail("a number is missing here")
     value = _read_number(cursor)
     unit = ""
-    if cursor.token.kind == "name" and not _is_behind_value(cursor):
+    if cursor.token.kind == "name" and cursor.token.word not in _BEHIND_NUMBERS:
         unit = cursor.advance().text
     return AadlNumber(sign * value, unit, "." in token.text)
-
-
-def _is_behind_value(cursor: TokenCursor) -> bool:
-    return cursor.at("applies") or cursor.at("in") or cursor.at("delta") or cursor.at("units")
 
 
 def _read_number(cursor: TokenCursor) -> Fraction:

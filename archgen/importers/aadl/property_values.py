@@ -34,6 +34,8 @@ _BYTES_A_SECOND = {
     "mbps": "Mbit/s",
     "gbps": "Gbit/s",
 }
+_INHERITED = ("period", "priority")
+"""What counts for all threads in what it is written of."""
 _MAX_CONSTANTS = 20
 _MAX_PLACES = 18
 
@@ -43,6 +45,14 @@ class UsedProperties:
     """Associations that were taken, by identity, so that the others can be told."""
 
     ids: set[int] = field(default_factory=set)
+
+    def add(self, association: Property | None) -> None:
+        """Remember one, with what it was put together from."""
+        waiting = [association] if association else []
+        while waiting:
+            each = waiting.pop()
+            self.ids.add(id(each))
+            waiting += each.made_from
 
 
 @dataclass(slots=True)
@@ -56,19 +66,22 @@ class Scope:
     used: UsedProperties
     inner: Resolved | None
     layers: tuple[tuple[Resolved, Path], ...] = ()
+    hidden: Resolved | None = None
+    """The classifier where only what is written around it is asked for."""
 
     def find(self, path: Path, name: str) -> Property | None:
         """Return the association of a property to what stands at a path, or None."""
-        for outer, prefix in self.layers:
-            if found := outer.properties.get((prefix + path, name)):
-                self.used.ids.add(id(found[0]))
-                return found[0]
-        return self._find_inside(self.inner, path, name) if self.inner else None
+        found = [outer.properties.get((prefix + path, name)) for outer, prefix in self.layers]
+        found.append(self._find_inside(self.inner, path, name) if self.inner else None)
+        for association in found:
+            # The others are written over: they are not left out.
+            self.used.add(association)
+        return next(filter(None, found), None)
 
     def _find_inside(self, resolved: Resolved, path: Path, name: str) -> Property | None:
         if found := resolved.properties.get((path, name)):
-            self.used.ids.add(id(found[0]))
-            return found[0]
+            self.used.add(found)
+            return found
         if not path:
             return None
         part = resolved.parts.get(path[0])
@@ -91,7 +104,7 @@ class Scope:
         for association in reversed(written):
             paths = [tuple(step.lower() for step in target) for target in association.paths] or [()]
             if path in paths and fold_property_name(association.name) == name:
-                self.used.ids.add(id(association))
+                self.used.add(association)
                 return association
         return None
 
@@ -102,13 +115,25 @@ class Scope:
                 return fold_value(found.value, self.resolver.names)
         return None
 
-    def inherited_value(self, path: Path, *names: str) -> AadlValue | None:
-        """Return a value that counts for all that stands in what it is written of."""
-        for length in range(len(path), -1, -1):
-            value = self.value(path[:length], *names)
-            if value is not None:
-                return value
+    def find_inherited(self, path: Path, name: str) -> Property | None:
+        """Return the association of a property that counts for all that stands in what it is written of."""
+        ways = [path[:length] for length in range(len(path), -1, -1)]
+        for way in ways:
+            if found := self.find(way, name):
+                return found
+        if self.hidden and any(self._find_inside(self.hidden, way, name) for way in ways):
+            return None
+        for outer, prefix in reversed(self.layers):
+            for length in range(len(prefix) - 1, -1, -1):
+                if found := outer.properties.get((prefix[:length], name)):
+                    self.used.add(found)
+                    return found
         return None
+
+    def inherited_value(self, path: Path, name: str) -> AadlValue | None:
+        """Return the value of such a property; constants are looked up."""
+        found = self.find_inherited(path, name)
+        return fold_value(found.value, self.resolver.names) if found else None
 
     def go_into(self, part: Part, inner: Resolved | None) -> Scope:
         """Return the scope of a subcomponent."""
@@ -121,12 +146,16 @@ class Scope:
         return Scope(self.resolver, self.used, inner, tuple(layers))
 
     def says_anything(self) -> bool:
-        """Whether an association around the classifier applies to it or to something in it."""
-        return any(prefix in outer.list_prefixes() for outer, prefix in self.layers)
+        """Whether an association around the classifier applies to it or to something in it, or is handed down to it."""
+        return any(
+            prefix in outer.list_prefixes()
+            or any((prefix[:length], name) in outer.properties for length in range(len(prefix)) for name in _INHERITED)
+            for outer, prefix in self.layers
+        )
 
     def only_around(self) -> Scope:
         """Return the scope without the classifier's own associations: what is written of this instance alone."""
-        return Scope(self.resolver, self.used, None, self.layers)
+        return Scope(self.resolver, self.used, None, self.layers, self.inner)
 
 
 def _wrap_properties(part: Part) -> Resolved:
@@ -135,7 +164,7 @@ def _wrap_properties(part: Part) -> Resolved:
     for association in part.written.properties:
         for path in association.paths or ((),):
             key = (tuple(step.lower() for step in path), fold_property_name(association.name))
-            wrapped.properties[key] = (association, part.owner.package)
+            wrapped.properties[key] = association
     return wrapped
 
 

@@ -6,12 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from archgen.importers.aadl.aadl_tree import (
+    AadlList,
+    AadlValue,
     Binding,
     Classifier,
     Connection,
     Feature,
     Flow,
-    Package,
+    Modes,
     Path,
     Property,
     Subcomponent,
@@ -75,8 +77,12 @@ class Resolved:
     connections: dict[str, Connection] = field(default_factory=dict)
     flows: dict[tuple[str, bool], Flow] = field(default_factory=dict)
     """By name, and whether it is a flow of an implementation."""
-    properties: dict[tuple[Path, str], tuple[Property, Package]] = field(default_factory=dict)
+    properties: dict[tuple[Path, str], Property] = field(default_factory=dict)
     """The last association of each property, by the path that it applies to."""
+    initial_mode: str = ""
+    """In lower case; empty where it has no modes."""
+    own_type: Resolved | None = None
+    """The type of an implementation."""
     calls: list[Subcomponent] = field(default_factory=list)
     annexes: list[str] = field(default_factory=list)
     _prefixes: set[Path] | None = None
@@ -103,6 +109,8 @@ class ClassifierResolver:
     def __init__(self, names: ClassifierNames, notes: NoteList) -> None:
         """Look names up in `names`, and tell what is in none."""
         self.names, self.notes = names, notes
+        self.overridden: set[int] = set()
+        """Associations, by identity, that others write over where they stand."""
         self._resolved: dict[tuple[str, str], Resolved] = {}
         self._open: set[int] = set()
 
@@ -149,9 +157,10 @@ class ClassifierResolver:
             for prototype in classifier.prototypes
         } | dict(bindings)
         for parent in self._list_parents(known, env):
-            _add_inherited(found, parent)
+            self._add_inherited(found, parent)
         self._open.discard(id(classifier))
         found.prototypes |= env
+        found.initial_mode = classifier.initial_mode.lower() or found.initial_mode
         self._add_own(found, classifier, found.prototypes)
         return found
 
@@ -196,7 +205,42 @@ class ClassifierResolver:
                     tuple(step.lower() for step in path if step.lower() != "self"),
                     fold_property_name(association.name),
                 )
-                found.properties[key] = (association, known.package)
+                chosen = _choose_value(association, found.initial_mode)
+                found.properties[key] = self._override(found, found.properties.get(key), chosen)
+
+    def _override(self, found: Resolved, earlier: Property | None, association: Property) -> Property:
+        """Return what counts of two associations to the same; `+=>` goes on behind the list that was there."""
+        if earlier is None:
+            return association
+        if association.modes and not _counts_in(association.modes, found.initial_mode):
+            # The earlier one counts in the initial mode, or was written first.
+            self.overridden.add(id(association))
+            return earlier
+        if association.appended:
+            items = [*_list_items(earlier.value), *_list_items(association.value)]
+            return replace(association, value=AadlList(tuple(items)), made_from=(earlier, association))
+        self.overridden.add(id(earlier))
+        return association
+
+    def _add_inherited(self, found: Resolved, parent: Resolved) -> None:
+        found.ancestors = tuple(dict.fromkeys((*found.ancestors, parent.known, *parent.ancestors)))
+        if found.known.classifier.is_implementation and not parent.known.classifier.is_implementation:
+            found.own_type = parent
+        found.initial_mode = parent.initial_mode or found.initial_mode
+        found.prototypes.update(parent.prototypes)
+        # Its own type came before, and says more of features than the type of what it extends.
+        found.ports = {**found.ports, **{name: port for name, port in parent.ports.items() if name not in found.ports}}
+        found.parts.update(parent.parts)
+        found.connections.update(parent.connections)
+        for key, flow in parent.flows.items():
+            if key[1] or key not in found.flows:
+                found.flows[key] = flow
+        for place, association in parent.properties.items():
+            is_of_type = parent.own_type is not None and parent.own_type.properties.get(place) is association
+            if not is_of_type or place not in found.properties:
+                found.properties[place] = association
+        found.calls += [call for call in parent.calls if call not in found.calls]
+        found.annexes += [name for name in parent.annexes if name not in found.annexes]
 
     def _add_feature(self, found: Resolved, feature: Feature, env: Mapping[str, Use]) -> None:
         earlier = found.ports.get(feature.name.lower())
@@ -210,16 +254,22 @@ class ClassifierResolver:
         found.ports[feature.name.lower()] = Port(feature, use, kind, direction, found.known)
 
 
-def _add_inherited(found: Resolved, parent: Resolved) -> None:
-    found.ancestors = tuple(dict.fromkeys((*found.ancestors, parent.known, *parent.ancestors)))
-    found.prototypes.update(parent.prototypes)
-    found.ports.update(parent.ports)
-    found.parts.update(parent.parts)
-    found.connections.update(parent.connections)
-    found.flows.update(parent.flows)
-    found.properties.update(parent.properties)
-    found.calls += [call for call in parent.calls if call not in found.calls]
-    found.annexes += [name for name in parent.annexes if name not in found.annexes]
+def _choose_value(association: Property, initial_mode: str) -> Property:
+    """Return an association with the value that it has in the initial mode, as far as it says one."""
+    values = ((association.value, association.modes), *association.other_values)
+    for index, (value, modes) in enumerate(values):
+        if index and _counts_in(modes, initial_mode):
+            rest = tuple(each for each in values if each[0] is not value)
+            return replace(association, value=value, modes=modes, other_values=rest, made_from=(association,))
+    return association
+
+
+def _counts_in(modes: Modes, initial_mode: str) -> bool:
+    return initial_mode in {mode.lower() for mode in modes}
+
+
+def _list_items(value: AadlValue) -> tuple[AadlValue, ...]:
+    return value.items if isinstance(value, AadlList) else (value,)
 
 
 def _name_bindings(bindings: Mapping[str, Use]) -> str:

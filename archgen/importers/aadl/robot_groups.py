@@ -62,6 +62,13 @@ class LaunchedSystem:
     """What is kept of buses that join fewer than two."""
     groups: dict[str, str] = field(default_factory=dict)
     """Groups by the names of the parts of the root that they are."""
+    frames_by_path: dict[Path, Frame] = field(default_factory=dict)
+
+    def find_frame(self, path: Path) -> Frame | None:
+        """Return the group that stands at a path."""
+        if not self.frames_by_path:
+            self.frames_by_path = {frame.path: frame for frame in self.frames}
+        return self.frames_by_path.get(path)
 
 
 class GroupBuilder:
@@ -86,8 +93,8 @@ class GroupBuilder:
         scope = Scope(self._resolver, self._used, root.resolved)
         system = LaunchedSystem(root.resolved.known.full_name, root, scope, [])
         parts = list(root.parts.values())
-        grouped = [part for part in parts if self._is_group(part)]
-        for part in grouped:
+        grouped = {part.name: part for part in parts if self._is_group(part)}
+        for part in grouped.values():
             if part.structure:
                 inner_scope = scope.go_into(part.part, part.structure.resolved)
                 group_id = self._open_group(part.id, part.part.written.name, part.structure, inner_scope)
@@ -95,7 +102,7 @@ class GroupBuilder:
                 system.groups[part.name] = frame.group_id
                 self._add_components(frame, list(part.structure.parts.values()))
                 system.frames.append(frame)
-        if loose := [part for part in parts if part not in grouped]:
+        if loose := [part for part in parts if part.name not in grouped]:
             name = root.resolved.known.classifier.name.partition(".")[0]
             wanted = make_id(find_own_text(scope, (), "id") or name, "group")
             frame = Frame(self._open_group(wanted, root.resolved.known.classifier.name, root, scope), root, scope, ())
@@ -178,9 +185,9 @@ def _list_references(end: End, frames: dict[str, Frame], root_frame: Frame | Non
     if frame is None:
         return [f"{root_frame.group_id}.{end.part.id}.{end.port.id}"] if root_frame else []
     return [
-        f"{frame.group_id}.{wire.producer.part.id}.{wire.producer.port.id}"
-        for wire in frame.structure.wires
-        if wire.consumer.part is None and wire.consumer.port is end.port and wire.producer.part
+        f"{frame.group_id}.{inner.part.id}.{inner.port.id}"
+        for inner in frame.structure.find_inner_ends(end.port)
+        if inner.part
     ]
 
 
@@ -192,22 +199,28 @@ def _list_bodies(end: End, frames: dict[str, Frame], root_frame: Frame | None, *
     frame = frames.get(end.part.name)
     if frame is None:
         return [reach_port(root_frame.bodies[end.part.id], section, end.port.id)] if root_frame else []
-    found: list[Body] = []
-    for wire in frame.structure.wires:
-        outer, inner = (wire.producer, wire.consumer) if is_input else (wire.consumer, wire.producer)
-        if outer.part is None and outer.port is end.port and inner.part:
-            found.append(reach_port(frame.bodies[inner.part.id], section, inner.port.id))
-    return found
+    return [
+        reach_port(frame.bodies[inner.part.id], section, inner.port.id)
+        for inner in frame.structure.find_inner_ends(end.port)
+        if inner.part
+    ]
 
 
-def drill(part: StructuredPart, end: End, path: Path) -> list[tuple[Path, MappedPort]]:
-    """Return the ports of processes and devices that stand behind an end of a wire, with their paths."""
-    structure = part.structure
-    if structure is None or structure.is_node or not structure.parts:
-        return [(path, end.port)]
-    found: list[tuple[Path, MappedPort]] = []
-    for wire in structure.wires:
-        outer, inner = (wire.producer, wire.consumer) if end.port.is_input else (wire.consumer, wire.producer)
-        if outer.part is None and outer.port is end.port and inner.part:
-            found += drill(inner.part, inner, (*path, inner.part.name))
-    return found
+def list_leaf_ports(end: End, place: Path) -> list[tuple[Path, MappedPort]]:
+    """Return the ports of processes and devices that stand behind an end of a wire, with their paths; `place` is the wire's."""
+    leaves: list[tuple[Path, MappedPort]] = []
+    waiting, seen = [(place, end)], set[tuple[Path, MappedPort]]()
+    while waiting:
+        around, inner = waiting.pop()
+        if inner.part is None:
+            continue
+        path, structure = (*around, inner.part.name), inner.part.structure
+        if (path, inner.port) in seen:
+            # Several ways may lead to it: each level may double them.
+            continue
+        seen.add((path, inner.port))
+        if structure is None or structure.is_node or not structure.parts:
+            leaves.append((path, inner.port))
+        else:
+            waiting += [(path, each) for each in reversed(structure.find_inner_ends(inner.port))]
+    return leaves

@@ -75,6 +75,28 @@ class Structure:
     """The ports of that thread behind those of the process, by id and whether they are inputs."""
     access_connections: dict[str, Connection] = field(default_factory=dict)
 
+    _inner_ends: dict[int, list[End]] | None = None
+    _wires_by_name: dict[str, list[Wire]] | None = None
+
+    def find_inner_ends(self, port: MappedPort) -> list[End]:
+        """Return the ports of its parts that stand behind one of its own, each once."""
+        if self._inner_ends is None:
+            ends: dict[int, dict[End, None]] = {}
+            for wire in self.wires:
+                for outer, inner in ((wire.producer, wire.consumer), (wire.consumer, wire.producer)):
+                    if outer.part is None and inner.part is not None:
+                        ends.setdefault(id(outer.port), {})[inner] = None
+            self._inner_ends = {key: list(found) for key, found in ends.items()}
+        return self._inner_ends.get(id(port), [])
+
+    def find_wires(self, connection_name: str) -> list[Wire]:
+        """Return the wires of a connection, by its name in lower case."""
+        if self._wires_by_name is None:
+            self._wires_by_name = {}
+            for wire in self.wires:
+                self._wires_by_name.setdefault(wire.connection.name.lower(), []).append(wire)
+        return self._wires_by_name.get(connection_name, [])
+
     @property
     def is_node(self) -> bool:
         """Whether it is one program: a process."""
@@ -104,7 +126,10 @@ class StructureFinder:
         parts = [
             part
             for part in resolved.parts.values()
-            if part.category in COMPONENT_CATEGORIES and not part.owner.is_of_library
+            if part.category in COMPONENT_CATEGORIES
+            and not part.owner.is_of_library
+            # Else it is that of a component that is a program here: it tells what stands on a bus.
+            and not (part.category == "device" and self._read_own_text(resolved, part, "component"))
         ]
         if resolved.category == "process" and len(parts) == 1 and parts[0].category == "thread":
             found.thread = parts[0]
@@ -134,14 +159,16 @@ class StructureFinder:
             self._notes.add_counted(
                 "array of subcomponents", "an array of subcomponents is taken as one", part.written.span, fate="noted"
             )
-        part_id = make_unique_id(make_id(self._read_own_id(around, part) or part.written.name, "part"), used_ids)
+        part_id = make_unique_id(
+            make_id(self._read_own_text(around, part, "id") or part.written.name, "part"), used_ids
+        )
         used_ids.add(part_id)
         return StructuredPart(part_id, part, structure)
 
-    def _read_own_id(self, around: Resolved, part: Part) -> str:
-        """Return the id that an export of archgen's wrote at a part, or nothing."""
+    def _read_own_text(self, around: Resolved, part: Part, key: str) -> str:
+        """Return what an export of archgen's wrote at a part, or nothing."""
         scope = Scope(self._resolver, self._used, around)
-        return find_own_text(scope, (part.written.name.lower(),), "id")
+        return find_own_text(scope, (part.written.name.lower(),), key)
 
     def _join_thread(self, found: Structure, thread: Part) -> None:
         """Find which port of the thread stands behind which of the process."""
@@ -184,7 +211,7 @@ class StructureFinder:
         port_path = path[1:] if part else path
         if port_path in ports.groups:
             return [(port.path[len(port_path) :], End(part, port)) for port in ports.groups[port_path]]
-        if ".".join(port_path) in ports.accesses:
+        if ".".join(port_path) in ports.accesses or port_path in ports.call_paths:
             return None
         return [((), End(part, port)) for port in ports.by_path.get(port_path, ())]
 

@@ -9,7 +9,7 @@ from archgen.importers.aadl.element_hints import keep_sources
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.port_mapping import MappedPort
 from archgen.importers.aadl.property_values import Scope, read_text
-from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, drill
+from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, list_leaf_ports
 from archgen.importers.aadl.structures import End, Structure, StructuredPart
 from archgen.model.element_ids import make_id, make_unique_id
 
@@ -21,7 +21,9 @@ class TooManyInstancesError(Exception):
 
 
 def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
-    """Find the processes and devices of a root, and the names of their topics."""
+    """Find the processes and devices of a root, and the names of their topics. Raise TooManyInstancesError."""
+    if _count_instances(system.structure, {}) > MAX_INSTANCES:
+        raise TooManyInstancesError
     _find_topics(system, system.structure, system.scope, ())
     for frame in system.frames:
         if frame.path:
@@ -32,6 +34,14 @@ def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
                 _walk(system, roots, part, group)
 
 
+def _count_instances(structure: Structure, known: dict[int, int]) -> int:
+    """Return how many parts a structure has, to any depth; `known` are those that were counted."""
+    if id(structure) not in known:
+        inner = (part.structure for part in structure.parts.values() if part.structure and not structure.is_node)
+        known[id(structure)] = sum(1 + _count_instances(each, known) for each in inner)
+    return known[id(structure)]
+
+
 def _walk(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, around: Instance) -> None:
     structure = part.structure
     if structure is None:
@@ -40,8 +50,6 @@ def _walk(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, aroun
     is_of_type = around.is_of_type or bool(roots.find_type_id(structure))
     instance = Instance((*around.ids, part.id), (*around.path, part.name), structure, scope, is_of_type)
     system.instances[instance.path] = instance
-    if len(system.instances) > MAX_INSTANCES:
-        raise TooManyInstancesError
     if structure.is_node:
         return
     _find_topics(system, structure, scope, instance.path)
@@ -67,8 +75,7 @@ def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, pat
 
 def _list_leaves(end: End, path: Path) -> list[PortPlace]:
     """Return the ports of processes and devices behind an end of a wire."""
-    leaves = drill(end.part, end, (*path, end.part.name)) if end.part else []
-    return [(leaf_path, port.is_input, port.id) for leaf_path, port in leaves]
+    return [(leaf_path, port.is_input, port.id) for leaf_path, port in list_leaf_ports(end, path)]
 
 
 class NodeWriter:

@@ -12,7 +12,7 @@ from archgen.importers.aadl.property_values import Scope, read_count, read_durat
 from archgen.importers.aadl.resolved_classifiers import Resolved
 
 _ROLES = {"message_source": "source", "filter": "filter", "message_sink": "sink", "reactive": "reactive"}
-_TRIGGERING_KINDS = frozenset({"event data port", "event port"})
+_BEHAVIOURS = {"periodic": "periodic", "sporadic": "event", "aperiodic": "event"}
 
 
 def find_role(thread: Resolved) -> str:
@@ -35,11 +35,33 @@ def fits_role(role: str, ports: MappedPorts) -> bool:
 
 def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     """Return what the properties of a thread say: all but its trigger."""
+    timing = _map_dispatch(scope, path, notes)
+    for name, key in (("deadline", "deadline"), ("dispatch_jitter", "jitter")):
+        if text := read_duration(scope.value(path, name)):
+            timing[key] = text
+    if own_jitter := find_own_text(scope, path, "jitter"):
+        timing["jitter"] = own_jitter
+    lowest, highest = read_time_range(scope.value(path, "compute_execution_time"))
+    timing |= {"wcet": highest} if highest else {}
+    # From 0 on says no more than up to.
+    timing |= {"bcet": lowest} if lowest and lowest != highest and not lowest.startswith("0 ") else {}
+    priority = read_count(scope.inherited_value(path, "priority"))
+    return timing if priority is None else {**timing, "priority": priority}
+
+
+def _map_dispatch(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
+    """Return behaviour and period."""
     timing: dict[str, Any] = {}
     protocol_property = scope.find(path, "dispatch_protocol")
     protocol = read_word(scope.value(path, "dispatch_protocol"))
-    if protocol in {"periodic", "sporadic", "aperiodic"}:
-        timing["behaviour"] = "periodic" if protocol == "periodic" else "event"
+    if protocol_property is None and scope.hidden:
+        # What the component type says need not be said again, but counts.
+        own_scope = Scope(scope.resolver, scope.used, scope.hidden)
+        protocol = read_word(own_scope.value(path, "dispatch_protocol"))
+    elif protocol in _BEHAVIOURS:
+        timing["behaviour"] = _BEHAVIOURS[protocol]
+    elif protocol == "background" and scope.resolver.names.is_own:
+        timing["behaviour"] = "once"
     elif protocol_property is not None:
         words = f"a thread that is dispatched as `{protocol or 'this'}` has no behaviour here"
         notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
@@ -50,19 +72,13 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     elif period and protocol in {"periodic", ""}:
         timing["period"] = period
     elif period:
-        found = next(filter(None, (scope.find(path[:size], "period") for size in range(len(path), -1, -1))), None)
-        if found:
+        found = scope.find_inherited(path, "period")
+        words = f"the period of a thread that is dispatched as `{protocol}` is not taken"
+        if protocol == "sporadic":
             words = "the smallest distance of a sporadic thread's dispatches is no period here"
-            notes.add_counted("Period of a sporadic thread", words, found.span)
-    for name, key in (("deadline", "deadline"), ("dispatch_jitter", "jitter")):
-        if text := read_duration(scope.value(path, name)):
-            timing[key] = text
-    lowest, highest = read_time_range(scope.value(path, "compute_execution_time"))
-    timing |= {"wcet": highest} if highest else {}
-    # From 0 on says no more than up to.
-    timing |= {"bcet": lowest} if lowest and lowest != highest and not lowest.startswith("0 ") else {}
-    priority = read_count(scope.inherited_value(path, "priority"))
-    return timing if priority is None else {**timing, "priority": priority}
+        if found:
+            notes.add_counted(f"Period of a {protocol} thread", words, found.span)
+    return timing
 
 
 def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str], *, is_own: bool) -> None:

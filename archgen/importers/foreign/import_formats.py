@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 from archgen.frozen import dataclass
 from archgen.importers.foreign.foreign_import import ForeignImport
 
-ForeignReader = Callable[[Sequence[Path]], ForeignImport]
+ForeignReader = Callable[..., ForeignImport]
+"""Takes the files, and by name the launch arguments where its format has such."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +24,8 @@ class ImportFormat:
     """Endings of files that are of this format and of no other, in lower case."""
     reader: str
     """`module:function`; the function takes the files and returns a ForeignImport, or raises ForeignFileError."""
+    takes_arguments: bool = False
+    """Whether values of launch arguments may be given: `NAME:=VALUE`."""
 
     def load_reader(self) -> ForeignReader:
         """Return the function that reads files of this format."""
@@ -58,6 +61,7 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             "nodes that exist, from launch files of ROS in XML, YAML and Python (which is never run)",
             (".launch", *(f"{mark}launch.{ending}" for mark in "._" for ending in ("xml", "py", "yaml", "yml"))),
             "archgen.importers.launch.launch_import:read_launch",
+            takes_arguments=True,
         ),
         ImportFormat(
             "package",

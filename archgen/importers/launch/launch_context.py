@@ -34,8 +34,8 @@ class LaunchScope:
     """Values of arguments: text, or what only running it would tell."""
     namespace: str | UnknownValue = ""
     remaps: tuple[tuple[str, str], ...] = ()
-    parameters: tuple[tuple[LaunchValue, LaunchValue], ...] = ()
-    parameter_files: tuple[LaunchValue, ...] = ()
+    parameters: tuple[LaunchValue, ...] = ()
+    """Parameters for all nodes, in the order in which they are set: mappings, and files."""
     environment: tuple[tuple[str, str], ...] = ()
     conditions: tuple[tuple[str, bool | None], ...] = ()
     """The conditions around, as words, each with its verdict by the defaults."""
@@ -48,6 +48,8 @@ class LaunchContext:
         self.scope = LaunchScope()
         self.is_ros_1 = is_ros_1
         self.used: dict[str, str] = {}
+        self.asked: set[str] = set()
+        """The arguments that ROS 2 was asked for, which needs no declaration of them."""
         self._scopes: list[LaunchScope] = []
         self._left = MAX_PARTS
 
@@ -122,6 +124,8 @@ class LaunchContext:
         if isinstance(name, UnknownValue):
             return name
         word = "arg" if self.is_ros_1 else "var"
+        if not self.is_ros_1:
+            self.asked.add(name)
         known = self.scope.configurations.get(name, value.parts[1] if len(value.parts) > 1 else None)
         if known is None:
             self.used[name] = ""
@@ -148,7 +152,8 @@ class LaunchContext:
         if isinstance(text, UnknownValue):
             return text
         found = evaluate_expression(text, self._look_up)
-        return write_plain(found) if found is not None else UnknownValue(f"$(eval {describe_value(expression)})")
+        # As Python writes it: `True`, which a comparison with another expression's outcome needs.
+        return str(found) if found is not None else UnknownValue(f"$(eval {describe_value(expression)})")
 
     def _look_up(self, name: str) -> str | None:
         """Return the value of an argument that an expression of ROS 1 names; None where it is not known."""

@@ -59,12 +59,14 @@ def read_yaml_entities(file: str, text: str) -> LaunchEntity:
 
 
 def _read_items(sequence: SequenceNode) -> list[LaunchEntity]:
-    return [
-        _read_node(entry.key, entry.value, entry.key_span)
-        for item in sequence.items
-        if isinstance(item, MappingNode)
-        for entry in item
-    ]
+    entities: list[LaunchEntity] = []
+    for item in sequence.items:
+        if isinstance(item, MappingNode):
+            entities += [_read_node(entry.key, entry.value, entry.key_span) for entry in item]
+        else:
+            # It is no action, and noted as such.
+            entities.append(LaunchEntity(item.text if isinstance(item, ScalarNode) else "list", item.span))
+    return entities
 
 
 def _read_node(tag: str, node: YamlNode, span: Span) -> LaunchEntity:

@@ -16,6 +16,7 @@ MAX_LAUNCH_BYTES = 4_000_000
 _MAX_FOLDERS = 20_000
 _MAX_DEPTH = 8
 _PARENTS_TRIED = 4
+_TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"build", "install", "log", "node_modules", "devel"})
 _PACKAGE_FILE = re.compile(r"\$\((?:find|find-pkg-share)\s+([A-Za-z0-9_.\-]+)\)(?:/share/\1)?(?:/(.*))?\Z", re.DOTALL)
 _NAME_IN_MANIFEST = re.compile(r"<name[^>]*>\s*([A-Za-z0-9_.\-]+)\s*</name>")
@@ -82,8 +83,13 @@ class LaunchFiles:
             return found
         # What a package installs need not lie so in its sources: `launch/x.py` may come from `bringup/launch/x.py`.
         name = posixpath.basename(inner)
-        others = [path / name for path, names in self._walk(folder) if name in names]
-        return self._check(others[0]) if len(others) == 1 else None
+        others = [
+            path / name
+            for path, names in self._walk(folder)
+            if name in names and not _TEST_FOLDERS & set(path.relative_to(folder).parts)
+        ]
+        alike = [path for path in others if path.as_posix().endswith(f"/{inner}")] or others
+        return self._check(alike[0]) if len(alike) == 1 else None
 
     def _check(self, path: Path) -> Path | None:
         """Return a path of a file below a root, to which no link leads outside."""

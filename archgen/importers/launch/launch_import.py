@@ -21,10 +21,13 @@ from archgen.model.path_resolver import title_from_id
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
 
 
-def read_launch(files: Sequence[Path]) -> ForeignImport:
-    """Read launch files, or all that lie in folders and that no other one includes. Raise ForeignFileError."""
+def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = None) -> ForeignImport:
+    """Read launch files, or all that lie in folders and that no other one includes. Raise ForeignFileError.
+
+    `arguments` are values of launch arguments by their names, as `ros2 launch` takes them.
+    """
     launch_files = LaunchFiles(files)
-    run = LaunchRun(launch_files, load_included)
+    run = LaunchRun(launch_files, load_included, arguments)
     given = [path.resolve() for path in files if not path.is_dir()]
     entries = given or launch_files.list_launch_files()
     if not entries:
@@ -40,6 +43,7 @@ def read_launch(files: Sequence[Path]) -> ForeignImport:
         run.nodes, run.taken = [], Counter()
         run.run_file(path)
         found[path] = (run.nodes, run.taken)
+    run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
     if not given:
         found = {path: each for path, each in found.items() if path not in run.included} or found
     return _make_import(run, found)
@@ -77,9 +81,10 @@ def _find_stem(path: Path) -> str:
 def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
     """Return which nodes are taken, by identity: of those with one full name the one that runs by the defaults."""
     kept: dict[str, LaunchedNode] = {}
-    free = [node for node in nodes if not node.full_name]
+    # What is no node may be called as another one.
+    free = [node for node in nodes if not node.full_name or node.form == "program"]
     for node in nodes:
-        if not node.full_name:
+        if not node.full_name or node.form == "program":
             continue
         other = kept.get(node.full_name)
         if other is None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_arguments import LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext, LaunchScope
 from archgen.importers.launch.launch_files import LaunchFiles
 from archgen.importers.launch.launch_values import OPEN, UnknownValue
@@ -22,14 +23,20 @@ ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
 MAX_NODES = 20_000
 MAX_INCLUDES = 500
 _MAX_DEPTH = 25
+_SETTERS = frozenset(
+    {"argument", "configure", "namespace", "parameter", "parameter_file", "remap", "environment", "host"}
+)
+"""Actions that only set something for others."""
 _LATER_HELP = "what it starts is taken; say with `start: {after: ...}` what it waits for"
 
 
 class LaunchRun(ScopeRun):
     """Everything that was found so far. One run reads all files that were given."""
 
-    def __init__(self, files: LaunchFiles, load_actions: ActionLoader) -> None:
-        super().__init__()
+    def __init__(
+        self, files: LaunchFiles, load_actions: ActionLoader, arguments: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(LaunchArguments(dict(arguments or {})))
         self.files = files
         self.nodes: list[LaunchedNode] = []
         self.taken: Counter[str] = Counter()
@@ -41,21 +48,20 @@ class LaunchRun(ScopeRun):
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
         self._includes = 0
-        self._open_files: list[Path] = []
 
     def run_file(self, path: Path) -> None:
-        """Walk through a file that was given, with nothing set from outside."""
+        """Walk through a file that was given, with nothing set from outside but arguments of the command line."""
         self.context.push()
-        self.context.scope = LaunchScope()
+        self.context.scope = LaunchScope(configurations=dict(self.arguments.given))
         self._run_file(path)
         self.context.pop()
 
     def _run_file(self, path: Path) -> None:
         was_ros_1 = self.context.is_ros_1
-        self._open_files.append(path)
+        self.open_files.append(path)
         actions = self._load_actions(path, self)
         self.run_actions(actions)
-        self._open_files.pop()
+        self.open_files.pop()
         self.context.is_ros_1 = was_ros_1
 
     def run_actions(self, actions: list[LaunchAction]) -> None:
@@ -65,22 +71,18 @@ class LaunchRun(ScopeRun):
 
     def _run_conditional(self, action: LaunchAction) -> None:
         action.is_taken = True
+        verdicts = tuple(map(self.context.judge_condition, action.conditions))
+        if any(verdict is False for _, verdict in verdicts):
+            # What does not run sets nothing for what stands behind it.
+            if action.kind not in _SETTERS:
+                self.context.push()
+                self.context.scope.conditions += verdicts
+                self._run_action(action)
+                self.context.pop()
+            return
         before = self.context.scope.conditions
-        for condition in action.conditions:
-            words, verdict = self.context.judge_condition(condition)
-            self.context.scope.conditions = (*self.context.scope.conditions, (words, verdict))
-        changes_scope = action.kind in {
-            "argument",
-            "configure",
-            "namespace",
-            "parameter",
-            "parameter_file",
-            "remap",
-            "environment",
-        }
-        is_off = any(verdict is False for _, verdict in self.context.scope.conditions)
-        if not (changes_scope and is_off and action.conditions):
-            self._run_action(action)
+        self.context.scope.conditions += verdicts
+        self._run_action(action)
         self.context.scope.conditions = before
 
     def _run_action(self, action: LaunchAction) -> None:
@@ -109,9 +111,12 @@ class LaunchRun(ScopeRun):
     def _run_group(self, action: LaunchAction) -> None:
         is_scoped = action.get("scoped", True)
         is_scoped = is_scoped if isinstance(is_scoped, bool) else self.context.judge(is_scoped) is not False
+        pairs = self.resolve_pairs(action.get("configurations"))
         if is_scoped:
             self.context.push()
-        for name, value in self.resolve_pairs(action.get("configurations")):
+            if action.get("forwards") is not None and self.context.judge(action.get("forwards")) is False:
+                self.context.scope.configurations = {}
+        for name, value in pairs:
             self.context.scope.configurations[name] = value
         if action.get("namespace") is not None:
             self.push_namespace(action, action.get("namespace"))
@@ -138,8 +143,8 @@ class LaunchRun(ScopeRun):
         path = self.files.find_file(text)
         if (
             path is None
-            or path in self._open_files
-            or len(self._open_files) > _MAX_DEPTH
+            or path in self.open_files
+            or len(self.open_files) > _MAX_DEPTH
             or self._includes > MAX_INCLUDES
         ):
             is_far = path is None
@@ -147,7 +152,7 @@ class LaunchRun(ScopeRun):
                 "it does not lie in the folders that were given"
                 if is_far
                 else "it includes itself"
-                if path in self._open_files
+                if path in self.open_files
                 else f"more than {MAX_INCLUDES} files, or {_MAX_DEPTH} in one another"
             )
             help_line = "give the folder of its package, too" if is_far else ""
@@ -186,9 +191,10 @@ class LaunchRun(ScopeRun):
     def _run_load(self, action: LaunchAction) -> None:
         target = action.get("target")
         container_name = ""
-        if isinstance(target, LaunchAction):
+        container = self._find_started(target) if isinstance(target, LaunchAction) else None
+        if isinstance(target, LaunchAction) and container is None:
             target = target.get("name")
-        if target is not None:
+        if target is not None and container is None:
             name = self.context.resolve(target)
             if isinstance(name, UnknownValue):
                 self._tell_computed(action, "the container", name)
@@ -197,10 +203,14 @@ class LaunchRun(ScopeRun):
                     action.word, f"the container is known at the launch only: `{name}`", action.span, fate="noted"
                 )
             else:
-                namespace = self.context.scope.namespace
-                container_name = join_names(namespace if isinstance(namespace, str) else "", name)
+                # ROS asks for it from the root, in whatever namespace that is done.
+                container_name = join_names("", name)
         for child in action.children:
-            self._load_child(child, None, container_name)
+            self._load_child(child, container, container_name)
+
+    def _find_started(self, action: LaunchAction) -> LaunchedNode | None:
+        """Return the container that an action has started last."""
+        return next((node for node in reversed(self.nodes) if node.action is action), None)
 
     def _load_child(self, child: LaunchAction, container: LaunchedNode | None, container_name: str) -> None:
         child.is_taken = True
@@ -209,8 +219,7 @@ class LaunchRun(ScopeRun):
             self.context.scope.conditions = (*self.context.scope.conditions, self.context.judge_condition(condition))
         if child.kind == "node":
             node = self._maker.make_node(child, "loaded")
-            if node is not None:
-                node.container, node.container_name = container, container_name
+            node.container, node.container_name = container, container_name
             self.taken[child.word] += 1
             self._add_node(node, child)
         else:
@@ -223,4 +232,5 @@ class LaunchRun(ScopeRun):
         elif len(self.nodes) >= MAX_NODES:
             self.add_note(action.word, f"more than {MAX_NODES:,} nodes are not taken", action.span)
         else:
+            node.action = action
             self.nodes.append(node)

@@ -215,6 +215,9 @@ class SliceMaker:
                 "remaps": node.remaps,
                 "parameter_files": node.parameter_files,
                 "respawn": node.respawn,
+                "environment": node.environment,
+                "directory": node.directory,
+                "parameter_commands": node.parameter_commands,
             }
             hint |= {key: value for key, value in rest.items() if value}
         return hint

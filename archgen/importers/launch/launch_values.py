@@ -23,6 +23,8 @@ class UnknownValue:
 
     reason: str
     line: int = 0
+    file: str = ""
+    """Where the line stands, if that is another file than the one of what needs the value."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import LaunchValue
 
 
@@ -19,6 +20,8 @@ class LaunchedNode:
     span: Span
     file: str
     """The launch file that starts it."""
+    action: LaunchAction | None = None
+    """The action that starts it."""
     package: str = ""
     executable: str = ""
     plugin: str = ""

@@ -11,7 +11,7 @@ from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
-from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter
+from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
 from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
 
 if TYPE_CHECKING:
@@ -50,6 +50,8 @@ class NodeMaker:
         node = self._begin(action, "program")
         words: list[str] = []
         for value in list_items(action.get("command")):
+            if value is None:
+                continue
             text = self._run.context.resolve(value)
             if isinstance(text, UnknownValue):
                 self._run.tell_computed(action.word, "a word of the command", text, action.span)
@@ -118,8 +120,9 @@ class NodeMaker:
         node.namespace = joined
 
     def _set_remaps(self, node: LaunchedNode, action: LaunchAction) -> None:
-        # The first rule for a name counts, and those of the scope come first.
-        pairs: list[Any] = [*self._run.context.scope.remaps, *list_items(action.get("remaps"))]
+        # The first rule for a name counts. Those of the scope come first, in ROS 1 last.
+        around, own = list(self._run.context.scope.remaps), list_items(action.get("remaps"))
+        pairs: list[Any] = [*reversed(own), *around] if self._run.context.is_ros_1 else [*around, *own]
         for pair in pairs:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
                 unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_value(pair))
@@ -148,11 +151,17 @@ class NodeMaker:
             node.environment[name] = value
         pairs = action.get("environment")
         for name, value in pairs.items() if isinstance(pairs, Mapping) else _list_pairs(pairs):
-            texts = context.resolve(name), context.resolve(value)
-            if isinstance(texts[0], str) and isinstance(texts[1], str):
-                node.environment[texts[0]] = texts[1]
+            variable, setting = context.resolve(name), context.resolve(value)
+            if isinstance(variable, str) and isinstance(setting, str):
+                node.environment[variable] = setting
+            else:
+                unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_value(name))
+                self._run.tell_computed(action.word, "a variable of its environment", unknown, action.span)
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
-        node.directory = directory if isinstance(directory, str) else ""
+        if isinstance(directory, UnknownValue):
+            self._run.tell_computed(action.word, "its folder", directory, action.span)
+        else:
+            node.directory = directory
         prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
         rest = prefix.reason if isinstance(prefix, UnknownValue) else _read_prefix(node, prefix)
         if rest:
@@ -179,31 +188,32 @@ class NodeMaker:
             read_nodelet(node)
 
     def _set_parameters(self, node: LaunchedNode, action: LaunchAction) -> None:
-        scope = self._run.context.scope
-        for path in scope.parameter_files:
-            self._add_file_value(node, action, Substitution(FILE_KIND, (path, "", {})))
-        entries = [*({name: value} for name, value in scope.parameters if isinstance(name, str))]
-        entries += list_items(action.get("parameters"))
-        for entry in entries:
+        for entry in [*self._run.context.scope.parameters, *list_items(action.get("parameters"))]:
             if isinstance(entry, Mapping):
                 for raw_name, value in entry.items():
                     name = self._run.context.resolve(raw_name)
                     if isinstance(name, str):
                         self._set_parameter(node, action, name, value)
+                    else:
+                        self._run.tell_computed(action.word, "the name of a parameter", name, action.span)
             else:
                 self._add_file_value(node, action, entry)
 
     def _set_parameter(self, node: LaunchedNode, action: LaunchAction, name: str, value: LaunchValue) -> None:
-        found = evaluate_parameter(value, self._run.context)
-        if isinstance(found, UnknownValue):
-            self._run.tell_computed(action.word, f"the parameter `{name}`", found, action.span)
-        elif isinstance(found, CommandWords):
-            if found:
-                node.parameter_commands[name] = list(found)
-                node.parameters.pop(name, None)
-        else:
+        found, others = split_parameter(evaluate_parameter(value, self._run.context), name)
+        for inner_name, other in others:
+            node.parameters.pop(inner_name, None)
+            node.parameter_commands.pop(inner_name, None)
+            if isinstance(other, UnknownValue):
+                self._run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
+            elif other:
+                node.parameter_commands[inner_name] = list(other)
+        if found is not None:
             self._keep_written(node, f"parameters.{name}", value)
-            node.parameters[name] = found
+            # In ROS 1 a `/` in a parameter's name is a level of its tree.
+            for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
+                found = {part: found}
+            merge_values(node.parameters, found)
             node.parameter_commands.pop(name, None)
 
     def _add_file_value(self, node: LaunchedNode, action: LaunchAction, entry: LaunchValue) -> None:

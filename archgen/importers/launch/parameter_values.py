@@ -7,7 +7,14 @@ from typing import Any
 
 from archgen.importers.launch.command_words import split_words
 from archgen.importers.launch.launch_context import LaunchContext
-from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, name_object
+from archgen.importers.launch.launch_values import (
+    OPEN,
+    LaunchValue,
+    Substitution,
+    UnknownValue,
+    describe_value,
+    name_object,
+)
 from archgen.syntax.plain_scalars import resolve_scalar
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import node_to_data
@@ -28,18 +35,13 @@ class CommandWords(list[str]):
 
 
 def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 0) -> Any:  # noqa: ANN401
-    """Return the value of a parameter as data; CommandWords or an UnknownValue where it is no plain value."""
+    """Return the value of a parameter as data; CommandWords or an UnknownValue, in mappings too, where it is no plain value."""
     if depth > _MAX_DEPTH:
         return UnknownValue("values nested very deep")
     if isinstance(value, UnknownValue) or value is None or isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, Mapping):
-        return {
-            key: inner
-            for raw_key, raw in value.items()
-            if isinstance(key := context.resolve(raw_key), str)
-            and not isinstance(inner := evaluate_parameter(raw, context, depth + 1), UnknownValue | CommandWords)
-        }
+        return _evaluate_mapping(value, context, depth)
     if isinstance(value, list | tuple):
         if any(isinstance(item, Substitution) for item in value) and not any(
             isinstance(item, bool | int | float) for item in value
@@ -52,6 +54,33 @@ def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 
         ]
         return next((item for item in items if isinstance(item, UnknownValue)), items)
     return _evaluate_substitution(value, context) if isinstance(value, Substitution) else name_object(value)
+
+
+def _evaluate_mapping(value: Mapping[Any, LaunchValue], context: LaunchContext, depth: int) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for raw_key, raw_value in value.items():
+        key = context.resolve(raw_key)
+        if isinstance(key, str):
+            found[key] = evaluate_parameter(raw_value, context, depth + 1)
+        else:
+            found[describe_value(key)] = key
+    return found
+
+
+def split_parameter(value: Any, name: str) -> tuple[Any, list[tuple[str, UnknownValue | CommandWords]]]:  # noqa: ANN401
+    """Return what is plain of a parameter's value, None for nothing, and what is not, by the dotted names."""
+    if isinstance(value, UnknownValue | CommandWords):
+        return None, [(name, value)]
+    if not isinstance(value, dict) or not value:
+        return value, []
+    kept: dict[str, Any] = {}
+    others: list[tuple[str, UnknownValue | CommandWords]] = []
+    for key, inner in value.items():
+        plain, rest = split_parameter(inner, f"{name}.{key}")
+        others += rest
+        if plain is not None:
+            kept[key] = plain
+    return kept or None, others
 
 
 def _evaluate_substitution(value: Substitution, context: LaunchContext) -> Any:  # noqa: ANN401

@@ -41,6 +41,7 @@ _PAIRS: dict[str, tuple[str, tuple[str, str]]] = {
 _PAIR_KEYS = {"remap": ("from", "to")}
 _LISTS = (
     "LogInfo",
+    "SetROSLogDir",
     "Shutdown",
     "PopLaunchConfigurations",
     "PushLaunchConfigurations",
@@ -128,7 +129,11 @@ def _make_pair(reader: CallReader, name: str, arguments: CallArguments, node: as
 
 
 def _make_argument(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    values = {"name": arguments.get(0, "name"), "default": copy_value(arguments.get(None, "default_value"))}
+    values = {
+        "name": arguments.get(0, "name"),
+        "default": copy_value(arguments.get(None, "default_value")),
+        "choices": copy_value(arguments.get(None, "choices")),
+    }
     return LaunchAction("argument", name, reader.place(node), values)
 
 
@@ -152,11 +157,17 @@ def _make_group(reader: CallReader, name: str, arguments: CallArguments, node: a
     scoped = arguments.get(None, "scoped")
     values = {
         "scoped": True if scoped is None else copy_value(scoped),
+        "forwards": copy_value(arguments.get(None, "forwarding")),
         "configurations": copy_value(arguments.get(None, "launch_configurations")),
     }
     action = LaunchAction("group", name, reader.place(node), values)
     reader.add_children(action, arguments.get(0, "actions"))
     return action
+
+
+def _make_simulated_time(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+    values = {"name": "use_sim_time", "value": copy_value(arguments.get(0, "value"))}
+    return LaunchAction("parameter", name, reader.place(node), values)
 
 
 def _make_namespace(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
@@ -175,6 +186,8 @@ def _make_process(reader: CallReader, name: str, arguments: CallArguments, node:
         "environment": copy_value(arguments.get(None, "additional_env")),
         "directory": copy_value(arguments.get(None, "cwd")),
         "prefix": copy_value(arguments.get(None, "prefix")),
+        "respawn": copy_value(arguments.get(None, "respawn")),
+        "respawn_delay": copy_value(arguments.get(None, "respawn_delay")),
         "splits_words": arguments.get(None, "shell") is True,
     }
     return LaunchAction("process", name, reader.place(node), values)
@@ -244,5 +257,7 @@ _MAKERS: dict[str, Callable[[CallReader, str, CallArguments, ast.Call], LaunchAc
     "TimerAction": _make_timer,
     "RegisterEventHandler": _make_handler,
     "OpaqueFunction": _make_call,
+    "RosTimer": _make_timer,
+    "SetUseSimTime": _make_simulated_time,
     **dict.fromkeys(_EVENTS, _make_event),
 }

@@ -43,13 +43,17 @@ class ExpressionReader:
         """Return an expression that only running it would tell, as it is written."""
         line_number = getattr(node, "lineno", 0)
         if not 0 < line_number <= len(self._lines):
-            return UnknownValue(type(node).__name__, line_number)
+            return UnknownValue(type(node).__name__, line_number, self.file)
         line = self._lines[line_number - 1].encode("utf-8", "replace")
         is_one_line = getattr(node, "end_lineno", line_number) == line_number
         end = getattr(node, "end_col_offset", len(line)) if is_one_line else len(line)
         text = line[getattr(node, "col_offset", 0) : end].decode("utf-8", "replace").strip()
         shown = text if len(text) <= _MAX_QUOTED else f"{text[:_MAX_QUOTED]}..."
-        return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number)
+        return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number, self.file)
+
+    def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
+        """Note what is left out because only running it would tell; by the reader of the whole file."""
+        raise NotImplementedError
 
     def count_step(self) -> bool:
         """Whether one more step may be taken."""
@@ -250,9 +254,17 @@ class ExpressionReader:
             for number, each in enumerate(target.elts):
                 self.assign(each, items[number] if fits and items else self.quote(target), scope)
         elif isinstance(target, ast.Subscript):
-            owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
-            if isinstance(owner, dict) and isinstance(key, str | int):
+            self._assign_entry(target, value, scope)
+
+    def _assign_entry(self, target: ast.Subscript, value: LaunchValue, scope: NameScope) -> None:
+        owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
+        if isinstance(owner, dict) and isinstance(key, str | int):
+            owner[key] = value
+        elif isinstance(owner, list) and isinstance(key, int):
+            if -len(owner) <= key < len(owner):
                 owner[key] = value
+        elif isinstance(owner, dict | list):
+            self.tell_lost("=", f"which entry `{self.quote(target).reason}` is, is computed", target)
 
     def _read_call(self, node: ast.Call, scope: NameScope) -> LaunchValue:
         function = self.evaluate(node.func, scope)
@@ -264,6 +276,8 @@ class ExpressionReader:
                 named[keyword.arg] = value
             elif isinstance(value, Mapping):
                 named |= {str(key): inner for key, inner in value.items()}
+            else:
+                self.tell_lost("call", "arguments of it are computed", keyword.value)
         return self.call(function, CallArguments(positional, named), node)
 
 

@@ -51,7 +51,11 @@ class _FileReader(CallReader):
     """Reads one file."""
 
     def __init__(self, path: Path, text: str, run: LaunchRun, modules: dict[Path, NameScope]) -> None:
-        super().__init__(run.files.show_path(path), run.files.name_file(path), text.splitlines())
+        super().__init__(
+            run.files.show_path(path),
+            run.files.name_file(path),
+            text.replace("\r\n", "\n").replace("\r", "\n").split("\n"),
+        )
         self._path = path
         self._run = run
         self._folders: list[str] = []
@@ -85,8 +89,14 @@ class _FileReader(CallReader):
 
     def place(self, node: ast.AST) -> Span:
         """Return where a part of the file stands."""
-        line, column = getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1
+        line, byte_offset = getattr(node, "lineno", 1), getattr(node, "col_offset", 0)
+        text = self._lines[line - 1] if line <= len(self._lines) else ""
+        column = len(text.encode("utf-8", "replace")[:byte_offset].decode("utf-8", "replace")) + 1
         return Span(self.file, line, column, line, column + 1)
+
+    def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
+        """Note what is left out because only running it would tell."""
+        self._run.add_note(word, message, self.place(node))
 
     def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
         """Note what is taken otherwise than it is written."""

@@ -101,13 +101,16 @@ class MethodReader(StatementReader):
             value.conditions += [each for each in self.conditions if each not in value.conditions]
         return value
 
-    def _call_dict_method(  # noqa: PLR0911 - a method each
+    def _call_dict_method(  # noqa: C901, PLR0911 - a method each
         self, owner: dict[LaunchValue, LaunchValue], name: str, arguments: CallArguments, node: ast.Call
     ) -> LaunchValue:
         value = arguments.get(0)
         match name:
             case "update":
-                owner |= value if isinstance(value, Mapping) else {}
+                if isinstance(value, Mapping):
+                    owner |= value
+                elif value is not None:
+                    self.tell_lost("update", f"what it adds is computed: `{self.quote(node).reason}`", node)
                 owner |= arguments.named
                 return None
             case "items":
@@ -120,6 +123,10 @@ class MethodReader(StatementReader):
                 return dict(owner)
             case "get" if isinstance(value, str | int):
                 return owner.get(value, arguments.get(1, "default"))
+            case "pop" if isinstance(value, str | int):
+                return owner.pop(value, arguments.get(1))
+            case "setdefault" if isinstance(value, str | int):
+                return owner.setdefault(value, arguments.get(1))
         return self.quote(node)
 
     def _join_texts(self, separator: str, items: LaunchValue, node: ast.Call) -> LaunchValue:

@@ -6,13 +6,15 @@ import ast
 from collections.abc import Callable
 from typing import Any, Literal
 
-from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.importers.launch.launch_actions import LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
+from archgen.importers.launch.python_branches import BranchRecord, Container, merge_names
 from archgen.importers.launch.python_comprehensions import ComprehensionReader
 from archgen.importers.launch.python_expressions import MAX_DEPTH, list_items
+from archgen.importers.launch.python_operators import MAX_ITEMS
 from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
-Ending = Literal["", "return", "break", "continue"]
+Ending = Literal["", "return", "break", "continue", "raise"]
 """How a block ended."""
 _MAX_FUNCTIONS = 20
 
@@ -101,8 +103,13 @@ class StatementReader(ComprehensionReader):
         return ""
 
     def _run_return(self, statement: ast.Return, scope: NameScope) -> Ending:
-        scope.returned.append(self.evaluate(statement.value, scope) if statement.value is not None else None)
+        value = self.evaluate(statement.value, scope) if statement.value is not None else None
+        # A list goes on to change where the way that does not return here is followed.
+        scope.returned.append(list(value) if isinstance(value, list) and self.conditions else value)
         return "return"
+
+    def _run_raise(self, _statement: ast.Raise, _scope: NameScope) -> Ending:
+        return "raise"
 
     def _run_break(self, _statement: ast.Break, _scope: NameScope) -> Ending:
         return "break"
@@ -118,7 +125,10 @@ class StatementReader(ComprehensionReader):
         return self.run_block(statement.body, scope)
 
     def _run_try(self, statement: ast.Try, scope: NameScope) -> Ending:
-        return self.run_block([*statement.body, *statement.orelse, *statement.finalbody], scope)
+        ending = self.run_block([*statement.body, *statement.orelse], scope)
+        if ending == "raise" and statement.handlers:
+            ending = self.run_block(statement.handlers[0].body, scope)
+        return self.run_block(statement.finalbody, scope) or ending
 
     def _run_if(self, statement: ast.If, scope: NameScope) -> Ending:
         test = self.evaluate(statement.test, scope)
@@ -132,25 +142,36 @@ class StatementReader(ComprehensionReader):
         return self.run_block(statement.body if verdict else statement.orelse, scope)
 
     def _run_both(self, statement: ast.If, scope: NameScope) -> Ending:
-        """Follow both ways of a condition that is not known; names that differ behind it are not known either."""
+        """Follow both ways of a condition that is not known; what differs behind it is not known either."""
+        test, depth = self.quote(statement.test), len(self.conditions)
         before = dict(scope.values)
-        outcomes: list[dict[str, LaunchValue]] = []
+        record = BranchRecord(scope)
         endings: list[Ending] = []
-        test = self.quote(statement.test)
+        names: list[dict[LaunchValue, LaunchValue]] = []
+        contents: list[list[Container]] = []
         for block, is_negated in ((statement.body, False), (statement.orelse, True)):
             scope.values = dict(before)
             self.conditions.append(LaunchCondition(test, is_negated))
             endings.append(self.run_block(block, scope))
-            self.conditions.pop()
-            outcomes.append(scope.values)
-        first, second = outcomes
-        if endings[0] and not endings[1]:
-            scope.values = second
-        elif endings[1] and not endings[0]:
-            scope.values = first
+            del self.conditions[depth:]
+            names.append(dict(scope.values))
+            contents.append(record.take_outcome())
+        gone = [ending in {"return", "raise"} for ending in endings]
+        if gone[0] != gone[1]:
+            # What follows is reached by the other way only.
+            stays = int(gone[0])
+            record.put_back(contents[stays])
+            merged = names[stays]
         else:
-            scope.values = {name: _merge_values(first.get(name), second.get(name), test) for name in (first | second)}
-        return endings[0] if endings[0] == endings[1] else ""
+            record.merge_outcomes(contents[0], contents[1], test)
+            merged = merge_names(names[0], names[1], test)
+        scope.values = {name: value for name, value in merged.items() if isinstance(name, str)}
+        first, second = endings
+        if first == second or {first, second} == {"return", "raise"}:
+            return "return" if {first, second} == {"return", "raise"} else first
+        if first or second:
+            self.conditions.append(LaunchCondition(test, is_negated=bool(first)))
+        return ""
 
     def _run_for(self, statement: ast.For, scope: NameScope) -> Ending:
         items = list_items(self.evaluate(statement.iter, scope))
@@ -162,17 +183,30 @@ class StatementReader(ComprehensionReader):
             if not self.count_step():
                 break
             self.assign(statement.target, item, scope)
+            depth = len(self.conditions)
             ending = self.run_block(statement.body, scope)
+            del self.conditions[depth:]
             if ending == "break":
                 return ""
-            if ending == "return":
+            if ending in {"return", "raise"}:
                 return ending
         return self.run_block(statement.orelse, scope)
 
     def _run_while(self, statement: ast.While, scope: NameScope) -> Ending:
-        self.tell_noted("while", "how often is computed; what is in it is read once", statement)
-        ending = self.run_block(statement.body, scope)
-        return ending if ending == "return" else ""
+        for _ in range(MAX_ITEMS):
+            verdict = self.judge(self.evaluate(statement.test, scope))
+            if verdict is False or not self.count_step():
+                break
+            if verdict is None:
+                self.tell_noted("while", "how often is computed; what is in it is read once", statement)
+            depth = len(self.conditions)
+            ending = self.run_block(statement.body, scope)
+            del self.conditions[depth:]
+            if ending in {"return", "raise"}:
+                return ending
+            if ending == "break" or verdict is None:
+                return ""
+        return self.run_block(statement.orelse, scope)
 
     def call_function(self, function: FunctionValue, arguments: CallArguments, node: ast.AST) -> LaunchValue:
         """Return what a function of the file gives."""
@@ -183,16 +217,19 @@ class StatementReader(ComprehensionReader):
         scope = NameScope(function.scope)
         self._bind_arguments(function, arguments, scope)
         self._functions += 1
+        depth = len(self.conditions)
         try:
             if isinstance(function.definition, ast.Lambda):
                 return self.evaluate(function.definition.body, scope)
             self.run_block(function.definition.body, scope)
         finally:
             self._functions -= 1
+            del self.conditions[depth:]
         returned = scope.returned
         if len(returned) > 1:
-            # Several conditions that are not known led to several ends: what they start is taken together.
-            return [item for value in returned for item in (value if isinstance(value, list | tuple) else [value])]
+            # Several conditions that are not known led to several ends: what they start is taken together, once each.
+            items = [item for value in returned for item in (value if isinstance(value, list | tuple) else [value])]
+            return list({id(item): item for item in items if item is not None}.values())
         return returned[0] if returned else None
 
     def call_from(self, caller: StatementReader, function: FunctionValue, arguments: CallArguments) -> LaunchValue:
@@ -227,18 +264,3 @@ class StatementReader(ComprehensionReader):
 def _is_plain_name_test(test: ast.expr) -> bool:
     """Whether a condition is `__name__ == "__main__"`."""
     return isinstance(test, ast.Compare) and isinstance(test.left, ast.Name) and test.left.id == "__name__"
-
-
-def _merge_values(first: LaunchValue, second: LaunchValue, test: UnknownValue) -> LaunchValue:
-    if first is second:
-        return first
-    if isinstance(first, list) and isinstance(second, list):
-        seen = {id(item) for item in first}
-        return [*first, *(item for item in second if id(item) not in seen)]
-    if isinstance(first, LaunchAction) and isinstance(second, LaunchAction):
-        # Each of them knows when it counts.
-        return [first, second]
-    if isinstance(first, LaunchAction | UnknownValue) and second is None:
-        return first
-    is_plain = isinstance(first, str | int | float | bool) and type(first) is type(second)
-    return first if is_plain and first == second else UnknownValue(f"either way of `if {test.reason}`", test.line)

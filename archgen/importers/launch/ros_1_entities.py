@@ -84,7 +84,7 @@ class Ros1EntityReader:
     def _read_arg(self, entity: LaunchEntity) -> LaunchAction:
         name = entity.attributes.get("name", "")
         if "value" in entity.attributes:
-            values = {"name": name, "value": self._attribute(entity, "value")}
+            values = {"name": name, "value": self._attribute(entity, "value"), "is_fixed": True}
             return LaunchAction("configure", entity.tag, entity.span, values)
         values = {"name": name, "default": self._attribute(entity, "default")}
         return LaunchAction("argument", entity.tag, entity.span, values)
@@ -140,6 +140,11 @@ class Ros1EntityReader:
         return LaunchAction("host", entity.tag, entity.span, values)
 
     def _read_param(self, entity: LaunchEntity) -> LaunchAction:
+        name = str(entity.attributes.get("name", ""))
+        if entity.tag == "param" and name.startswith("~"):
+            # A private name is for the nodes behind it, in the same group.
+            values = {"name": self._clean_name(name), "value": self._read_param_value(entity)}
+            return LaunchAction("parameter", entity.tag, entity.span, values)
         return LaunchAction("server_parameter", entity.tag, entity.span, {"entries": self._read_entries(entity)})
 
     def _read_rosparam(self, entity: LaunchEntity) -> LaunchAction:

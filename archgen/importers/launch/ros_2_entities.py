@@ -63,7 +63,12 @@ class Ros2EntityReader:
         return LaunchAction("unread", entity.tag, entity.span, {"reason": reason})
 
     def _read_arg(self, entity: LaunchEntity) -> LaunchAction:
-        values = {"name": entity.attributes.get("name", ""), "default": self._attribute(entity, "default")}
+        choices = [self._attribute(each, "value") for each in entity.find_all("choice")]
+        values = {
+            "name": entity.attributes.get("name", ""),
+            "default": self._attribute(entity, "default"),
+            "choices": choices,
+        }
         return LaunchAction("argument", entity.tag, entity.span, values)
 
     def _read_let(self, entity: LaunchEntity) -> LaunchAction:
@@ -139,12 +144,15 @@ class Ros2EntityReader:
 
     def _read_group(self, entity: LaunchEntity) -> LaunchAction:
         # In YAML what belongs to the group itself may be one of its children.
-        own = {child.tag: child.attributes.get("value") for child in entity.children if child.tag == "scoped"}
+        own = {child.tag: child.attributes.get("value") for child in entity.children}
         scoped = entity.attributes.get("scoped", own.get("scoped", True))
+        forwards = entity.attributes.get("forwarding", own.get("forwarding"))
+        pairs = [(self._attribute(each, "name"), self._attribute(each, "value")) for each in entity.find_all("keep")]
         children = [
             self._read_entity(child) for child in entity.children if child.tag not in {"scoped", "forwarding", "keep"}
         ]
-        return LaunchAction("group", entity.tag, entity.span, {"scoped": self._value(scoped)}, children)
+        values = {"scoped": self._value(scoped), "forwards": self._value(forwards), "configurations": pairs}
+        return LaunchAction("group", entity.tag, entity.span, values, children)
 
     def _read_push_ros_namespace(self, entity: LaunchEntity) -> LaunchAction:
         return LaunchAction("namespace", entity.tag, entity.span, {"namespace": self._attribute(entity, "namespace")})

@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ImportNote
 from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.launched_nodes import join_names
+from archgen.importers.launch.parameter_files import FILE_KIND
 
 
 class ScopeRun:
     """Walks through what sets something. Notes are kept here, each one once for a place."""
 
-    def __init__(self) -> None:
+    def __init__(self, arguments: LaunchArguments) -> None:
+        self.arguments = arguments
         self.context = LaunchContext()
         self.notes: list[ImportNote] = []
         self.hosts: dict[str, str] = {}
         """The machines of ROS 1, with their addresses."""
+        self.open_files: list[Path] = []
+        """The files that are read just now, each included by the one before."""
         self._seen_notes: set[tuple[str, str, int, str]] = set()
 
     def _run_argument(self, action: LaunchAction) -> None:
@@ -27,6 +33,8 @@ class ScopeRun:
         if isinstance(name, UnknownValue):
             self._tell_computed(action, "its name", name)
             return
+        if self._can_be_set():
+            self.arguments.declare(name, DeclaredArgument(action.span, self._read_choices(action)))
         default = action.get("default")
         if name not in self.context.scope.configurations and default is not None:
             value = self.context.resolve(default)
@@ -39,10 +47,29 @@ class ScopeRun:
             message = f"the argument `{name}` has no default: what it gives stays `{describe_value(Substitution('var', (name,)))}`"
             self.add_note(action.word, message, action.span, fate="noted")
 
+    def _can_be_set(self) -> bool:
+        """Whether arguments of this file can be set on the command line: in ROS 1 only those of the file that is launched."""
+        return not self.context.is_ros_1 or len(self.open_files) == 1
+
+    def _read_choices(self, action: LaunchAction) -> tuple[str, ...]:
+        choices = action.get("choices")
+        texts = [self.context.resolve(each) for each in choices] if isinstance(choices, list | tuple) else []
+        plain_texts = tuple(text for text in texts if isinstance(text, str) and OPEN not in text)
+        return plain_texts if len(plain_texts) == len(texts) else ()
+
     def _run_configure(self, action: LaunchAction) -> None:
         name = self.context.resolve(action.get("name"))
-        if isinstance(name, str):
-            self.context.scope.configurations[name] = self.context.resolve(action.get("value"))
+        if not isinstance(name, str):
+            self._tell_computed(action, "its name", name)
+            return
+        if action.get("is_fixed") and self._can_be_set():
+            self.arguments.declare(name, DeclaredArgument(action.span, is_fixed=True))
+        value = self.context.resolve(action.get("value"))
+        verdicts = [self.context.judge_condition(condition) for condition in action.conditions]
+        unsure = next((words for words, verdict in verdicts if verdict is None), None)
+        if unsure is not None and self.context.scope.configurations.get(name) != value:
+            value = UnknownValue(f"either way of `{unsure}`", action.span.line, action.span.file)
+        self.context.scope.configurations[name] = value
 
     def _run_namespace(self, action: LaunchAction) -> None:
         self.push_namespace(action, action.get("namespace"))
@@ -58,10 +85,15 @@ class ScopeRun:
             scope.namespace = join_names(scope.namespace, text)
 
     def _run_parameter(self, action: LaunchAction) -> None:
-        self.context.scope.parameters = (*self.context.scope.parameters, (action.get("name"), action.get("value")))
+        name = self.context.resolve(action.get("name"))
+        if isinstance(name, UnknownValue):
+            self._tell_computed(action, "its name", name)
+        else:
+            self.context.scope.parameters = (*self.context.scope.parameters, {name: action.get("value")})
 
     def _run_parameter_file(self, action: LaunchAction) -> None:
-        self.context.scope.parameter_files = (*self.context.scope.parameter_files, action.get("file"))
+        file = Substitution(FILE_KIND, (action.get("file"), "", {}))
+        self.context.scope.parameters = (*self.context.scope.parameters, file)
 
     def _run_remap(self, action: LaunchAction) -> None:
         pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
@@ -69,7 +101,10 @@ class ScopeRun:
         if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
             self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
         else:
-            self.context.scope.remaps = (*self.context.scope.remaps, (own_name, name))
+            scope = self.context.scope
+            # In ROS 1 a later rule for a name takes the place of an earlier one, in ROS 2 the first one counts.
+            kept = [pair for pair in scope.remaps if not (self.context.is_ros_1 and pair[0] == own_name)]
+            scope.remaps = (*kept, (own_name, name))
 
     def _run_environment(self, action: LaunchAction) -> None:
         name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
@@ -109,5 +144,5 @@ class ScopeRun:
 
     def tell_computed(self, word: str, what: str, value: UnknownValue, span: Span) -> None:
         """Note what only running the file would tell."""
-        place = span._replace(line=value.line, column=1, end_line=value.line, end_column=2) if value.line else span
+        place = Span(value.file or span.file, value.line, 1, value.line, 2) if value.line else span
         self.add_note(word, f"{what} is computed: `{value.reason}`", place)

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from archgen.importers.launch.launch_actions import LaunchAction
-from archgen.importers.launch.launch_values import Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_values import Substitution, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode
 from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
-from archgen.importers.launch.parameter_values import evaluate_parameter
+from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_parameter
 
 if TYPE_CHECKING:
     from archgen.importers.launch.launch_run import LaunchRun
@@ -34,6 +34,9 @@ def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[st
             run.add_note("param", message, span, "give it to the nodes that read it")
             continue
         inner = parts[len(owner.full_name.strip("/").split("/")) :]
+        if isinstance(value, CommandWords):
+            owner.parameter_commands.setdefault(".".join(inner), list(value))
+            continue
         for part in reversed(inner):
             value = {part: value}  # noqa: PLW2901 - wrapped from the inside
         given = value if isinstance(value, dict) else {}
@@ -53,12 +56,18 @@ def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, An
             _read_server_file(run, action, entry, found)
         elif isinstance(entry, Mapping):
             for raw_name, raw_value in entry.items():
-                name, value = run.context.resolve(raw_name), evaluate_parameter(raw_value, run.context)
-                if isinstance(value, UnknownValue) or not isinstance(name, str):
-                    unknown = value if isinstance(value, UnknownValue) else UnknownValue(str(name))
-                    run.tell_computed(action.word, f"the parameter `{describe_value(raw_name)}`", unknown, action.span)
-                else:
+                name = run.context.resolve(raw_name)
+                if isinstance(name, UnknownValue):
+                    run.tell_computed(action.word, "the name of a parameter", name, action.span)
+                    continue
+                value, others = split_parameter(evaluate_parameter(raw_value, run.context), name)
+                if value is not None:
                     found[name] = value
+                for inner_name, other in others:
+                    if isinstance(other, UnknownValue):
+                        run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
+                    else:
+                        found[inner_name.replace(".", "/")] = other
     return found
 
 

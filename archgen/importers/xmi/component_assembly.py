@@ -84,7 +84,7 @@ class ComponentAssembly:
                 part_type = self._sorting.facts.get(reference.element) if reference and reference.element else None
                 if part_type is None or part_type.sort != "component_type":
                     continue
-                if part_type.element not in self._sorting.with_ports:
+                if part_type.element not in self._sorting.with_ports or not self._sorting.is_place(part):
                     continue
                 if is_true(part_type.element, "isAbstract"):
                     words = f"{call(part)} is not taken: `{get_name(part_type.element)}` is abstract"
@@ -183,6 +183,7 @@ class ComponentAssembly:
         for facts in (*self.types.values(), *self.components):
             if facts.element in self._sorting.parts:
                 self.features[facts.element] = ClassFeatures()
+                self._ledger.take(facts.element)
                 continue
             parts = {inner.element for inner in facts.inside}
             names = {port.name for port in facts.ports} | realized[id(facts)]

@@ -64,6 +64,7 @@ class ClassSorting:
         self._realizers = self._find_realizers()
         self.with_ports = {each for each in catalogue.classes if self._has_ports(each)}
         """Components, and classes with ports."""
+        self._joined_parts = self._find_joined_parts()
         self.facts: dict[XmlElement, ClassFacts] = {}
         self.parts: dict[XmlElement, ClassFacts] = {}
         self._sort_classes()
@@ -178,13 +179,28 @@ class ClassSorting:
                 self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
 
+    def is_place(self, element: XmlElement) -> bool:
+        """Whether a property is a place for a component inside: others only refer to one that stands elsewhere."""
+        return element.attributes.get("aggregation") == "composite" or element in self._joined_parts
+
+    def _find_joined_parts(self) -> set[XmlElement]:
+        """Return the properties that connectors join: they stand inside, whatever else is written of them."""
+        return {
+            part
+            for connector in self._catalogue.connectors
+            for end in list_children(connector, "ConnectorEnd")
+            for part in self._index.list_named(end, "partWithPort", "role")
+        }
+
     def _find_parts(self) -> tuple[set[XmlElement], set[XmlElement]]:
         """Return the classes that have parts with ports, and the classes of these parts."""
         pairs = [
             (owner, reference.element)
             for owner in self._catalogue.classes
             for part in list_children(owner, "Property")
-            if (reference := self._index.find_reference(part, "type")) and reference.element in self.with_ports
+            if self.is_place(part)
+            and (reference := self._index.find_reference(part, "type"))
+            and reference.element in self.with_ports
         ]
         return {owner for owner, _ in pairs}, {part for _, part in pairs if part is not None}
 

@@ -12,6 +12,7 @@ from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, 
 from archgen.importers.xmi.made_names import name_type
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.link.data_types.message_names import spell_message_name
 from archgen.model.element_ids import make_id
 
 _UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
@@ -36,7 +37,9 @@ class DataTypes:
                 ledger.leave(element, f"{call(element)} is not taken: {why}")
                 continue
             self._elements[name] = element
+        self._valueless: set[str] = set()
         self._fields = {name: self._read_fields(each) for name, each in self._elements.items()}
+        self._drop_nameless_fields()
         self._drop_unknown_fields()
 
     def _read_fields(self, element: XmlElement) -> dict[str, dict[str, object]] | None:
@@ -60,6 +63,25 @@ class DataTypes:
             comment = texts.get("comment") or texts.get("description")
             fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
         return fields or None
+
+    def _drop_nameless_fields(self) -> None:
+        """Leave out fields and values of types after which no message can be called, or whose message another one has."""
+        first_types: dict[str, str] = {}
+        for name, element in self._elements.items():
+            literals = list_children(element, "EnumerationLiteral") if _is_enumeration(element) else []
+            if not self._fields[name] and not literals:
+                continue
+            message = spell_message_name(name)
+            reason = "no message of ROS can be called so, which needs letters and digits, a letter first"
+            if message is not None:
+                first = first_types.setdefault(message, name)
+                reason = f"its message would be `{message}`, as that of `{first[:80]}`" if first != name else ""
+            if reason and literals:
+                self._valueless.add(name)
+                words = f"the values of `{name[:80]}` are not taken: {reason}"
+                self._ledger.leave(literals[0], words, others=literals[1:])
+            elif reason:
+                self._drop_fields(name, reason)
 
     def _drop_unknown_fields(self) -> None:
         """Leave out fields of types that have none themselves, and of those that hold themselves."""
@@ -107,7 +129,7 @@ class DataTypes:
         section: dict[str, object] = {}
         for name, element in self._elements.items():
             body: dict[str, object] = {}
-            if _is_enumeration(element):
+            if _is_enumeration(element) and name not in self._valueless:
                 body |= self._write_values(element)
             elif fields := self._fields[name]:
                 for child in list_children(element, "Property"):

@@ -32,13 +32,18 @@ def note_leftovers(ledger: ImportLedger, documents: Sequence[XmiDocument]) -> No
     for document in documents:
         for model in document.models:
             for owner, kind, parts in _list_leftovers(ledger, model):
-                names = [f"`{name[:60]}`" for each in parts if (name := get_name(each))]
-                shown = ", ".join(names[:_NAMES_SHOWN]) + (" and others" if len(names) > _NAMES_SHOWN else "")
-                what = f"the {kind} {shown}" if len(parts) == 1 and shown else f"{len(parts)} {kind} ({shown})"
-                what = what if shown else f"{len(parts)} {kind}"
                 verb = "is" if len(parts) == 1 else "are"
-                words = f"{what} of {call(owner)} {verb} not taken: {_PARTS[kind]}"
+                words = f"{_name_parts(kind, parts)} of {call(owner)} {verb} not taken: {_PARTS[kind]}"
                 ledger.leave(parts[0], words, others=parts[1:])
+
+
+def _name_parts(kind: str, parts: Sequence[XmlElement]) -> str:
+    names = [f"`{name[:60]}`" for each in parts if (name := get_name(each))]
+    shown = ", ".join(names[:_NAMES_SHOWN]) + (" and others" if 0 < len(names[:_NAMES_SHOWN]) < len(parts) else "")
+    plural = "Properties" if kind == "Property" else f"{kind}s"
+    if len(parts) == 1:
+        return f"the {kind} {shown}" if shown else f"a {kind}"
+    return f"the {plural} {shown}" if shown else f"{len(parts)} {plural}"
 
 
 def _list_leftovers(ledger: ImportLedger, model: XmlElement) -> Iterator[tuple[XmlElement, str, list[XmlElement]]]:

@@ -87,6 +87,13 @@ def _find_package(types: Mapping[str, ConceptualType], type_name: str, sources: 
     return sources.library_packages.get(library or "", f"{sources.project_id}_msgs")
 
 
+def spell_message_name(type_name: str) -> str | None:
+    """Return what the message of a type is called that is not generic; None where no name of ROS comes of it."""
+    words = _WORD.findall(type_name.rpartition("/")[2]) if type_name.isascii() else ()
+    name = "".join(word[:1].upper() + word[1:] for word in words)
+    return name if _MESSAGE_NAME.match(name) else None
+
+
 def _make_message_name(types: Mapping[str, ConceptualType], type_name: str, path: str) -> str | None:
     """Return the message of a type's name, its words joined in capitals; None where no name of ROS comes of it."""
     # Letters that ROS does not know cannot just be left out: `Größe` is no `Gre`.

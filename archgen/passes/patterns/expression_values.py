@@ -8,7 +8,7 @@ from typing import Protocol
 
 from archgen.compose.type_expressions import bind_type_name
 from archgen.model.message_types import PART_KEYS
-from archgen.passes.patterns.expressions import Call, Comparison, ListOperand, Operand, TextOperand
+from archgen.passes.patterns.expressions import Call, Condition, ListOperand, Operand, TextOperand
 from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
 from archgen.passes.patterns.text_matching import resolve_text
 
@@ -39,12 +39,12 @@ class NamedElements(Protocol):
         ...
 
 
-def holds(comparison: Comparison, bindings: Bindings, view: NamedElements) -> bool:
+def holds(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
     """Whether a comparison is true."""
     return _compare(comparison, bindings, view) != comparison.is_negated
 
 
-def _compare(comparison: Comparison, bindings: Bindings, view: NamedElements) -> bool:
+def _compare(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
     left = comparison.left
     if not comparison.operator:
         name, wanted = (

@@ -63,8 +63,8 @@ class Call(NamedTuple):
 Operand = TextOperand | ListOperand | Call
 
 
-class Comparison(NamedTuple):
-    """A comparison; with a call alone in `left`, the operator is empty."""
+class Condition(NamedTuple):
+    """What a `where` asks: a comparison; with a call alone in `left`, the operator is empty."""
 
     left: Operand
     operator: str = ""
@@ -72,7 +72,7 @@ class Comparison(NamedTuple):
     is_negated: bool = False
 
 
-def parse_comparison(text: str) -> Comparison:
+def parse_condition(text: str) -> Condition:
     """Return what a `where` asks. Raise ExpressionError."""
     reader = _Reader(text)
     is_negated = reader.take_word("not")
@@ -85,14 +85,14 @@ def parse_comparison(text: str) -> Comparison:
                 message, f"write one of {', '.join(f'`{each}`' for each in OPERATORS)} between two values"
             )
         reader.expect_end()
-        return Comparison(left, is_negated=is_negated)
+        return Condition(left, is_negated=is_negated)
     right = reader.read_operand()
     reader.expect_end()
     for side in (left, right):
         if isinstance(side, Call) and side.function in TEST_FUNCTIONS:
             message = f"`{side.function}` says yes or no: it stands alone"
             raise ExpressionError(message)
-    return Comparison(left, operator, right, is_negated)
+    return Condition(left, operator, right, is_negated)
 
 
 def parse_value(text: str) -> Operand:

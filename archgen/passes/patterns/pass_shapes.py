@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 from archgen.diagnostics.source_span import Span
-from archgen.passes.patterns.expressions import Comparison, Operand
+from archgen.passes.patterns.expressions import Condition, Operand
 from archgen.passes.patterns.matching import ViewPattern
 from archgen.passes.patterns.pattern_shapes import Pattern
 
@@ -16,10 +16,10 @@ EDIT_KINDS: tuple[EditKind, ...] = ("drop", "set", "add")
 """What a rule does with what it found, in this order: what is dropped makes room."""
 
 
-class WrittenComparison(NamedTuple):
+class WrittenCondition(NamedTuple):
     """A comparison behind `where`, and its place."""
 
-    comparison: Comparison
+    comparison: Condition
     span: Span
 
 
@@ -27,7 +27,7 @@ class NegativePattern(NamedTuple):
     """What must not be there, with comparisons of its own."""
 
     pattern: ViewPattern
-    where: tuple[WrittenComparison, ...]
+    where: tuple[WrittenCondition, ...]
     distinct: frozenset[str]
     """Its own variables that stand for components."""
 
@@ -53,7 +53,7 @@ class RewriteRule(NamedTuple):
 
     find: ViewPattern
     unless: tuple[NegativePattern, ...]
-    where: tuple[WrittenComparison, ...]
+    where: tuple[WrittenCondition, ...]
     let: tuple[LetBinding, ...]
     edits: tuple[RuleEdit, ...]
     distinct: frozenset[str]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.passes.patterns.expressions import ExpressionError, parse_comparison, parse_value
+from archgen.passes.patterns.expressions import ExpressionError, parse_condition, parse_value
 from archgen.passes.patterns.matching import ViewPattern
 from archgen.passes.patterns.pass_shapes import (
     EDIT_KINDS,
@@ -16,7 +16,7 @@ from archgen.passes.patterns.pass_shapes import (
     NegativePattern,
     RewriteRule,
     RuleEdit,
-    WrittenComparison,
+    WrittenCondition,
 )
 from archgen.passes.patterns.pattern_shapes import (
     Anything,
@@ -138,14 +138,14 @@ class RuleReader:
             where = item.get("where") if isinstance(item, MappingNode) else None
             yield NegativePattern(pattern, tuple(self._read_where(where)), _list_distinct(pattern))
 
-    def _read_where(self, node: YamlNode | None) -> Iterator[WrittenComparison]:
+    def _read_where(self, node: YamlNode | None) -> Iterator[WrittenCondition]:
         items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
         for item in items:
             if not isinstance(item, ScalarNode) or item.value is None:
                 self._report("`where` is a comparison, or a list of them", item.span, "as in `where: $type != Pose`")
                 continue
             try:
-                yield WrittenComparison(parse_comparison(item.text), item.span)
+                yield WrittenCondition(parse_condition(item.text), item.span)
             except ExpressionError as error:
                 self._report(str(error), item.span, error.help_line)
 

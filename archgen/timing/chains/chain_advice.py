@@ -10,11 +10,12 @@ from fractions import Fraction
 from typing import Literal, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ResponseTier
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.gap_formulas import find_storing_part
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE, is_boundless
 from archgen.timing.system.core_placement import is_missing_cores

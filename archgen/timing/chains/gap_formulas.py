@@ -10,7 +10,8 @@ from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import is_known_bound
-from archgen.timing.load.event_models import PropagationState, arriving_model, entering_model
+from archgen.timing.load.event_models import arriving_model, entering_model
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Activity, Arc
 
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
-from archgen.timing.analysis import Analysis, ChainTerm, ResponseTier
+from archgen.timing.analysis import Analysis, ChainTerm
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_unfound
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from archgen.timing.load.busy_windows import DivergedError
 from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.idle_backlogs import IdleBacklog
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.way_works import SharedWork, WayWork, build_thread_work
 from archgen.timing.load.work_terms import ONCE, CountFormulas, EventCount, FigureWorking, WorkTerm, group_terms
@@ -123,7 +123,7 @@ class BacklogWorkings(NamedTuple):
                 else:
                     yield WorkTerm(((share.name, share.work),), ONCE, f"the rest of all {reason}")
 
-    def describe_origin(self, origin: Origin) -> str:
+    def describe_origin(self, origin: EventOrigin) -> str:
         """Say what comes of an origin."""
         if origin.kind == "arc":
             arc = self.backlog.cores.entering_arcs[int(origin.key)].arc

@@ -13,7 +13,7 @@ from fractions import Fraction
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios
 from archgen.timing.load.busy_windows import ActivityWork, DemandFunction, GrowingLoad, add_demands
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
-from archgen.timing.load.level_cascades import ONCE_ORIGIN, LevelCascades, Origin
+from archgen.timing.load.level_cascades import ONCE_ORIGIN, EventOrigin, LevelCascades
 
 _SHARE_BITS = 64
 
@@ -21,12 +21,12 @@ _SHARE_BITS = 64
 class CascadeDemand:
     """The demand of a level for given event models of what enters; an origin without a model has a cause instead."""
 
-    def __init__(self, level: LevelCascades, model_of: Callable[[Origin], EventStreams | UnknownCause]) -> None:
+    def __init__(self, level: LevelCascades, model_of: Callable[[EventOrigin], EventStreams | UnknownCause]) -> None:
         """Look up the event models of all that counts."""
         self.level = level
-        self._streams: dict[Origin, EventStreams] = {}
+        self._streams: dict[EventOrigin, EventStreams] = {}
         self.causes: list[UnknownCause] = []
-        self._rates: dict[Origin, Fraction] = {ONCE_ORIGIN: Fraction(0)}
+        self._rates: dict[EventOrigin, Fraction] = {ONCE_ORIGIN: Fraction(0)}
         for origin in self._find_used_origins():
             if origin.kind in {"activity", "arc"}:
                 model = model_of(origin)
@@ -35,10 +35,10 @@ class CascadeDemand:
                 else:
                     self._streams[origin] = model
 
-    def _find_used_origins(self) -> dict[Origin, None]:
+    def _find_used_origins(self) -> dict[EventOrigin, None]:
         """Return the origins that work rests on, directly or through gates."""
         pending = [origin for origin, volume in self.level.volumes.items() if volume]
-        used: dict[Origin, None] = {}
+        used: dict[EventOrigin, None] = {}
         while pending:
             origin = pending.pop()
             if origin in used:
@@ -59,13 +59,13 @@ class CascadeDemand:
         ]
         return Fraction(*sum_ratios(ratios))
 
-    def _find_ratio(self, origin: Origin) -> tuple[int, int]:
+    def _find_ratio(self, origin: EventOrigin) -> tuple[int, int]:
         """Return the rate of an origin as numerator and denominator, which may have common factors."""
         if origin.kind == "gate":
             return self.rate_of(origin).as_integer_ratio()
         return sum_ratios([stream.max_rate_ratio for stream in self._streams.get(origin, ())])
 
-    def rate_of(self, origin: Origin) -> Fraction:
+    def rate_of(self, origin: EventOrigin) -> Fraction:
         """Return the most events of an origin per tick in the long run; 0 where that is not known."""
         rate = self._rates.get(origin)
         if rate is None and origin.kind != "gate":
@@ -81,7 +81,7 @@ class CascadeDemand:
             self._rates[origin] = rate
         return rate
 
-    def streams_of(self, origin: Origin) -> EventStreams:
+    def streams_of(self, origin: EventOrigin) -> EventStreams:
         """Return the event model of what enters."""
         return self._streams[origin]
 
@@ -119,7 +119,7 @@ class CascadeDemand:
         def work_within(window: int) -> int:
             gate_counts: list[int] = []
 
-            def count_events(origin: Origin) -> int:
+            def count_events(origin: EventOrigin) -> int:
                 if origin.kind == "gate":
                     return gate_counts[int(origin.key)]
                 return 1 if origin.kind == "once" else max_arrivals(streams.get(origin, ()), window)

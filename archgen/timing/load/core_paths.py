@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.timing.load.inner_core import urgency_of
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import Priority
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
 from archgen.timing.load.way_works import WayWork, build_way_works
@@ -24,7 +24,7 @@ class LastStep:
     """
 
     cost: int
-    arrivals: tuple[tuple[Origin, int, WayKey | None, int], ...]
+    arrivals: tuple[tuple[EventOrigin, int, WayKey | None, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class CorePath:
     other_lanes: tuple[list[int], ...]
     lane_widths: tuple[int, ...]
     held_jobs: frozenset[int]
-    waiting_lanes: tuple[frozenset[Origin], ...]
+    waiting_lanes: tuple[frozenset[EventOrigin], ...]
 
     def list_jobs(self) -> Iterator[int]:
         """Yield the jobs that come in the way."""
@@ -219,11 +219,11 @@ class CorePaths:
             if way.entry == job.origin and way.steps == job.steps[:-1]
         )
 
-    def _list_waiting_lanes(self, units: Iterable[ThreadUnit]) -> tuple[frozenset[Origin], ...]:
+    def _list_waiting_lanes(self, units: Iterable[ThreadUnit]) -> tuple[frozenset[EventOrigin], ...]:
         """Return what waits in each thread, or container, that takes an idle core as soon as it has work."""
         cores = self.cores
-        origins_by_crowd: dict[object, frozenset[Origin]] = {}
-        lanes: list[frozenset[Origin]] = []
+        origins_by_crowd: dict[object, frozenset[EventOrigin]] = {}
+        lanes: list[frozenset[EventOrigin]] = []
         for unit in units:
             crowd = cores.crowd_of.get(unit[0])
             if crowd is not None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import (
     ActivityWork,
@@ -29,7 +29,7 @@ from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.event_streams import EventStreams, settles_at_full_load, streams_of_calls
 from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
-from archgen.timing.load.level_cascades import LevelCascades, Origin
+from archgen.timing.load.level_cascades import EventOrigin, LevelCascades
 from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.storing_waits import hold_before_activation
@@ -60,12 +60,12 @@ class LevelBound(NamedTuple):
 
 def solve_inner_core(
     inner_core: InnerCore,
-    model_of: Callable[[Origin, FiringArc | None], EventStreams | UnknownCause],
+    model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
     budget: SearchBudget,
 ) -> CoreResponses:
     """Return the responses on a core, for the event models of what enters it (`model_of`)."""
 
-    def find_model(origin: Origin) -> EventStreams | UnknownCause:
+    def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
         return model_of(origin, inner_core.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
     return CoreSolver(inner_core, find_model, budget).solve()
@@ -77,7 +77,7 @@ class CoreSolver:
     def __init__(
         self,
         inner_core: InnerCore,
-        find_model: Callable[[Origin], EventStreams | UnknownCause],
+        find_model: Callable[[EventOrigin], EventStreams | UnknownCause],
         budget: SearchBudget,
     ) -> None:
         """Take the event models of what enters from `find_model`."""
@@ -147,7 +147,7 @@ class CoreSolver:
         busy_period = self.find_wait_for_turn(level)
         if busy_period is None:
             return WorstResponse(None, "host", cause if cause != UnknownCause() else DIVERGED_CAUSE)
-        origin = Origin("activity", name)
+        origin = EventOrigin("activity", name)
         if not self._enters(name) or self._is_idle(name) or not demand.level.volumes.get(origin):
             return WorstResponse(busy_period, "host")
         streams, volume = demand.streams_of(origin), demand.level.volumes[origin]

@@ -23,11 +23,11 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
 )
 from archgen.timing.load.core_responses import CoreSolver, LevelBound
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, streams_of_calls
 from archgen.timing.load.inner_core import urgency_of
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.plain_core_workings import OWN_JOBS
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.work_terms import (
     ONCE,
@@ -168,7 +168,7 @@ class InnerCoreWorkings:
         """Yield what may hold up the storing of an activity's inputs for so long."""
         level = self.solver.core.thread_of[name].lowest_priority
         bound = self.solver.bounds[level]
-        origin = Origin("activity", name)
+        origin = EventOrigin("activity", name)
         streams = self._streams_of(bound, origin)
         if name in self.solver.core.inner_triggers.entry_ids and streams:
             own_jobs = {origin: self.formulas.count_held_jobs(streams, hold)}
@@ -181,7 +181,7 @@ class InnerCoreWorkings:
         bound: LevelBound,
         window: int,
         but_name: str = "",
-        own_counts: Mapping[Origin, EventCount] = MappingProxyType({}),
+        own_counts: Mapping[EventOrigin, EventCount] = MappingProxyType({}),
     ) -> Iterator[WorkTerm]:
         """Yield the work of a level in a window (in ticks), but that of `but_name`; of own jobs so much is counted."""
         counts = dict(own_counts)
@@ -193,7 +193,7 @@ class InnerCoreWorkings:
                 reason = OWN_JOBS if origin in own_counts else self._describe_origin(origin)
                 yield WorkTerm(((name, (cost or 0) * multiplicity),), counts[origin], reason)
 
-    def _count_origin(self, bound: LevelBound, origin: Origin, window: int) -> EventCount:
+    def _count_origin(self, bound: LevelBound, origin: EventOrigin, window: int) -> EventCount:
         if origin.kind == "once":
             return ONCE
         if origin.kind != "gate":
@@ -210,13 +210,13 @@ class InnerCoreWorkings:
         ]
         return self.formulas.count_gate(rule, inputs, window)
 
-    def _streams_of(self, bound: LevelBound, origin: Origin) -> EventStreams:
+    def _streams_of(self, bound: LevelBound, origin: EventOrigin) -> EventStreams:
         try:
             return bound.demand.streams_of(origin)
         except KeyError:  # what brings no work has not been looked up
             return ()
 
-    def _describe_origin(self, origin: Origin) -> str:
+    def _describe_origin(self, origin: EventOrigin) -> str:
         if origin.kind == "arc":
             arc = self.solver.core.entering_arcs[int(origin.key)].arc
             return f"events of {arc.topic} from {arc.source}"

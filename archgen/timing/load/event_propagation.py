@@ -14,9 +14,9 @@ from typing import TypeVar
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
 from archgen.timing.load.lone_work import find_lone_wait
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.storing_waits import find_core_waits

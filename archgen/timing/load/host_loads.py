@@ -10,8 +10,8 @@ from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, R
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_boundless, replace_figure, unknown_value
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import Activity, TimingSystem, best_response

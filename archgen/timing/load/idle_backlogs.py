@@ -34,7 +34,7 @@ from typing import NamedTuple
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.shared_cores import SharedCores, WayKey
 from archgen.timing.load.way_works import SharedWork, WayWork
 
@@ -56,7 +56,7 @@ class PendingShare(NamedTuple):
     """
 
     name: str
-    origin: Origin
+    origin: EventOrigin
     age: int
     events: int
     rest: int
@@ -88,7 +88,7 @@ class IdleBacklog:
         """Add up the long-run rates of all that comes; each look at it is one that `spend` counts."""
         self.spend = spend
         self.cores, self.core_count, self.way_works = cores, cores.core_count, way_works
-        self.streams: dict[Origin, EventStreams] = {
+        self.streams: dict[EventOrigin, EventStreams] = {
             origin: demand.streams_of(origin) for origin, volume in cores.cascades.volumes.items() if volume
         }
         work_within, self.term_count, _, _ = demand.demand_function()
@@ -220,8 +220,8 @@ class IdleBacklog:
 
         It is no more than all that the events lead to which can be pending, in whatever threads.
         """
-        share_of: dict[tuple[object, Origin], PendingShare] = {}
-        whole_shares: dict[Origin, PendingShare] = {}
+        share_of: dict[tuple[object, EventOrigin], PendingShare] = {}
+        whole_shares: dict[EventOrigin, PendingShare] = {}
         for way_work in self.way_works.values():
             origin = way_work.origin
             if origin not in self.streams:
@@ -313,14 +313,14 @@ def _round_up(share: Fraction) -> int:
 
 
 def choose_largest_lanes(
-    lanes: Sequence[Sequence[PendingShare]], most_of_origin: Mapping[Origin, int], number: int
+    lanes: Sequence[Sequence[PendingShare]], most_of_origin: Mapping[EventOrigin, int], number: int
 ) -> Iterator[PendingShare]:
     """Yield what so many lanes may have at most, where of each origin no more counts than there is of it."""
     if any(len(lane) > 1 for lane in lanes):
         for lane in nlargest(number, lanes, key=lambda lane: sum(share.work for share in lane)):
             yield from lane
         return
-    shares_of: dict[Origin, list[PendingShare]] = {}
+    shares_of: dict[EventOrigin, list[PendingShare]] = {}
     for (share,) in lanes:
         shares_of.setdefault(share.origin, []).append(share)
     # What another lane of an origin adds is less each time, so that the largest additions are the most.

@@ -23,7 +23,7 @@ from archgen.timing.load.core_responses import solve_inner_core
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.resource_waits import find_turn_times
 from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import EventModels
@@ -43,7 +43,7 @@ class JoinedResources:
 
     def find_bounds(
         self,
-        model_of: Callable[[Origin, FiringArc | None], EventStreams | UnknownCause],
+        model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
         event_models: EventModels,
         budget: SearchBudget,
     ) -> Mapping[str, int]:

@@ -10,7 +10,7 @@ from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.system.timing_system import TimingSystem
 
 
-class Origin(NamedTuple):
+class EventOrigin(NamedTuple):
     """Where activations come from, by an activity's id or a number.
 
     `activity`: events as that activity's own event model says. `arc`: what comes on an arc from elsewhere. `once`: the one
@@ -22,9 +22,9 @@ class Origin(NamedTuple):
     key: str | int
 
 
-Multiplicities = dict[Origin, int]
+Multiplicities = dict[EventOrigin, int]
 """How many activations each event of an origin makes."""
-ONCE_ORIGIN = Origin("once", 0)
+ONCE_ORIGIN = EventOrigin("once", 0)
 
 
 class GateRule(NamedTuple):
@@ -67,7 +67,7 @@ class LevelCascades(NamedTuple):
     `activations` are those of each activity, by origin.
     """
 
-    volumes: Mapping[Origin, int]
+    volumes: Mapping[EventOrigin, int]
     gate_rules: Sequence[GateRule]
     activations: Mapping[str, Multiplicities]
     unknown_costs: tuple[str, ...]
@@ -91,7 +91,7 @@ def build_level_cascades(
             builder.activations[name] = builder.count_activations(name)
     for name in foreign_ids:
         if name in builder.level_ids:
-            builder.activations[name] = {Origin("activity", name): 1}
+            builder.activations[name] = {EventOrigin("activity", name): 1}
     return builder.sum_volumes()
 
 
@@ -113,7 +113,7 @@ class _LevelBuilder:
     def count_activations(self, name: str) -> Multiplicities:
         """Return the activations of an activity by origin; those of what fires it are known."""
         if name in self.inner_triggers.entry_ids:
-            return {Origin("activity", name): 1}
+            return {EventOrigin("activity", name): 1}
         activity = self.system.activities[name]
         firing_arcs = (*self.inner_triggers.inner_arcs[name], *self.inner_triggers.outer_arcs[name])
         data_arcs = [each for each in firing_arcs if each.arc.role == "data"]
@@ -139,7 +139,7 @@ class _LevelBuilder:
         arc, calls = firing_arc
         number = self.arc_numbers.get(id(arc))
         if number is not None:
-            return {Origin("arc", number): 1}, 1
+            return {EventOrigin("arc", number): 1}, 1
         if arc.source in self.inner_triggers.silent_ids:
             return {}, 1
         if arc.source not in self.level_ids:
@@ -150,13 +150,13 @@ class _LevelBuilder:
             return source_activations, calls.numerator
         return {self._add_gate(GateRule((source_activations,), calls=calls)): 1}, 1
 
-    def _add_gate(self, rule: GateRule) -> Origin:
+    def _add_gate(self, rule: GateRule) -> EventOrigin:
         self.gate_rules.append(rule)
-        return Origin("gate", len(self.gate_rules) - 1)
+        return EventOrigin("gate", len(self.gate_rules) - 1)
 
     def sum_volumes(self) -> LevelCascades:
         """Return the level, with the work that each origin's events make."""
-        volumes: dict[Origin, int] = {}
+        volumes: dict[EventOrigin, int] = {}
         unknown_costs: list[str] = []
         for name, activations in self.activations.items():
             cost = self.system.activities[name].wcet

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStream, EventStreams, collapse_streams, delay_streams
 from archgen.timing.load.match_windows import MatchedInput, find_match_windows
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Activity, Arc, best_response
-
-if TYPE_CHECKING:
-    from archgen.timing.load.event_models import PropagationState
 
 DEFAULT_QUEUE = 10
 """How many messages of an input wait for those with which they are matched, where no depth is written."""

@@ -10,7 +10,7 @@ from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams, delay_streams, streams_of_calls
 from archgen.timing.load.inner_triggers import InnerTriggers
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
@@ -22,7 +22,7 @@ class OrderedCore:
 
     queue: CoreQueue
     inner_triggers: InnerTriggers
-    find_model: Callable[[Origin], EventStreams | UnknownCause]
+    find_model: Callable[[EventOrigin], EventStreams | UnknownCause]
     ways_to: dict[str, tuple[EntryWay, ...]]
 
     def limit(self, responses: dict[str, WorstResponse], busy_period: int, budget: SearchBudget) -> None:

@@ -9,12 +9,12 @@ from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath
 from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.shared_cores import SharedCores, WayKey
 
 _ENDLESS = 1 << 200
 """Longer than any window, in ticks."""
-PendingTerm = tuple[Origin, int, int, int, EventStreams, bool]
+PendingTerm = tuple[EventOrigin, int, int, int, EventStreams, bool]
 """What a job may have pending: its origin, work, delay, the longest window in which nothing is, its streams, whether held."""
 
 
@@ -23,7 +23,7 @@ class LaneSums(NamedTuple):
 
     lane_works: list[int]
     pending_works: list[int]
-    pending_by_origin: dict[Origin, int]
+    pending_by_origin: dict[EventOrigin, int]
     held_work: int
 
 
@@ -35,7 +35,7 @@ class PathWork:
         self.cores = cores
         self.delays: dict[WayKey, int] = {}
         self.longest_delay = 0
-        self.streams: dict[Origin, EventStreams] = {
+        self.streams: dict[EventOrigin, EventStreams] = {
             origin: demand.streams_of(origin) for origin, volume in cores.cascades.volumes.items() if volume
         }
         self.calm_arrivals = {origin: max_arrivals(model, 1) for origin, model in self.streams.items()}
@@ -48,7 +48,7 @@ class PathWork:
         self.calm_times: dict[int, int] = {}
         self.longest_window = 0
         """The longest window of which somebody said that it was looked at."""
-        self._lanes_of_path: dict[int, dict[Origin, list[int]]] = {}
+        self._lanes_of_path: dict[int, dict[EventOrigin, list[int]]] = {}
         # By the path's identity; they rest on no window, only on the delays.
         self._most_pending: dict[int, int] = {}
         self._terms_of_path: dict[int, list[list[PendingTerm]]] = {}
@@ -93,13 +93,13 @@ class PathWork:
             return -(-sum(lane_works) // self.cores.core_count)
         return divide_among_cores(split_lanes(path, lane_works), 0, self.cores.core_count)
 
-    def count_pending(self, origin: Origin, window: int, delay: int, arrivals: Mapping[Origin, int]) -> int:
+    def count_pending(self, origin: EventOrigin, window: int, delay: int, arrivals: Mapping[EventOrigin, int]) -> int:
         """Return how many events more there are in a window and up to `delay` before it than in a window."""
         if not delay or window + delay <= self.calm_windows[origin]:
             return 0
         return max_arrivals(self.streams[origin], window + delay) - arrivals[origin]
 
-    def _path_work(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
+    def _path_work(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> int:
         """Return the work of the threads of a path in a window, as the time for which they can hold it up."""
         total, jobs = path.own_cost, self.cores.jobs
         for number, way_before in path.own_jobs:
@@ -115,7 +115,7 @@ class PathWork:
             total -= -crowd_work // threads
         return total
 
-    def find_time_blocked(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> int:
+    def find_time_blocked(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> int:
         """Return how long all cores may be busy with other threads: with what arrives, and with what was pending.
 
         Pending at t0 is what waits for m - 1 threads, and all that is foreign, for that may have waited for a core of its
@@ -139,11 +139,11 @@ class PathWork:
             )
         return blocked_time
 
-    def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[Origin, int]) -> LaneSums:
+    def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> LaneSums:
         """Add up what comes for each of the other threads, and what was pending."""
         lane_works: list[int] = []
         pending_works: list[int] = []
-        pending_by_origin: dict[Origin, int] = {}
+        pending_by_origin: dict[EventOrigin, int] = {}
         held_work = 0
         # As in `count_pending`, but written out: this is the innermost loop of all that is found on several cores.
         for lane_terms in self._look_up_terms(path):
@@ -195,7 +195,7 @@ class PathWork:
         return self._most_pending[id(path)]
 
     def _sum_most_pending(self, path: CorePath) -> int:
-        pending_by_origin: dict[Origin, int] = {}
+        pending_by_origin: dict[EventOrigin, int] = {}
         held_work = 0
         for lane in path.other_lanes:
             for number in lane:
@@ -208,7 +208,7 @@ class PathWork:
                     pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
         return held_work + self.find_most_waiting(path, pending_by_origin)
 
-    def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[Origin, int]) -> int:
+    def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[EventOrigin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""
         waiting_works = [0] * len(path.waiting_lanes)
         lanes_of_origin = self._look_up_lanes(path)
@@ -218,7 +218,7 @@ class PathWork:
         waiting_works.sort(reverse=True)
         return min(sum(waiting_works[: self.cores.core_count - 1]), sum(work_by_origin.values()))
 
-    def _look_up_lanes(self, path: CorePath) -> Mapping[Origin, Sequence[int]]:
+    def _look_up_lanes(self, path: CorePath) -> Mapping[EventOrigin, Sequence[int]]:
         """Return the other threads, or containers, for which what comes of each origin may wait."""
         lanes_of_origin = self._lanes_of_path.get(id(path))
         if lanes_of_origin is None:

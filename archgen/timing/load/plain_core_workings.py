@@ -16,7 +16,7 @@ from archgen.timing.load.busy_windows import (
     longest_busy_period,
     longest_wait_for_turn,
 )
-from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.thread_work import EventModels, ThreadWork, build_thread, lower_crowded_threads
 from archgen.timing.load.work_terms import (
     ONCE,

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.core_paths import CorePaths
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import InnerTriggers, find_inner_triggers
 from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import find_core_queue
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets

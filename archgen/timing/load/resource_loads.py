@@ -11,7 +11,7 @@ from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import add_values, multiply_value, value_of_cause
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import find_use_time, find_users
 from archgen.timing.system.timing_system import Activity, TimingSystem
 

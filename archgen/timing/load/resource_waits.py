@@ -23,8 +23,8 @@ from archgen.timing.load.busy_windows import (
     longest_busy_period,
     longest_wait_for_turn,
 )
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, work_utilisation
 from archgen.timing.system.timing_system import Activity, TimingSystem
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
     NO_DEMAND,

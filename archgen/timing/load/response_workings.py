@@ -6,21 +6,22 @@ from collections.abc import Iterable, Iterator
 from dataclasses import field, replace
 
 from archgen.frozen import dataclass
-from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import DivergedError
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.core_responses import CoreSolver
 from archgen.timing.load.core_workings import InnerCoreWorkings
-from archgen.timing.load.event_models import PropagationState, arriving_model
+from archgen.timing.load.event_models import arriving_model
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import list_written_priorities
 from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.plain_core_workings import find_plain_hold, list_dedicated_workings, list_plain_workings
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import QUEUE_TIERS, find_core_queue
 from archgen.timing.load.queue_workings import list_queue_workings
 from archgen.timing.load.run_ways import EntryWay
@@ -224,7 +225,7 @@ class ResponseWorkings:
         return InnerCoreWorkings(core_solver, self.state, CountFormulas(self.state.system.tick))
 
     def _find_model(
-        self, origin: Origin, entering_arcs: tuple[FiringArc, ...], roaming_ids: frozenset[str] = frozenset()
+        self, origin: EventOrigin, entering_arcs: tuple[FiringArc, ...], roaming_ids: frozenset[str] = frozenset()
     ) -> EventStreams | UnknownCause:
         if origin.kind == "activity" and origin.key in roaming_ids:
             return model_roaming_work(self.state, str(origin.key), self._waiting_ids)

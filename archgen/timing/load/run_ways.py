@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from archgen.timing.load.event_streams import MAX_STREAMS
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 Priority = int | None
@@ -22,7 +22,7 @@ class EntryWay(NamedTuple):
     that is not bounded. `entry_arc` is the arc by which the event comes, None where the first step has events of its own.
     """
 
-    entry: Origin
+    entry: EventOrigin
     entry_arc: FiringArc | None
     steps: tuple[str, ...]
     multiplicity: int = 1
@@ -37,7 +37,7 @@ def find_entry_ways(
     ways_to: dict[str, tuple[EntryWay, ...]] = {}
     for name in inner_triggers.order:
         ways_to[name] = _find_ways_to(system, inner_triggers, arc_numbers, name, ways_to) or (
-            EntryWay(Origin("activity", name), None, (name,)),
+            EntryWay(EventOrigin("activity", name), None, (name,)),
         )
     return ways_to
 
@@ -53,7 +53,8 @@ def _find_ways_to(
     if name in inner_triggers.entry_ids or is_gate(system, inner_triggers, name):
         return ()
     ways = [
-        EntryWay(Origin("arc", arc_numbers[id(each.arc)]), each, (name,)) for each in inner_triggers.outer_arcs[name]
+        EntryWay(EventOrigin("arc", arc_numbers[id(each.arc)]), each, (name,))
+        for each in inner_triggers.outer_arcs[name]
     ]
     for arc, calls in inner_triggers.inner_arcs[name]:
         if arc.source in inner_triggers.silent_ids:
@@ -81,7 +82,7 @@ def find_run_arcs(
         name: tuple(firing_arc.arc for firing_arc in firing_arcs)
         for name, firing_arcs in inner_triggers.inner_arcs.items()
         # What begins a way of its own is reached by none that began before.
-        if firing_arcs and ways_to[name][0].entry != Origin("activity", name)
+        if firing_arcs and ways_to[name][0].entry != EventOrigin("activity", name)
     }
 
 

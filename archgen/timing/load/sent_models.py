@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.event_models import PropagationState, leaving_model
+from archgen.timing.load.event_models import leaving_model
 from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Arc, best_response
 
 

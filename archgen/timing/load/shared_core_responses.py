@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 
-from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.cascade_demand import CascadeDemand
@@ -37,7 +37,7 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.full_threads import find_demand_left, find_full_ids, leave_out_threads
 from archgen.timing.load.idle_backlogs import find_idle_backlog
 from archgen.timing.load.inner_triggers import FiringArc
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
@@ -57,7 +57,7 @@ _MAX_WAITING_EVENTS = 50
 
 def solve_shared_cores(
     paths: CorePaths,
-    model_of: Callable[[Origin, FiringArc | None], EventStreams | UnknownCause],
+    model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
     known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
     budget: SearchBudget,
 ) -> CoreResponses:
@@ -68,7 +68,7 @@ def solve_shared_cores(
     """
     cores = paths.cores
 
-    def find_model(origin: Origin) -> EventStreams | UnknownCause:
+    def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
         return model_of(origin, cores.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
     demand = CascadeDemand(cores.cascades, find_model)

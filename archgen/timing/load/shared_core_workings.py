@@ -11,12 +11,12 @@ from archgen.timing.load.backlog_workings import BacklogWorkings
 from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.core_paths import CorePath
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import split_lanes
 from archgen.timing.load.plain_core_workings import OWN_JOBS
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
 from archgen.timing.load.thread_work import WorstResponse
@@ -220,14 +220,14 @@ class SharedCoreWorkings:
         )
         return WorkTerm(((key[0], work),), count, f"{self._describe_origin(origin)}{before}")
 
-    def _describe_origin(self, origin: Origin) -> str:
+    def _describe_origin(self, origin: EventOrigin) -> str:
         if origin.kind == "arc":
             arc = self.solver.cores.entering_arcs[int(origin.key)].arc
             return f"events of {arc.topic} from {arc.source}"
         return f"events of {origin.key}"
 
     def _share_cores(
-        self, path: CorePath, window: int, arrivals: dict[Origin, int], blocked_time: int
+        self, path: CorePath, window: int, arrivals: dict[EventOrigin, int], blocked_time: int
     ) -> tuple[tuple[ThreadShare, ...], int, bool]:
         """Return what the threads beside a path do, the pending work that is counted with it, and whether all pending
         work is counted in the threads instead.
@@ -239,7 +239,7 @@ class SharedCoreWorkings:
             for lane in path.other_lanes
         ]
         pending_works: list[int] = []
-        pending_by_origin: dict[Origin, int] = {}
+        pending_by_origin: dict[EventOrigin, int] = {}
         held_work = 0
         for lane in path.other_lanes:
             pending_works.append(0)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from archgen.frozen import dataclass
 from archgen.timing.load.inner_core import rank_threads
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
-from archgen.timing.load.level_cascades import LevelCascades, Origin, build_level_cascades, number_arcs
+from archgen.timing.load.level_cascades import EventOrigin, LevelCascades, build_level_cascades, number_arcs
 from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
@@ -24,7 +24,7 @@ class ThreadJob(NamedTuple):
     """What each event of an origin asks of a thread on one way: the work of the way's last step, in ticks."""
 
     key: WayKey
-    origin: Origin
+    origin: EventOrigin
     work: int
     unit: ThreadUnit
     steps: tuple[str, ...]
@@ -52,7 +52,7 @@ class SharedCores:
     threads: Mapping[ThreadUnit, ThreadWork]
     jobs: tuple[ThreadJob, ...]
     job_numbers: Mapping[ThreadUnit, list[int]]
-    origins_of_unit: Mapping[ThreadUnit, frozenset[Origin]]
+    origins_of_unit: Mapping[ThreadUnit, frozenset[EventOrigin]]
     reentrant_units: Mapping[ThreadUnit, int]
     """Units of which several activations may run at once, with how many."""
 
@@ -108,7 +108,7 @@ def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple
     return frozenset(
         name
         for name, ways in ways_to.items()
-        if ways[0].entry == Origin("activity", name) and name not in inner_triggers.entry_ids
+        if ways[0].entry == EventOrigin("activity", name) and name not in inner_triggers.entry_ids
     )
 
 
@@ -149,6 +149,6 @@ def _list_jobs(
             if cost and cascades.volumes.get(way.entry):
                 yield ThreadJob((name, number), way.entry, cost * way.multiplicity, unit_of[name], way.steps)
     for name in foreign_ids:
-        origin = Origin("activity", name)
+        origin = EventOrigin("activity", name)
         if cascades.volumes.get(origin):
             yield ThreadJob((name, 0), origin, system.activities[name].wcet or 0, unit_of[name], (name,))

@@ -8,7 +8,7 @@ from archgen.timing.load.core_responses import CoreResponses, solve_inner_core
 from archgen.timing.load.event_models import activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_triggers import FiringArc
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.propagation_steps import PropagationSteps
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import EntryWay
@@ -69,7 +69,7 @@ class StepUpdates(PropagationSteps):
     def _update_joined_resources(self, step: str) -> bool:
         """Find the bounds of joined resources, and return whether they changed."""
 
-        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+        def find_model(origin: EventOrigin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
                 return self.state.event_models[str(origin.key)]
             return arriving_model(self.state, entry_arc.arc)
@@ -118,10 +118,10 @@ class StepUpdates(PropagationSteps):
 
     def _model_finder(
         self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
-    ) -> Callable[[Origin, FiringArc | None], EventStreams | UnknownCause]:
+    ) -> Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause]:
         """Return a look-up of event models of what enters a core, which notes those of arcs (by identity)."""
 
-        def find_model(origin: Origin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+        def find_model(origin: EventOrigin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
             if entry_arc is None:
                 name = str(origin.key)
                 is_roaming = step in self.inner_cores and name in self.roaming_ids.get(step, ())

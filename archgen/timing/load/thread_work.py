@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from archgen.frozen import dataclass
-from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams

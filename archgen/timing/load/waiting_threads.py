@@ -17,7 +17,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from archgen.timing.analysis import ResponseTier
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
     ActivityWork,
@@ -29,8 +29,8 @@ from archgen.timing.load.busy_windows import (
     longest_wait_for_turn,
     worst_response,
 )
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import Rivals, find_load, find_rivals, find_use_times
 from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import (

@@ -9,17 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
 
-_WayName = tuple[Origin, tuple[str, ...]]
+_WayName = tuple[EventOrigin, tuple[str, ...]]
 
 
 class SharedWork(NamedTuple):
     """Work of others that a way may wait for: of each event of an origin, up to the delay of a way (`way_before`) earlier."""
 
-    origin: Origin
+    origin: EventOrigin
     work: int
     way_before: WayKey | None
 
@@ -37,7 +37,7 @@ class WayWork(NamedTuple):
     """
 
     key: WayKey
-    origin: Origin
+    origin: EventOrigin
     step_works: tuple[tuple[str, int], ...]
     cost: int
     slowest: int
@@ -101,7 +101,7 @@ class _WayWorkBuilder:
             for job in self.unit_jobs[self.cores.unit_of[name]]
         ]
         return WayWork(
-            (name, 0), Origin("activity", name), (), 0, 0, tuple(others), tuple(self._find_crowds([name])), 0, 0, 0
+            (name, 0), EventOrigin("activity", name), (), 0, 0, tuple(others), tuple(self._find_crowds([name])), 0, 0, 0
         )
 
     def _list_ways(self) -> Iterator[tuple[WayKey, EntryWay]]:

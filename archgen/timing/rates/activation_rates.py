@@ -15,7 +15,7 @@ from archgen.timing.figures.value_arithmetic import (
     multiply_value,
     unknown_value,
 )
-from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
 from archgen.timing.rates.triggered_rates import find_triggered_rate
 from archgen.timing.system.timing_system import Activity, Arc

@@ -11,8 +11,9 @@ from archgen.timing.analysis import EdgeFit, EventPace, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import add_values, value_of_cause
-from archgen.timing.load.event_models import PropagationState, arriving_model
+from archgen.timing.load.event_models import arriving_model
 from archgen.timing.load.event_streams import max_arrivals
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.sent_models import sample_model
 from archgen.timing.system.timing_system import Arc, TimingSystem
 

@@ -20,9 +20,9 @@ from archgen.timing.figures.value_arithmetic import (
     unknown_value,
     value_of_cause,
 )
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.link_queueing import longest_queueing
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.sent_models import sent_model
 from archgen.timing.rates.rate_table import RateTable
 from archgen.timing.system.timing_system import Arc, TimingSystem

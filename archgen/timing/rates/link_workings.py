@@ -9,8 +9,8 @@ from typing import NamedTuple
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import TimingValue, UnknownCause
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.sent_models import sent_model
 from archgen.timing.load.work_terms import CountFormulas, EventCount, WorkTerm, group_terms
 from archgen.timing.rates.link_traffic import find_largest_backlog

@@ -14,8 +14,8 @@ from archgen.timing.figures.value_arithmetic import (
     unknown_value,
     value_of_cause,
 )
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStreams, collapse_streams
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.rates.activation_rates import find_rate_and_gap, periodic_rate, periodic_reason
 from archgen.timing.rates.rate_table import RateAndGap, RateTable
 from archgen.timing.system.timing_system import Activity, best_response

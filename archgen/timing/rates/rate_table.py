@@ -9,7 +9,7 @@ from fractions import Fraction
 from archgen.diagnostics.source_span import Span
 from archgen.timing.analysis import EventPace, MatchFigures, ResponseTime
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.load.event_models import PropagationState
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Activity
 
 RateAndGap = tuple[TimingValue, TimingValue]

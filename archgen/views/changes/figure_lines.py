@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from archgen.compare import Comparison
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.figure_changes import Figure, FigureChange, FigureKey, LoadChange, TravelPath, WireNames
+from archgen.compare.figure_changes import ComparedFigure, FigureChange, FigureKey, LoadChange, TravelPath, WireNames
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
@@ -48,7 +48,7 @@ def describe_figure(figure: FigureChange, kind: str) -> str:
     return f"{lead} {_format_figure(figure.key, before)} → {_format_figure(figure.key, after)}"
 
 
-def _format_figure(key: FigureKey, figure: Figure | None) -> str:
+def _format_figure(key: FigureKey, figure: ComparedFigure | None) -> str:
     if isinstance(figure, Qos):
         return ", ".join(list_qos_settings(figure))
     if isinstance(figure, TravelPath):

@@ -10,13 +10,11 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.system.timing_system import Arc
+from archgen.views.generation.aadl_calls import RouteFinder
 from archgen.views.generation.aadl_flow_steps import NO_TIME, FlowStep, TimeRange, fold_steps, list_route_steps
-from archgen.views.generation.aadl_parts import Route, SystemPart
+from archgen.views.generation.aadl_parts import SystemPart
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_words import AadlProperty, can_be_written, make_item, make_property, write_range
-
-RouteEnds = tuple[str, str, str, str]
-"""Two processes that are joined: node and output, node and input."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,19 +31,13 @@ class FlowWriter:
     """Writes the flows of processes and systems as chains ask for them; chains that ask for the same share one."""
 
     def __init__(
-        self,
-        architecture: Architecture,
-        analysis: Analysis,
-        processes: Mapping[str, Process],
-        routes: Mapping[RouteEnds, Route],
-        latencies: Mapping[RouteEnds, TimeRange],
+        self, architecture: Architecture, analysis: Analysis, processes: Mapping[str, Process], routes: RouteFinder
     ) -> None:
-        """Begin with no flow; `latencies` are those of connections."""
+        """Begin with no flow."""
         self._architecture = architecture
         self._analysis = analysis
         self._processes = processes
         self._routes = routes
-        self._latencies = latencies
         self._known: dict[tuple[Process, str, str], str] = {}
         self._known_systems: dict[tuple[SystemPart, str, str], str] = {}
 
@@ -62,7 +54,7 @@ class FlowWriter:
             if self._node_of(segment.terms[0]) not in self._processes:
                 return f"`{self._node_of(segment.terms[0])}` is not part of this export"
         for segment in segments[1:]:
-            if segment.entry is None or self._find_ends(segment, segment.entry) not in self._routes:
+            if segment.entry is None or self._routes.find_route(segment.entry, *self._find_ends(segment)) is None:
                 return f"nothing here joins two of its nodes on the way to `{segment.terms[0].activity}`"
         system, texts = fold_steps(self._list_steps(segments), self._known_systems)
         name = system.names.take_name(chain.id)
@@ -73,8 +65,9 @@ class FlowWriter:
     def _node_of(self, term: ChainTerm) -> str:
         return self._analysis.system.activities[term.activity].node
 
-    def _find_ends(self, segment: _Segment, entry: Arc) -> RouteEnds:
-        return (segment.entry_node, entry.output, self._node_of(segment.terms[0]), entry.input)
+    def _find_ends(self, segment: _Segment) -> tuple[Process, Process]:
+        """Return the process that a chain comes from, and the one that it comes to."""
+        return self._processes[segment.entry_node], self._processes[self._node_of(segment.terms[0])]
 
     def _split_terms(self, terms: Sequence[ChainTerm]) -> list[_Segment] | str:
         """Return the terms by process, each with how the chain comes in and goes out."""
@@ -82,7 +75,7 @@ class FlowWriter:
         for before, term in pairwise(terms):
             arc = self._find_arc(before, term)
             if arc is None:
-                return f"from `{before.activity}` to `{term.activity}` it goes through a call"
+                return f"from `{before.activity}` to `{term.activity}` it goes through what is no port of a component"
             last, node = segments[-1], self._node_of(before)
             if node == self._node_of(term):
                 segments[-1] = _Segment((*last.terms, term), last.entry, last.entry_node)
@@ -92,16 +85,17 @@ class FlowWriter:
         return segments
 
     def _find_arc(self, before: ChainTerm, term: ChainTerm) -> Arc | None:
-        """Return the data by which a chain goes on from one activity to the next."""
+        """Return the data or the call by which a chain goes on from one activity to the next."""
         arcs = self._analysis.system.arcs_from.get(before.activity, ())
-        return next(
-            (
-                arc
-                for arc in arcs
-                if arc.target == term.activity and arc.role == "data" and arc.input in self._architecture.inputs
-            ),
-            None,
-        )
+        known = [arc for arc in arcs if arc.target == term.activity and self._joins_ports(arc)]
+        return min(known, key=lambda arc: arc.role != "data", default=None)
+
+    def _joins_ports(self, arc: Arc) -> bool:
+        """Whether both ends of what passes between two activities are ports of components."""
+        inputs, outputs = self._architecture.inputs, self._architecture.outputs
+        if arc.role == "request":
+            return arc.output in inputs and arc.input in outputs
+        return arc.output in outputs and arc.input in inputs
 
     def _list_steps(self, segments: Sequence[_Segment]) -> list[FlowStep]:
         """Return all that a chain goes through, with the systems around it."""
@@ -109,8 +103,9 @@ class FlowWriter:
         steps = [FlowStep("", NO_TIME, enters=system) for system in first.home.path]
         for segment in segments:
             if segment.entry is not None:
-                ends = self._find_ends(segment, segment.entry)
-                steps += list_route_steps(self._routes[ends], self._latencies.get(ends, NO_TIME))
+                ends = self._find_ends(segment)
+                if route := self._routes.find_route(segment.entry, *ends):
+                    steps += list_route_steps(route, self._routes.find_latency(segment.entry, *ends))
             process = self._processes[self._node_of(segment.terms[0])]
             name, latency = self._write_flow(process, segment)
             steps.append(FlowStep(f"{process.name_in_system}.{name}", latency))
@@ -120,11 +115,9 @@ class FlowWriter:
         """Return the name of a flow through a process, and how long it takes: waiting to be read, and its threads' answers."""
         entry, leave, ends = segment.entry, segment.leave, list[str]()
         if entry:
-            reader = process.find_part(entry.input, is_output=False, source_id=entry.output)
-            ends.append(process.features[reader.key] if reader else "")
+            ends.append(self._name_end(process, entry, is_output=False))
         if leave:
-            output = process.find_part(leave.output, is_output=True)
-            ends.append(process.features[output.key] if output else "")
+            ends.append(self._name_end(process, leave, is_output=True))
         kind = "path" if entry and leave else "sink" if entry else "source"
         latency = self._find_latency(segment.terms)
         properties = [make_property("Latency", write_range(*latency))] if latency else []
@@ -134,6 +127,11 @@ class FlowWriter:
             self._known[key] = process.names.take_name("_to_".join(ends) + ("_flow" if len(ends) == 1 else ""))
             process.flows.append(make_item(self._known[key], text, properties))
         return self._known[key], latency
+
+    def _name_end(self, process: Process, arc: Arc, *, is_output: bool) -> str:
+        """Return the feature by which a chain comes to a process or leaves it."""
+        part = self._routes.find_port(arc, process, is_output=is_output)
+        return process.features[part.key] if part else ""
 
     def _find_latency(self, terms: Sequence[ChainTerm]) -> TimeRange | None:
         """Return how long the terms of one process take (ns), None where that is open."""

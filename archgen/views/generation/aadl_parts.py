@@ -13,9 +13,11 @@ from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
+    list_tags,
     make_classifier,
     make_item,
     make_named_properties,
+    make_property,
     make_text_properties,
 )
 from archgen.views.generation.generation_context import write_place
@@ -41,8 +43,8 @@ class SystemPart:
         self.flows: list[dict[str, Any]] = []
         self.properties: list[AadlProperty] = []
         self._joined: dict[tuple[str, str], str] = {}
-        self.access = ""
-        """The name of its access to the transformations, where something inside has it."""
+        self.accesses: dict[str, str] = {}
+        """The names of its accesses to what something inside needs of the outermost system."""
 
     @property
     def path(self) -> tuple[SystemPart, ...]:
@@ -168,6 +170,8 @@ class SystemTree:
             name = system.features[place] = system.names.take_name(wanted)
             properties = make_named_properties(name, wanted) if shell_port else []
             properties += make_text_properties(medium=part.port.medium if part.port.medium != "ros" else None)
+            if part.is_call_data:
+                properties = [make_property("archgen::Is_Call", "true")]
             system.feature_items.append(make_item(name, part.text, properties))
         name = system.features[place]
         ends = (inner_end, name) if part.is_output else (name, inner_end)
@@ -180,16 +184,18 @@ class SystemTree:
             return None
         return find_outer_port(self._architecture, shell, part)
 
-    def give_access(self, process: Process, tf_name: str) -> None:
-        """Lead the access to the transformations from the outermost system to a process."""
-        name = tf_name
+    def lead_access(self, process: Process, feature: str, accessed: str, name: str) -> None:
+        """Lead the access to something of the outermost system, `data access ros::tf`, by systems to a process' feature."""
+        kind = accessed.rpartition(" ")[0]
+        wanted_name = feature
         for system, inner in zip(process.home.path, process.home.path[1:], strict=False):
-            if not inner.access:
-                inner.access = inner.names.take_name("tf")
-                inner.feature_items.append(make_item(inner.access, "requires data access ros::tf"))
-                system.connect(f"{inner.name}_tf", f"data access {name} -> {inner.name}.{inner.access}", [])
-            name = inner.access
-        process.home.connect(f"{process.name_in_system}_tf", f"data access {name} -> {process.name_in_system}.tf", [])
+            if accessed not in inner.accesses:
+                inner_name = inner.accesses[accessed] = inner.names.take_name(wanted_name)
+                inner.feature_items.append(make_item(inner_name, f"requires {accessed}"))
+                system.connect(f"{inner.name}_{inner_name}", f"{kind} {name} -> {inner.name}.{inner_name}", [])
+            name = inner.accesses[accessed]
+        end = f"{process.name_in_system}.{feature}"
+        process.home.connect(end.replace(".", "_"), f"{kind} {name} -> {end}", [])
 
 
 def list_system_properties(element: Group | Component) -> list[AadlProperty]:
@@ -203,4 +209,5 @@ def list_system_properties(element: Group | Component) -> list[AadlProperty]:
     return [
         *(each for each in make_named_properties(own_id, own_id, element.title)),
         *make_text_properties(**texts),
+        *list_tags(element),
     ]

@@ -33,9 +33,17 @@ class Platform:
     """The package of hosts, and what of it stands in the system."""
 
     def __init__(
-        self, architecture: Architecture, hosts: Collection[str], system_names: NameSpace, package_name: str
+        self,
+        architecture: Architecture,
+        hosts: Collection[str],
+        system_names: NameSpace,
+        package_name: str,
+        placed_devices: Collection[str],
     ) -> None:
-        """Write the wanted hosts with their containers, and the links that join two of them or one and a device."""
+        """Write the wanted hosts with their containers, and the links that join two of them or one and a device.
+
+        `placed_devices` are components that are devices elsewhere; of the others a device stands beside the process.
+        """
         self.names: dict[tuple[str, str], str] = {}
         """What elements are called in the system, by kind and id."""
         self.classifiers: list[dict[str, Any]] = []
@@ -51,7 +59,8 @@ class Platform:
         links = [
             link
             for link in architecture.links.values()
-            if link.connects and all(each in hosts for each in link.connects)
+            if (link.connects or any(each in placed_devices for each in link.devices))
+            and all(each in hosts for each in link.connects)
         ]
         for link in links:
             self._add_link(link)
@@ -64,8 +73,15 @@ class Platform:
         for link in links:
             for device in link.devices:
                 devices.setdefault(device, []).append(link)
+        self.links_by_device = {device: [link.id for link in device_links] for device, device_links in devices.items()}
         for component_id, device_links in devices.items():
-            self._add_device(architecture, component_id, device_links)
+            if component_id not in placed_devices:
+                self._add_device(architecture, component_id, device_links)
+
+    def name_bus(self, link_id: str) -> str:
+        """Return the access to a link's bus, as packages elsewhere name it: `bus access hosts::lan`."""
+        kind, _, name = self._buses[link_id].rpartition(" ")
+        return f"{kind} {self._package_name}::{name}"
 
     def _add(self, kind: str, category: str, element_id: str, classifier: dict[str, Any]) -> str:
         name = self._system_names.take_name(element_id.rpartition(".")[2])

@@ -22,11 +22,13 @@ class PortPart:
     kind: str
     """`out data port`, `in event data port`, `provides subprogram access`, ..."""
     sources: frozenset[str] = field(default=frozenset())
+    is_call_data: bool = False
+    """Whether it is the request or the answer of a call, which `port` is."""
 
     @property
     def is_output(self) -> bool:
         """Whether it gives data or an answer."""
-        return isinstance(self.port, Output)
+        return self.kind.startswith(("out ", "provides "))
 
     @property
     def key(self) -> tuple[bool, str, str]:
@@ -50,6 +52,8 @@ class PortPart:
 
 def find_outer_port(architecture: Architecture, shell: Component, part: PortPart) -> str | None:
     """Return the port of a composed component that passes a port inside on."""
+    if part.is_call_data:
+        return None
     kind, ports = ("output", shell.outputs) if part.is_output else ("input", shell.inputs)
     return next(
         (name for name, port in ports.items() if part.port.id in architecture.leaf_ports_of(kind, port.id)), None

@@ -23,6 +23,7 @@ from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
+    list_tags,
     make_classifier,
     make_item,
     make_named_properties,
@@ -35,8 +36,6 @@ from archgen.views.generation.generation_context import write_place
 if TYPE_CHECKING:
     from archgen.views.generation.aadl_parts import SystemPart
 
-_RESERVED_NAMES = ("tf", "internal_state", "main_thread", "main_state")
-"""What a process has from the library `ros`."""
 _TF_TOPICS = frozenset({"/tf", "/tf_static"})
 _LONGEST_QUEUE = 512
 """What the standard's own project file lets readers take."""
@@ -62,6 +61,11 @@ def find_whole(architecture: Architecture, node: Node) -> Component | None:
 class Process:
     """A node in AADL: its type and implementation, which grow as connections and flows are found."""
 
+    category = "process"
+    reserved_names: tuple[str, ...] = ("tf", "internal_state", "main_thread", "main_state")
+    """What it has from the library `ros`."""
+    may_use_tf = True
+
     def __init__(
         self,
         architecture: Architecture,
@@ -74,9 +78,11 @@ class Process:
         self.node = node
         self.name = package_names.take_name(node.id)
         self.name_in_system = self.name
+        self.item: dict[str, Any] = {}
+        """Its subcomponent in the system that it stands in."""
         self.home: SystemPart
         """The system that it stands in; known when it is placed."""
-        self.names = NameSpace(_RESERVED_NAMES)
+        self.names = NameSpace(self.reserved_names)
         self.features: dict[tuple[bool, str, str], str] = {}
         """The names of its features by the keys of the parts of its ports."""
         self.threads: dict[str, str] = {}
@@ -86,8 +92,8 @@ class Process:
         self.thread_classifiers: list[dict[str, Any]] = []
         self._architecture = architecture
         self._endpoints = endpoints
-        self._subcomponents: list[dict[str, Any]] = []
-        self._properties: list[AadlProperty] = []
+        self.subcomponents: list[dict[str, Any]] = []
+        self.properties: list[AadlProperty] = []
         components = [found for each in node.implements if (found := architecture.find_component(each)) is not None]
         self.whole = find_whole(architecture, node)
         """The composed component that it is the only process of."""
@@ -96,24 +102,29 @@ class Process:
             each.id: Behaviour(architecture, types, each, node.timing.get(each.id) or node.timing.get("") or _NO_TIMING)
             for each in components
         }
-        self.uses_tf = any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or has_tf_access(
-            self._hints
+        self.uses_tf = self.may_use_tf and (
+            any(each.port is None and each.name in _TF_TOPICS for each in endpoints) or has_tf_access(self._hints)
         )
         # Ports come before threads: it is they that others see.
-        self._feature_items = [
+        self.feature_items = [
             self._make_feature(part)
             for behaviour in self.behaviours.values()
             for part in behaviour.parts
             if not self._is_inside_only(part)
         ]
-        self._feature_items += [
+        self.feature_items += [
             self._make_internal_feature(types, each)
             for each in endpoints
             if each.port is None and each.name not in _TF_TOPICS
         ]
         for behaviour in self.behaviours.values():
             self._add_thread(behaviour, package_names, is_only=len(self.behaviours) == 1)
-        self._properties += list_source_properties(self._hints)
+        self.properties += list_source_properties(self._hints)
+
+    @property
+    def classifier(self) -> str:
+        """What its subcomponent is made from, within its package."""
+        return f"{self.name}.impl"
 
     def find_endpoints(self, part: PortPart, source_id: str = "") -> Iterable[Endpoint]:
         """Yield what a part of a port uses; with a source only what it arrives on."""
@@ -176,9 +187,11 @@ class Process:
         own_words = self.node.id if is_only else f"{self.node.id}_{component.name}"
         classifier = package_names.take_name(f"{kind}_{own_words}")
         self.thread_classifiers += behaviour.make_classifiers(classifier)
-        name = self.threads[component.id] = self.names.take_name(find_thread_name(hints) or component.name)
+        name = self.threads[component.id] = self.names.take_name(
+            find_thread_name(hints) or component.type_name or component.name
+        )
         properties = make_text_properties(component=None if is_only else component.id)
-        self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
+        self.subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
         for part in behaviour.parts:
             if part.key not in self.features:
                 continue
@@ -190,7 +203,7 @@ class Process:
             self._connect(f"{name}_tf", f"data access tf -> {name}.tf")
         own = behaviour.list_properties() + self._list_queue_sizes(behaviour)
         own += list_function_properties(hints, component.name)
-        self._properties += [
+        self.properties += [
             {**each, "applies_to": f"{name}.{each['applies_to']}" if each["applies_to"] else name} for each in own
         ]
 
@@ -211,6 +224,12 @@ class Process:
         behaviour = self.behaviours.get(port_id.rpartition(".")[0])
         return behaviour.find_part(port_id, is_output=is_output, source_id=source_id) if behaviour else None
 
+    def add_call_feature(self, part: PortPart) -> None:
+        """Add the port for the request or the answer of a call, if it is not there yet."""
+        if part.key not in self.features:
+            name = self.features[part.key] = self.names.take_name(part.name)
+            self.feature_items.append(make_item(name, part.text, [make_property("archgen::Is_Call", "true")]))
+
     def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
         """Join the ports of two components that this node implements."""
         ends = []
@@ -220,14 +239,14 @@ class Process:
         name = f"{ends[0]}_to_{ends[1]}".replace(".", "_")
         self._connect(name, f"{output.connection_kind} {ends[0]} -> {ends[1]}", properties)
 
-    def _find_own_owner(self, component: Component | None) -> str | None:
+    def find_own_owner(self, component: Component | None) -> str | None:
         """Return who owns its component, where that is not who owns the group."""
         owner = component.owner if component else self.node.owner
         group = self._architecture.groups.get(component.group) if component else None
         return owner if group is None or group.owner != owner else None
 
-    def make_classifiers(self) -> list[dict[str, Any]]:
-        """Return its threads, its type and its implementation."""
+    def list_words(self) -> list[AadlProperty]:
+        """Return what it says of itself beside its ports and its threads."""
         node = self.node
         behaviours = tuple(self.behaviours.values())
         component = behaviours[0].component if len(behaviours) == 1 else self.whole
@@ -235,19 +254,32 @@ class Process:
         properties = make_named_properties(element.id, element.id, element.title)
         if component is not None and node.title != title_from_id(node.id):
             properties += make_text_properties(node_title=node.title)
-        properties += make_text_properties(
-            description=element.description,
-            functionality=component.functionality if component else None,
-            role=behaviours[0].further_role if len(behaviours) == 1 else None,
-            owner=self._find_own_owner(component),
+        role = behaviours[0].further_role if len(behaviours) == 1 else None
+        properties += list_component_words(component or node, role, self.find_own_owner(component))
+        return properties + make_text_properties(
             package_name=node.package,
             executable_name=node.executable,
             node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
         )
+
+    def make_classifiers(self) -> list[dict[str, Any]]:
+        """Return its threads, its type and its implementation."""
+        properties = self.list_words()
         own_type = make_classifier("process", self.name, extends="ros::node", properties=properties)
         implementation = make_classifier("process", f"{self.name}.impl", extends="ros::node.impl")
-        own_type.update(features=self._feature_items, flows=self.flows, place=write_place(node.at))
+        own_type.update(features=self.feature_items, flows=self.flows, place=write_place(self.node.at))
         implementation.update(
-            subcomponents=self._subcomponents, connections=self.connections, properties=self._properties
+            subcomponents=self.subcomponents, connections=self.connections, properties=self.properties
         )
         return [*self.thread_classifiers, own_type, implementation]
+
+
+def list_component_words(element: Component | Node, role: str | None, owner: str | None) -> list[AadlProperty]:
+    """Return what a component says of itself beside its ports and timing."""
+    texts = make_text_properties(
+        description=element.description,
+        functionality=element.functionality if isinstance(element, Component) else None,
+        role=role,
+        owner=owner,
+    )
+    return [*texts, *(list_tags(element) if isinstance(element, Component) else [])]

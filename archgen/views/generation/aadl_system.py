@@ -10,12 +10,15 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.node import Endpoint
 from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
-from archgen.views.generation.aadl_flows import FlowWriter, RouteEnds
+from archgen.views.generation.aadl_calls import RouteEnds, RouteFinder
+from archgen.views.generation.aadl_devices import Device
+from archgen.views.generation.aadl_flows import FlowWriter
 from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
 from archgen.views.generation.aadl_platform import Platform
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     can_be_written,
@@ -36,26 +39,37 @@ LAUNCH = "robot.launch"
 class SystemWriter:
     """The launch of everything: processes, computers, links, what flows between them, and where it runs."""
 
-    def __init__(self, context: GenerationContext, processes: dict[str, Process], names: dict[str, str]) -> None:
+    def __init__(
+        self, context: GenerationContext, processes: dict[str, Process], types: TypeBook, names: dict[str, str]
+    ) -> None:
         """Begin with the processes; `names` are those of the packages."""
         self._architecture = context.architecture
+        self._types = types
         self._processes = processes
         self._root = SystemPart("", LAUNCH.partition(".")[0], None, None)
         self._tree = SystemTree(self._architecture, names["system"], self._root)
         self._bound: dict[str, dict[str, None]] = {}
         self._routes: dict[RouteEnds, Route] = {}
-        self._latencies: dict[RouteEnds, tuple[Fraction, Fraction]] = {}
         self.classifiers: list[dict[str, Any]] = []
         self.comments: list[str] = []
+        self._processes_of: dict[str, list[Process]] = {}
+        """By the complete ids of the components that they implement."""
         for process in processes.values():
-            self._place_process(process, names["nodes"])
+            self._place_process(process, names["devices" if process.category == "device" else "nodes"])
+            for component_id in process.behaviours:
+                self._processes_of.setdefault(component_id, []).append(process)
         hosts = {
             host.id
             for host in self._architecture.hosts.values()
             if context.is_whole or host.id in {process.node.host for process in processes.values()}
         }
-        self.platform = Platform(self._architecture, hosts, self._root.names, names["hosts"])
+        devices = {each.component.id: each for each in processes.values() if isinstance(each, Device)}
+        self.platform = Platform(self._architecture, hosts, self._root.names, names["hosts"], frozenset(devices))
+        for device_id, links in self.platform.links_by_device.items():
+            for link_id in links if device_id in devices else ():
+                self._join_device(devices[device_id], link_id)
         self._analysis = _analyse(self._architecture)
+        self._latencies = _find_link_latencies(self._analysis)
 
     def _place_process(self, process: Process, package: str) -> None:
         """Put a process into the system of its component, by the name of that."""
@@ -63,12 +77,18 @@ class SystemWriter:
         own_id = component_id.rpartition(".")[2] or process.node.id
         process.name_in_system = process.home.names.take_name(own_id)
         properties = make_named_properties(process.name_in_system, own_id)
-        if own_id != process.node.id:
+        if own_id != process.node.id and process.category == "process":
             properties += make_text_properties(node=process.node.id)
         properties += list_own_sources(read_aadl_hints(process.node))
-        process.home.subcomponents.append(
-            make_item(process.name_in_system, f"process {package}::{process.name}.impl", properties)
-        )
+        text = f"{process.category} {package}::{process.classifier}"
+        process.item = make_item(process.name_in_system, text, properties)
+        process.home.subcomponents.append(process.item)
+
+    def _join_device(self, device: Device, link_id: str) -> None:
+        """Lead the access to a bus from the outermost system to a device."""
+        bus = self.platform.name_bus(link_id)
+        feature = device.add_bus_access(link_id, bus)
+        self._tree.lead_access(device, feature, bus, self.platform.names["link", link_id])
 
     def write(self) -> None:
         """Write the package of the systems."""
@@ -100,7 +120,6 @@ class SystemWriter:
 
     def _join_processes(self) -> None:
         """Write a connection for each pair of processes that implement the two ends of one."""
-        latencies = _find_link_latencies(self._analysis)
         for edge in self._architecture.edges:
             for source, output in self._find_parts(edge.output, is_output=True):
                 for reader, part in self._find_parts(edge.input, is_output=False, source_id=edge.output):
@@ -111,34 +130,40 @@ class SystemWriter:
                         source.join_inside(output, part, properties)
                         continue
                     ends = (source.node.id, edge.output, reader.node.id, edge.input)
-                    latency = latencies.get(ends)
+                    latency = self._latencies.get(ends)
                     if latency:
-                        self._latencies[ends] = latency
                         properties.append(make_property("Latency", write_range(*latency)))
                     route = self._routes[ends] = self._tree.join((source, output), (reader, part), properties)
                     self._bind_connection(route, source, reader, is_call=output.flow != "topic")
 
     def _find_parts(self, port_id: str, *, is_output: bool, source_id: str = "") -> Iterable[tuple[Process, PortPart]]:
-        for process in self._processes.values():
+        for process in self._processes_of.get(port_id.rpartition(".")[0], ()):
             part = process.find_part(port_id, is_output=is_output, source_id=source_id)
             if part is not None:
                 yield process, part
 
     def _bind_connection(self, route: Route, source: Process, reader: Process, *, is_call: bool) -> None:
         """Bind a connection to the link between two computers where there is exactly one, else to ROS's own."""
-        hosts = {source.node.host, reader.node.host}
+        ends = {self._find_place(source), self._find_place(reader)}
         links = [
             link.id
             for link in self._architecture.links.values()
-            if len(hosts) > 1 and hosts <= set(link.connects) and ("link", link.id) in self.platform.names
+            if len(ends) > 1 and ends <= {*link.connects, *link.devices} and ("link", link.id) in self.platform.names
         ]
         if len(links) == 1:
             bus = self.platform.names["link", links[0]]
+        elif "device" in {source.category, reader.category}:
+            return
         else:
             bus = self._find_virtual_bus("services" if is_call else "topics")
         name = route.scope.name_inside(self._root, route.joint)
         if not any(name in names for names in self._bound.values()):
             self._bound.setdefault(bus, {})[name] = None
+
+    @staticmethod
+    def _find_place(process: Process) -> str | None:
+        """Return what of a link's ends a process is on: its host, or for a device itself."""
+        return process.component.id if isinstance(process, Device) else process.node.host
 
     def _find_virtual_bus(self, kind: str) -> str:
         if ("bus", kind) not in self.platform.names:
@@ -152,7 +177,7 @@ class SystemWriter:
             name = self._root.names.take_name("tf")
             self._root.subcomponents.append(make_item(name, "data ros::tf"))
             for process in users:
-                self._tree.give_access(process, name)
+                self._tree.lead_access(process, "tf", "data access ros::tf", name)
 
     def _bind_processes(self) -> None:
         """Bind processes to the containers that load them, else to their hosts."""
@@ -175,7 +200,8 @@ class SystemWriter:
         from archgen.timing.chains.chain_bounds import bound_all_chains
 
         results = bound_all_chains(self._analysis, self._architecture)
-        writer = FlowWriter(self._architecture, self._analysis, self._processes, self._routes, self._latencies)
+        routes = RouteFinder(self._types, self._tree, self._routes, self._latencies)
+        writer = FlowWriter(self._architecture, self._analysis, self._processes, routes)
         written: dict[SystemPart, dict[str, Chain]] = {}
         for chain in self._architecture.chains.values():
             place = writer.write_chain(chain, results[chain.id])
@@ -225,7 +251,7 @@ def _find_link_latencies(analysis: Analysis | None) -> dict[RouteEnds, tuple[Fra
         return {}
     found = {}
     for arc in analysis.system.arcs:
-        if arc.role == "data" and arc.link is not None and arc.worst is not None:
+        if arc.link is not None and arc.worst is not None:
             nodes = (analysis.system.activities[arc.source].node, analysis.system.activities[arc.target].node)
             best, worst = (arc.best or 0) * analysis.system.tick, arc.worst * analysis.system.tick
             if can_be_written(worst):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from archgen.model.architecture import Architecture
-from archgen.model.message_types import ConceptualType, DataField, flow_of, full_message_name
+from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of, full_message_name
 from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -18,6 +18,7 @@ from archgen.views.generation.aadl_words import (
     make_property,
     make_text_properties,
     write_text,
+    write_texts,
 )
 from archgen.views.generation.generation_context import write_place
 
@@ -54,6 +55,8 @@ class TypeBook:
         self._own: dict[str, list[dict[str, Any]]] = {}
         self._message_packages: dict[str, tuple[str, NameSpace, list[dict[str, Any]]]] = {}
         self._messages: dict[str, str] = {}
+        self.call_data: dict[str, tuple[str, str]] = {}
+        """What a call takes and gives, by the complete name of its subprogram: two complete names of data."""
 
     def name_type(self, type_name: str | None, flow: str = "topic") -> str:
         """Return the complete name of the classifier for a type: data, or a subprogram where it is called for."""
@@ -90,8 +93,16 @@ class TypeBook:
                 message_name=message if is_renamed else None, flow_kind="action" if kind == "action" else None
             )
             self._messages[message] = f"{package_name}::{own_name}"
-            classifiers += _record_shape(own_name, flow_of(message), names, properties)
+            shape = _record_shape(own_name, flow_of(message), names, properties)
+            self._note_call(package_name, shape)
+            classifiers += shape
         return self._messages[message]
+
+    def _note_call(self, package_name: str, shape: list[dict[str, Any]]) -> None:
+        """Remember what a call takes and gives, which come first in its shape."""
+        names = [f"{package_name}::{classifier['name']}" for classifier in shape]
+        if len(names) > 1:
+            self.call_data[names[-1]] = (names[0], names[1])
 
     def _record_type(self, own_name: str, declared: ConceptualType, flow: str) -> list[dict[str, Any]]:
         size = declared.size
@@ -103,21 +114,47 @@ class TypeBook:
         ]
         if flow == "topic" and size and size.value <= _GREATEST_SIZE and size.value.denominator == 1:
             properties.append(make_property("Data_Size", _write_size(int(size.value))))
+        if declared.values:
+            properties.append(make_property("Data_Model::Data_Representation", "Enum"))
+            properties.append(make_property("Data_Model::Enumerators", write_texts(declared.values)))
         properties += list_own_sources(read_aadl_hints(declared))
         place = write_place(declared.at)
         if flow != "topic":
-            if declared.message and flow_of(declared.message) == flow and not declared.has_content:
+            is_typed = any(getattr(declared, key) for key in PART_KEYS)
+            if declared.message and flow_of(declared.message) == flow and not (declared.has_content or is_typed):
                 extends = self._name_message(declared.message)
+                self.call_data[f"{self._package_name}::{own_name}"] = self.call_data[extends]
                 return [make_classifier("subprogram", own_name, extends=extends, properties=properties, place=place)]
-            return _record_shape(own_name, flow, self._own_names, properties, place)
+            return self._record_call(own_name, declared, flow, properties)
         has_message = declared.message and flow_of(declared.message) == "topic" and not declared.has_content
         extends = self._name_message(declared.message or "") if has_message else ""
         data = make_classifier("data", own_name, extends=extends, properties=properties, place=place)
         if not declared.fields:
             return [data]
+        return [data, self._record_fields(own_name, declared.fields)]
+
+    def _record_call(
+        self, own_name: str, declared: ConceptualType, flow: str, properties: list[AadlProperty]
+    ) -> list[dict[str, Any]]:
+        """Return a call with its parts, and what is in each of them."""
+        shape = _record_shape(own_name, flow, self._own_names, properties, write_place(declared.at))
+        self._note_call(self._package_name, shape)
+        call = shape[-1]
+        parts: list[dict[str, Any]] = []
+        for key, data, feature in zip(PART_KEYS, shape[:-1], call["features"], strict=False):
+            part_type = getattr(declared, key)
+            if part_type:
+                feature["text"] = f"{feature['text'].rpartition(' ')[0]} {self.name_type(part_type)}"
+            elif key in declared.part_fields:
+                parts.append(self._record_fields(data["name"], declared.part_fields[key]))
+        return [*shape[:-1], *parts, call]
+
+    def _record_fields(self, own_name: str, fields: Iterable[DataField]) -> dict[str, Any]:
+        """Return an implementation of data with its fields."""
         names = NameSpace()
-        fields = [self._record_field(each, names) for each in declared.fields]
-        return [data, make_classifier("data", f"{own_name}.impl", subcomponents=fields)]
+        return make_classifier(
+            "data", f"{own_name}.impl", subcomponents=[self._record_field(each, names) for each in fields]
+        )
 
     def _record_field(self, field: DataField, names: NameSpace) -> dict[str, Any]:
         name = names.take_name(field.name)

@@ -8,9 +8,10 @@ from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
-from archgen.model.node import Endpoint
 from archgen.model.port_media import flow_of_port
+from archgen.views.generation.aadl_devices import Device
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_programs import ProgramBook
 from archgen.views.generation.aadl_system import LAUNCH, SystemWriter
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import NameSpace, make_aadl_name
@@ -33,26 +34,21 @@ def make_view(context: GenerationContext) -> GeneratedView:
     project = make_aadl_name(architecture.project.id)
     names = {
         key: units.take_name(f"{project}_{key}" if key != "system" else project)
-        for key in ("types", "nodes", "hosts", "system")
+        for key in ("types", "nodes", "devices", "hosts", "system")
     }
     types = TypeBook(architecture, names["types"], units)
-    endpoints: dict[str, list[Endpoint]] = {}
-    for endpoint in architecture.list_endpoints():
-        endpoints.setdefault(endpoint.node, []).append(endpoint)
-    node_names = NameSpace()
-    processes = {
-        node.id: Process(architecture, types, node, endpoints.get(node.id, ()), node_names)
-        for node in context.wanted_nodes.values()
-    }
+    programs = ProgramBook(context, types)
     if context.is_whole:
         for declared in architecture.types.values():
             if declared.origin == "project" and not declared.generic:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
-    system = SystemWriter(context, processes, names)
+    system = SystemWriter(context, programs.processes, types, names)
     system.write()
+    program_packages = {Process.category: names["nodes"], Device.category: names["devices"]}
+    programs.write_types(program_packages)
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
-        _make_package(names["nodes"], [each for process in processes.values() for each in process.make_classifiers()]),
+        *(_make_package(name, programs.list_classifiers(category)) for category, name in program_packages.items()),
         _make_package(names["hosts"], system.platform.classifiers),
         _make_package(names["system"], system.classifiers, system.comments),
     ]

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
+from archgen.model.component import Component, Group
 from archgen.model.element_ids import spell_in_ascii
 from archgen.model.language_keywords import AADL_KEYWORDS
 from archgen.model.path_resolver import title_from_id
@@ -117,6 +118,11 @@ def make_named_properties(name: str, element_id: str, title: str | None = None) 
     """Return the id of an element that is called otherwise here, and its title where that is not made from the id."""
     own_title = title if title and title != title_from_id(element_id.rpartition(".")[2]) else None
     return make_text_properties(id=element_id if name != element_id else None, title=own_title)
+
+
+def list_tags(element: Component | Group) -> list[AadlProperty]:
+    """Return the tags of an element."""
+    return [make_property("archgen::Tags", write_texts(element.tags))] if element.tags else []
 
 
 def make_item(name: str, text: str, properties: Iterable[AadlProperty] = ()) -> dict[str, Any]:

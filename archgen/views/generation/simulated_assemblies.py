@@ -29,7 +29,7 @@ class MadeClasses:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class AssemblyPart:
     """A part of an assembly: a component, or another assembly."""
 
     id: str
@@ -47,7 +47,7 @@ class Assembly:
     title: str
     at: Span
     children: dict[tuple[str, bool], str] = field(default_factory=dict)
-    parts: list[Part] = field(default_factory=list)
+    parts: list[AssemblyPart] = field(default_factory=list)
     connections: list[dict[str, str]] = field(default_factory=list)
 
 
@@ -81,7 +81,7 @@ def collect_assemblies(architecture: Architecture, classes: Mapping[str, Simulat
 def place_parts(context: GenerationContext, assembly: Assembly, left_out: frozenset[str]) -> Iterator[Diagnostic]:
     """Give an assembly its parts, but for those whose names fall together, which are yielded, and those left out already."""
     architecture = context.architecture
-    parts: dict[str, Part] = {}
+    parts: dict[str, AssemblyPart] = {}
     spans: dict[str, Span] = {}
     for (part_id, is_assembly), name in assembly.children.items():
         if part_id in left_out:
@@ -90,7 +90,7 @@ def place_parts(context: GenerationContext, assembly: Assembly, left_out: frozen
         python_name = make_identifier_in("python", make_snake_name(name))
         python_name = f"{python_name}_" if python_name in _PYTHON_ATTRIBUTES else python_name
         key = part_id if is_assembly or part_id not in architecture.shells else f"{part_id} rest"
-        parts[key] = Part(part_id, is_assembly, name_java_field(name), python_name)
+        parts[key] = AssemblyPart(part_id, is_assembly, name_java_field(name), python_name)
         spans[key] = element.at
     dropped = set[str]()
     for names in (
@@ -105,10 +105,10 @@ def place_parts(context: GenerationContext, assembly: Assembly, left_out: frozen
     assembly.parts = [each for key, each in parts.items() if key not in dropped]
 
 
-def find_ways(assemblies: Mapping[str, Assembly]) -> dict[str, tuple[Part, ...]]:
+def find_ways(assemblies: Mapping[str, Assembly]) -> dict[str, tuple[AssemblyPart, ...]]:
     """Return the parts on the way from the whole to each component, in the order in which the program makes these."""
-    ways: dict[str, tuple[Part, ...]] = {}
-    open_parts: list[tuple[Part, ...]] = [(each,) for each in reversed(assemblies[""].parts)]
+    ways: dict[str, tuple[AssemblyPart, ...]] = {}
+    open_parts: list[tuple[AssemblyPart, ...]] = [(each,) for each in reversed(assemblies[""].parts)]
     while open_parts:
         way = open_parts.pop()
         if way[-1].is_assembly:

@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.views.generation.generation_context import tell_left_out
-from archgen.views.generation.simulated_assemblies import Assembly, Part
+from archgen.views.generation.simulated_assemblies import Assembly, AssemblyPart
 from archgen.views.generation.simulated_classes import SimulatedClass
 
 
 def connect_assemblies(
     architecture: Architecture,
     classes: Mapping[str, SimulatedClass],
-    ways: Mapping[str, tuple[Part, ...]],
+    ways: Mapping[str, tuple[AssemblyPart, ...]],
     assemblies: Mapping[str, Assembly],
 ) -> tuple[list[str], list[Diagnostic]]:
     """Give each assembly its connections; return all as `OUTPUT -> INPUT`, in the order in which a program lists them, and

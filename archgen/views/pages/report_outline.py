@@ -18,7 +18,7 @@ from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
-from archgen.views.pages.component_sections import ComponentSections
+from archgen.views.pages.component_sections import ReportSections
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.sequences.sequence_blocks import make_use_case_sections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -77,14 +77,14 @@ def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     return Outline(
         title=architecture.project.title,
         subtitle="Software architecture",
-        facts=tuple(make_title_facts(lookup, edition)),
+        facts=tuple(make_document_facts(lookup, edition)),
         notices=make_notices(lookup, edition),
         sections=tuple(section for section in sections if not section.appendix)
         + tuple(section for section in sections if section.appendix),
     )
 
 
-def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple[str, Inlines]]:
+def make_document_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple[str, Inlines]]:
     """Yield the lines of the title page: version, revision, ROS distribution, partners."""
     project = lookup.architecture.project
     if project.version:
@@ -154,7 +154,7 @@ class _ChapterMaker:
     def make_groups(self) -> list[Section]:
         """Make one section for each group, with its components and their nodes; then one for all component types."""
         shows_nodes = self.edition.level == "implementation"
-        return ComponentSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
+        return ReportSections(self.lookup, self._keep_drawn, shows_nodes).make_sections()
 
     def _keep_drawn(self, blocks: Iterable[Block]) -> tuple[Block, ...]:
         """Drop figures that are not among this document's drawings."""

@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable, Iterator
 
 from archgen.model.node import Node
-from archgen.timing.analysis import ChainResult, ResponseTier
+from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
@@ -64,7 +65,7 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
         ),
         (
             "Assumptions",
-            _link_activities(timing_lookup, "; ".join(dict.fromkeys(list_assumptions(timing_lookup, result)))),
+            _link_activities(timing_lookup, "; ".join(dict.fromkeys(describe_assumptions(timing_lookup, result)))),
         ),
     ]
     name = f"chains/{result.id}"
@@ -97,7 +98,7 @@ def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[t
         yield "What to do", inline_text.message_to_inlines(advice.first_step)
 
 
-def list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
+def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
     """Yield the assumptions of a bound in words.
 
     Tiers of responses name their activities, so the analysis' own words for the same assumption are left out.

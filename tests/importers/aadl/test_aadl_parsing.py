@@ -75,7 +75,7 @@ def test_values_of_properties(written: str, value: AadlValue) -> None:
 def test_associations_with_all_that_may_follow() -> None:
     text = "s::p +=> constant 1 in modes (m), 2 in modes (n) applies to a.b, c[1].d in binding (memory m::r);"
     found: Property = parse_package(f"data d properties {text} end d;").packages[0].classifiers[0].properties[0]
-    assert (found.name, found.appended, found.in_modes, found.paths) == ("s::p", True, True, (("a", "b"), ("c", "d")))
+    assert (found.name, found.appended, found.modes, found.paths) == ("s::p", True, ("m",), (("a", "b"), ("c", "d")))
 
 
 def test_a_package_with_all_sections() -> None:

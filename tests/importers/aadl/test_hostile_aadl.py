@@ -9,6 +9,8 @@ import pytest
 
 from archgen.importers.aadl import aadl_import, hardware_tree, system_walk
 from archgen.importers.aadl.aadl_import import read_aadl
+from archgen.importers.aadl.hardware_tree import HardwareTree
+from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from tests.importers.aadl.aadl_texts import MODELS, import_package, import_text, list_faults, merge_slices, tell_notes
 
@@ -32,10 +34,23 @@ def test_what_is_no_aadl_is_refused(tmp_path: Path, data: bytes, words: str) -> 
 
 
 def test_a_large_file_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(aadl_import, "MAX_BYTES", 2_000_000)
+    monkeypatch.setattr(aadl_import, "read_bounded", lambda file: read_bounded(file, 2_000_000))
     (tmp_path / "m.aadl").write_bytes(b" " * 2_000_001)
     with pytest.raises(ForeignFileError, match="it is larger than 2 MB"):
         read_aadl([tmp_path / "m.aadl"])
+
+
+def test_what_a_model_holds_is_bounded_over_all_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(aadl_import, "MAX_TOKENS", 100)
+    files = [tmp_path / f"{name}.aadl" for name in "ab"]
+    for file in files:
+        data = " ".join(f"data d{index} end d{index};" for index in range(12))
+        long_texts = "annex note {** " + "x; " * 1000 + "**}; -- " + "; " * 1000
+        file.write_text(f"package {file.stem} public {long_texts}\n{data} end {file.stem};", encoding="utf-8")
+    assert read_aadl(files[:1]).taken == {"data": 12}
+    with pytest.raises(ForeignFileError, match="more than 100 words and signs") as told:
+        read_aadl(files)
+    assert (Path(told.value.span.file), told.value.span.line) == (files[1], 2)
 
 
 def test_other_encodings_are_read_and_told(tmp_path: Path) -> None:
@@ -110,6 +125,42 @@ def test_parts_that_double_at_each_level_are_refused(tmp_path: Path, monkeypatch
     last = "system s30 end s30; system implementation s30.i subcomponents p: process q; end s30.i; process q features x: out data port; end q;"
     with pytest.raises(ForeignFileError, match="more than 2,000 parts"):
         import_package(tmp_path, "\n".join([*levels, last]))
+
+
+@pytest.mark.parametrize("parts", [("a",), ("a", "b")])
+def test_ways_that_double_at_each_level_end(tmp_path: Path, parts: tuple[str, ...]) -> None:
+    levels = [
+        f"system s{level} features x: in event data port; y: in event data port; end s{level};"
+        f" system implementation s{level}.i subcomponents {' '.join(f'{part}: system s{level + 1}.i;' for part in parts)}"
+        f" connections {' '.join(f'port {way} -> {part}.{to};' for part in parts for way in 'xy' for to in 'xy')}"
+        f" end s{level}.i;"
+        for level in range(35)
+    ]
+    body = f"""
+    {" ".join(levels)}
+    process p features x: in event data port; y: in event data port; end p;
+    process giver features x: out data port; end giver;
+    system s35 features x: in event data port; y: in event data port; end s35;
+    system implementation s35.i subcomponents p: process p; connections port x -> p.x; port y -> p.y; end s35.i;
+    system robot end robot;
+    system implementation robot.i
+      subcomponents giver: process giver; top: system s0.i;
+      connections c: port giver.x -> top.x {{topic_properties::Name => "/x";}};
+    end robot.i;
+    """
+    if len(parts) > 1:
+        with pytest.raises(ForeignFileError, match="more than 50,000 parts"):
+            import_package(tmp_path, body)
+    else:
+        assert list(merge_slices(import_package(tmp_path, body))["nodes"]) == ["p", "giver"]
+
+
+def test_a_daisy_chain_of_buses_is_cut_short() -> None:
+    tree = HardwareTree()
+    for index in range(100, 0, -1):
+        tree.join((f"c{index}",), (f"c{index - 1}",))
+    assert tree.find_root(("c100",)) == ("c0",)
+    assert {tree.joined[f"c{index}",] for index in range(1, 101)} == {("c0",)}
 
 
 def test_names_that_come_to_one_id_stay_apart(tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ def test_parts_that_nobody_asks_for_are_noted_together(tmp_path: Path) -> None:
     (note,) = (each for each in imported.notes if each.kind == "uml:Operation")
     assert note.count == 7
     assert note.message == (
-        "7 Operation (`do0`, `do1`, `do2`, `do3`, `do4` and others) of the Interface `i` are not taken: an interface only says "
+        "the Operations `do0`, `do1`, `do2`, `do3`, `do4` and others of the Interface `i` are not taken: an interface only says "
         "here who is connected with whom"
     )
     assert (note.span.line, note.fate) == (3, "not taken")
@@ -179,6 +179,44 @@ def test_defaults_are_values_of_their_type(
     assert merge_sections(imported)["component_types"]["k"]["parameters"]["level"] == parameter
     assert (
         [each for each in tell_notes(imported) if "default" in each and note in each] if note else imported.notes == ()
+    )
+
+
+@pytest.mark.parametrize(
+    ("names", "kept", "why"),
+    [
+        (("2DPoint",), [], "no message of ROS can be called so"),
+        (("Größe",), [], "no message of ROS can be called so"),
+        (("Level A", "Level_A"), ["Level A"], "its message would be `LevelA`, as that of `Level A`"),
+    ],
+)
+def test_fields_make_messages_that_ros_can_name(
+    tmp_path: Path, names: tuple[str, ...], kept: list[str], why: str
+) -> None:
+    contents = "".join(
+        make_element("DataType", f"d{n}", make_attribute(f"x{n}", "Integer")).replace(f'name="d{n}"', f'name="{name}"')
+        for n, name in enumerate(names)
+    )
+    imported = read_model(tmp_path, contents)
+    types = merge_sections(imported)["types"]
+    assert ([name for name, body in types.items() if "fields" in body], list(types)) == (kept, list(names))
+    assert len([each for each in tell_notes(imported) if why in each]) == 1
+
+
+def test_values_make_messages_that_ros_can_name(tmp_path: Path) -> None:
+    imported = read_model(tmp_path, ENUMERATION.replace('name="mode"', 'name="2D mode"'))
+    assert merge_sections(imported)["types"] == {"2D mode": {"hints": {"uml": {"id": "mode"}}}}
+    (note,) = (each for each in imported.notes if each.kind == "uml:EnumerationLiteral")
+    assert (note.count, "no message of ROS can be called so" in note.message) == (2, True)
+
+
+def test_a_property_that_only_refers_to_a_component_is_no_part_of_it(tmp_path: Path) -> None:
+    contents = make_element("Component", "whole") + make_element("Component", "part", make_attribute("owner", "whole"))
+    imported = read_model(tmp_path, contents)
+    assert list(merge_sections(imported)["groups"]["lab"]["components"]) == ["whole", "part"]
+    assert "component_types" not in merge_sections(imported)
+    assert any(
+        "the property `owner` is no parameter: its type `whole` is no value" in each for each in tell_notes(imported)
     )
 
 

@@ -14,7 +14,7 @@ from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.idle_backlogs import IdleBacklog, PendingShare, choose_largest_lanes, find_idle_backlog
 from archgen.timing.load.inner_triggers import find_inner_triggers
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
 from archgen.timing.load.way_works import build_thread_work, build_way_works
@@ -43,7 +43,7 @@ def prepare(nodes: dict[str, str], wires: str, rest: str) -> SharedCores:
 def find_backlog(cores: SharedCores, budget: SearchBudget | None = None) -> IdleBacklog | None:
     """Return what may be pending, each timer without jitter."""
 
-    def find_model(origin: Origin) -> tuple[EventStream, ...]:
+    def find_model(origin: EventOrigin) -> tuple[EventStream, ...]:
         return (EventStream(cores.system.activities[str(origin.key)].period or 1),)
 
     demand = CascadeDemand(cores.cascades, find_model)
@@ -158,13 +158,13 @@ def test_a_caller_may_still_work_while_what_it_called_waits() -> None:
 def test_the_fullest_threads_count_and_no_origin_more_than_there_is(
     lanes: list[tuple[str, int]], number: int, works: list[int]
 ) -> None:
-    shares = [[PendingShare(name, Origin("activity", name), 1, 1, work, work)] for name, work in lanes]
-    most = {Origin("activity", "x"): 50, Origin("activity", "y"): 20}
+    shares = [[PendingShare(name, EventOrigin("activity", name), 1, 1, work, work)] for name, work in lanes]
+    most = {EventOrigin("activity", "x"): 50, EventOrigin("activity", "y"): 20}
     assert [share.work for share in choose_largest_lanes(shares, most, number)] == works
 
 
 def test_threads_of_several_origins_count_as_a_whole() -> None:
-    x, y = Origin("activity", "x"), Origin("activity", "y")
+    x, y = EventOrigin("activity", "x"), EventOrigin("activity", "y")
     both = [PendingShare("a", x, 1, 1, 4, 4), PendingShare("a", y, 1, 1, 3, 3)]
     alone = [PendingShare("b", x, 1, 1, 6, 6)]
     assert [share.work for share in choose_largest_lanes([alone, both], {x: 6, y: 3}, 1)] == [4, 3]

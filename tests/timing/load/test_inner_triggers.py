@@ -11,7 +11,7 @@ from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core, rank_threads, urgency_of
 from archgen.timing.load.inner_triggers import find_inner_triggers
-from archgen.timing.load.level_cascades import GateRule, Origin
+from archgen.timing.load.level_cascades import EventOrigin, GateRule
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
@@ -54,14 +54,14 @@ def test_an_event_leads_to_all_that_is_fired_without_taking_time() -> None:
     core = prepare({"s @pc": TIMER, "a @pc": EVENT, "b @pc": EVENT}, "s>a a>b s>b")
     assert list_ways(core) == ["activity s: s x1", "activity s: s a x1", "activity s: s a b x1", "activity s: s b x1"]
     # s, a, and b twice.
-    assert core.levels[None].volumes == {Origin("activity", "s"): 4 * (core.system.activities["s"].wcet or 0)}
+    assert core.levels[None].volumes == {EventOrigin("activity", "s"): 4 * (core.system.activities["s"].wcet or 0)}
 
 
 @pytest.mark.parametrize(
     ("timing", "rule"),
     [
-        ("every: 3", GateRule(({Origin("activity", "s"): 1},), every=3)),
-        ("throttle: 30 ms", GateRule(({Origin("activity", "s"): 1},), throttle=30)),
+        ("every: 3", GateRule(({EventOrigin("activity", "s"): 1},), every=3)),
+        ("throttle: 30 ms", GateRule(({EventOrigin("activity", "s"): 1},), throttle=30)),
     ],
 )
 def test_a_gate_begins_a_way_of_its_own(timing: str, rule: GateRule) -> None:
@@ -118,8 +118,8 @@ def test_what_is_less_urgent_counts_once() -> None:
     )
     assert list(core.levels) == [5, 1]
     cost = core.system.activities["s"].wcet
-    assert core.levels[5].volumes == {Origin("activity", "s"): cost, Origin("once", 0): cost}
-    assert core.levels[1].volumes == {Origin("activity", "s"): 3 * (cost or 0)}
+    assert core.levels[5].volumes == {EventOrigin("activity", "s"): cost, EventOrigin("once", 0): cost}
+    assert core.levels[1].volumes == {EventOrigin("activity", "s"): 3 * (cost or 0)}
 
 
 @pytest.mark.parametrize(

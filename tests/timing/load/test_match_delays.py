@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.match_delays import (
     combine_matched,
@@ -17,6 +16,7 @@ from archgen.timing.load.match_delays import (
     queue_length,
 )
 from archgen.timing.load.match_windows import MatchedInput, MatchWindows, find_match_windows
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.timing_system import Activity, Arc
 from archgen.timing.system.trigger_graph import find_triggers

@@ -10,18 +10,18 @@ from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.inner_triggers import InnerTriggers
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.queue_orders import QueuedTask
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 
-ENTRY = Origin("activity", "a")
+ENTRY = EventOrigin("activity", "a")
 OFTEN = (EventStream(100),)
 
 
-def way(steps: str, delay: int | None, entry: Origin = ENTRY, **rest: int) -> EntryWay:
+def way(steps: str, delay: int | None, entry: EventOrigin = ENTRY, **rest: int) -> EntryWay:
     """Make a way of steps of one letter each."""
     return EntryWay(entry, None, tuple(steps), delay=delay, **rest)
 
@@ -49,8 +49,8 @@ def order_core(
         # Twice each time.
         ((way("a", 20, multiplicity=2),), (EventStream(100, 0, 0, 1, 2),)),
         ((way("a", 20), way("ab", 50)), (EventStream(100), EventStream(100, 20))),
-        ((way("b", 50, Origin("activity", "b")),), UnknownCause(("b",))),  # behind a gate
-        ((way("b", 50, Origin("arc", 0)),), (EventStream(100),)),
+        ((way("b", 50, EventOrigin("activity", "b")),), UnknownCause(("b",))),  # behind a gate
+        ((way("b", 50, EventOrigin("arc", 0)),), (EventStream(100),)),
     ],
 )
 def test_activations_come_behind_the_steps_before(
@@ -68,7 +68,7 @@ def test_activations_behind_what_is_not_known_are_not_known() -> None:
 
 
 def test_the_step_before_is_that_of_the_same_entry() -> None:
-    far = Origin("arc", 0)
+    far = EventOrigin("arc", 0)
     ways_to = {"a": (way("a", 90, far), way("a", 20)), "b": (way("ab", 50),)}
     assert order_core(ways_to).find_activation_model("b") == (EventStream(100, 20),)
 

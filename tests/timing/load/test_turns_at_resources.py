@@ -10,8 +10,8 @@ import pytest
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.event_models import PropagationState
 from archgen.timing.load.event_streams import EventStream
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import (
     Competitor,
     Rivals,

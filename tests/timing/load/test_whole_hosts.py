@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.level_cascades import Origin
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
@@ -50,7 +50,7 @@ def test_a_chain_between_two_cores_to_and_fro(cost: int, responses: list[str]) -
 
 def ways(*delays: int | None) -> tuple[EntryWay, ...]:
     """Return ways to `a` with some delays."""
-    return tuple(EntryWay(Origin("activity", "a"), None, ("a",), delay=delay) for delay in delays)
+    return tuple(EntryWay(EventOrigin("activity", "a"), None, ("a",), delay=delay) for delay in delays)
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.event_streams import EventStream
-from archgen.timing.load.level_cascades import GateRule, Origin
+from archgen.timing.load.level_cascades import EventOrigin, GateRule
 from archgen.timing.load.work_terms import CountFormulas, EventCount
 
 WHOLE = 2**64
@@ -150,5 +150,5 @@ def test_the_worst_activation_is_not_the_first() -> None:
     ],
 )
 def test_what_a_gate_lets_through_is_written_as_it_is_counted(every: int, calls: Fraction, count: EventCount) -> None:
-    rule = GateRule(({Origin("activity", "s"): 1},), every, calls=calls)
+    rule = GateRule(({EventOrigin("activity", "s"): 1},), every, calls=calls)
     assert CountFormulas(Fraction(10**6)).count_gate(rule, [EventCount(5, "5")], 10) == count

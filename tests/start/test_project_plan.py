@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.start import start_answers, start_plan, starter_slices
+from archgen.start import project_plan, start_answers, starter_slices
 from archgen.start.start_answers import ForgeName, GroupAnswer, PartnerAnswer, StartAnswers
 
 ANSWERS = replace(
@@ -17,12 +17,12 @@ ANSWERS = replace(
 )
 
 
-def _plan(folder: Path, answers: StartAnswers = ANSWERS) -> start_plan.StartPlan:
+def _plan(folder: Path, answers: StartAnswers = ANSWERS) -> project_plan.ProjectPlan:
     files = starter_slices.example_files(answers, has_other_yaml=False)
-    return start_plan.plan_files(folder, answers, files, start_plan.judge_files(files, "robot"))
+    return project_plan.plan_files(folder, answers, files, project_plan.judge_files(files, "robot"))
 
 
-def _names(plan: start_plan.StartPlan) -> set[str]:
+def _names(plan: project_plan.ProjectPlan) -> set[str]:
     return {path.relative_to(plan.repository_folder).as_posix() for path in plan.files}
 
 
@@ -63,7 +63,7 @@ def test_partners_without_reviewers_are_noticed(tmp_path: Path, reviewers: str, 
 
 
 def test_other_yaml_files_are_noticed(tmp_path: Path) -> None:
-    assert not start_plan.has_other_yaml(tmp_path)
+    assert not project_plan.has_other_yaml(tmp_path)
     (tmp_path / "launch").mkdir()
     (tmp_path / "launch" / "params.yaml").touch()
-    assert start_plan.has_other_yaml(tmp_path)
+    assert project_plan.has_other_yaml(tmp_path)

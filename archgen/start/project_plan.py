@@ -27,7 +27,7 @@ _CODEOWNERS_PATHS = {
 
 
 @dataclass(frozen=True, slots=True)
-class StartPlan:
+class ProjectPlan:
     """Files to write (by absolute path), files kept because they exist, and the folder that holds all of them: the
     repository's.
     """
@@ -50,7 +50,7 @@ def judge_files(files: Mapping[str, bytes], name: str) -> CheckedProject:
 
 def plan_files(
     folder: Path, answers: StartAnswers, yaml_files: Mapping[str, bytes], checked_project: CheckedProject
-) -> StartPlan:
+) -> ProjectPlan:
     """Put the files together: the project's in its folder, what the forge reads at the top of the repository."""
     # Resolved, so that it can be relative to the repository's folder even through a symbolic link.
     target = Path(os.path.realpath(folder))
@@ -74,7 +74,7 @@ def plan_files(
         ).text.encode()
     # `lexists`: a broken symbolic link is kept as well.
     existing_files = tuple(path for path in wanted_files if os.path.lexists(path))
-    return StartPlan(
+    return ProjectPlan(
         {path: data for path, data in wanted_files.items() if path not in existing_files},
         existing_files,
         repository_folder,

@@ -1,0 +1,154 @@
+"""What actions of launch files set for others: in the order, and as far, as ROS has it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from archgen.importers.launch.launch_import import read_launch
+from tests.importers.launch.test_launch_import import messages_of, nodes_of, read_python, write_files
+
+INNER = '<launch><arg name="a" default="inner"/></launch>'
+
+
+@pytest.mark.parametrize(
+    ("actions", "expected"),
+    [
+        # What does not run sets nothing.
+        ('<include file="$(dirname)/inner.launch.xml" if="false"><arg name="a" value="far"/></include>', "default"),
+        ('<include file="$(dirname)/inner.launch.xml"><arg name="a" value="far"/></include>', "far"),
+        ('<group scoped="false" if="false"><let name="a" value="far"/></group>', "default"),
+        ('<group scoped="false"><let name="a" value="far"/></group>', "far"),
+        ('<let name="a" value="far" if="$(var open)"/>', None),
+        ('<let name="a" value="default" if="$(var open)"/>', "default"),
+    ],
+)
+def test_arguments_behind_what_sets_them(actions: str, expected: str | None, tmp_path: Path) -> None:
+    text = f"""<launch><arg name="open"/><arg name="a" default="default"/>{actions}
+        <node pkg="p" exec="e" name="n"><param name="a" value="$(var a)"/></node></launch>"""
+    imported = read_launch([write_files(tmp_path, a__launch__xml=text, inner__launch__xml=INNER)])
+    assert nodes_of(imported)["n"].get("parameters") == (None if expected is None else {"a": expected})
+    assert (
+        "not taken: node:1: the parameter `a` is computed: `either way of `if $(var open)``" in messages_of(imported)
+    ) == (expected is None)
+
+
+@pytest.mark.parametrize(
+    ("group", "expected"),
+    [
+        ("<group>", {"a": "1", "b": "2"}),
+        ('<group forwarding="false">', {"a": "$(var a)", "b": "$(var b)"}),
+        ('<group forwarding="false"><keep name="a" value="kept $(var a)"/>', {"a": "kept 1", "b": "$(var b)"}),
+    ],
+)
+def test_groups_hand_arguments_on(group: str, expected: dict[str, str], tmp_path: Path) -> None:
+    text = f"""<launch><arg name="a" default="1"/><arg name="b" default="2"/>{group}
+        <node pkg="p" exec="e" name="n"><param name="a" type="str" value="$(var a)"/><param name="b" type="str" value="$(var b)"/></node>
+        </group></launch>"""
+    assert nodes_of(read_launch([write_files(tmp_path, a__launch__xml=text)]))["n"]["parameters"] == expected
+
+
+def test_the_order_of_parameters_for_all_nodes_counts(tmp_path: Path) -> None:
+    body = """
+    return LaunchDescription([
+        SetParameter("rate", 1), SetParametersFromFile(os.path.join(os.path.dirname(__file__), "all.yaml")), SetUseSimTime(True),
+        Node(package="p", executable="e", name="n"),
+    ])
+    """
+    values = "/**:\n  ros__parameters: {rate: 5}\n"
+    imported = read_python(tmp_path, body, launch___all__yaml=values)
+    assert nodes_of(imported)["n"]["parameters"] == {"rate": 5, "use_sim_time": True}
+
+
+def test_containers_are_found_as_ros_finds_them(tmp_path: Path) -> None:
+    body = """
+    box = ComposableNodeContainer(package="rclcpp_components", executable="component_container", name="box", namespace="in")
+    return LaunchDescription([GroupAction([
+        PushRosNamespace("r"), box,
+        LoadComposableNodes(target_container=box, composable_node_descriptions=[
+            ComposableNode(package="p", plugin="p::A", name="a")]),
+        LoadComposableNodes(target_container="r/in/box", composable_node_descriptions=[
+            ComposableNode(package="p", plugin="p::B", name="b")]),
+    ])])
+    """
+    imported = read_python(tmp_path, body)
+    assert {name: node["container"] for name, node in nodes_of(imported).items()} == {"a": "box", "b": "box"}
+    assert messages_of(imported) == []
+
+
+def test_programs_of_one_name_are_all_taken(tmp_path: Path) -> None:
+    body = """
+    return LaunchDescription([
+        ExecuteProcess(cmd=["one"], name="tool", respawn=True), ExecuteProcess(cmd=["two"], name="tool"),
+        Node(package="p", executable="e", name="tool"),
+    ])
+    """
+    imported = read_python(tmp_path, body)
+    nodes = nodes_of(imported)
+    assert [node.get("command") for node in nodes.values()] == [["one"], ["two"], None]
+    assert next(iter(nodes.values()))["start"] == {"respawn": True}
+    assert messages_of(imported) == []
+
+
+def test_names_of_ros_1_are_nearest_first(tmp_path: Path) -> None:
+    text = """<launch>
+      <param name="~tint" value="3"/>
+      <param name="/c/robot_description" command="xacro x.urdf"/>
+      <remap from="a" to="outer"/>
+      <group ns="g">
+        <remap from="a" to="inner"/>
+        <node pkg="p" type="e" name="c" ns="/">
+          <param name="costmap/width" value="5"/>
+          <rosparam>{costmap: {height: 3}}</rosparam>
+          <remap from="a" to="own"/>
+        </node>
+        <node pkg="p" type="e" name="d"/>
+      </group>
+    </launch>"""
+    imported = read_launch([write_files(tmp_path, a__launch=text)])
+    nodes: dict[str, Any] = nodes_of(imported)
+    assert nodes["c"]["remaps"] == {"a": "own"}
+    assert nodes["d"]["remaps"] == {"a": "inner"}
+    assert nodes["c"]["parameters"] == {"tint": 3, "costmap": {"width": 5, "height": 3}}
+    assert nodes["c"]["parameter_commands"] == {"robot_description": ["xacro", "x.urdf"]}
+    assert messages_of(imported) == []
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ('parameters=[{"a": {"b": load(), "c": 1}}]', "not taken: Node:15: the parameter `a.b` is computed: `load()`"),
+        (
+            'parameters=[{load(): 1, "a": {"c": 1}}]',
+            'not taken: Node:15: a parameter file is computed: `{load(): 1, "a": {"c": 1}}`',
+        ),
+        (
+            'additional_env={"A": load()}, parameters=[{"a": {"c": 1}}]',
+            "not taken: Node:15: a variable of its environment is computed: `load()`",
+        ),
+        ('cwd=load(), parameters=[{"a": {"c": 1}}]', "not taken: Node:15: its folder is computed: `load()`"),
+        ('parameters=[{"a": {"c": 1}}], **load()', "not taken: call:15: arguments of it are computed"),
+    ],
+)
+def test_nothing_is_dropped_silently(body: str, expected: str, tmp_path: Path) -> None:
+    imported = read_python(
+        tmp_path, f'nodes = []\nreturn LaunchDescription([Node(package="p", executable="e", name="n", {body})])'
+    )
+    assert messages_of(imported) == [expected]
+    if "file" not in expected:
+        assert nodes_of(imported)["n"]["parameters"] == {"a": {"c": 1}}
+
+
+def test_places_are_counted_in_characters_of_the_right_file(tmp_path: Path) -> None:
+    helper = "VALUE = 1\n\f\nSPEED = compute()\n"
+    body = 'from helper import SPEED\nreturn LaunchDescription([LogInfo(msg="äöü"), Node(package="p", executable="e", parameters=[{"a": SPEED}])])'
+    imported = read_python(tmp_path, body, launch___helper__py=helper)
+    assert [(str(note.span), note.message) for note in imported.notes] == [
+        ("helper.py:3:1", "the parameter `a` is computed: `compute()`")
+    ]
+    imported = read_python(
+        tmp_path, 'return LaunchDescription([LogInfo(msg="äöü"), unset("x"), launch.actions.EmitEvent()])'
+    )
+    assert [note.span.column for note in imported.notes] == [1, 63]
