@@ -219,7 +219,7 @@ def record_hosts(
                 "connections": ends,
                 "remote": sorted(remote.values(), key=lambda each: places[each["id"]]),
                 "remote_sources": sorted(
-                    (remote[each] for each in {each["source_id"] for each in ends} if each in remote),
+                    (remote[each] for each in dict.fromkeys(each["source_id"] for each in ends) if each in remote),
                     key=lambda each: places[each["id"]],
                 ),
                 "ports": _list_joined_ports(each for each in ends if each["target_host"] == host),
