@@ -155,9 +155,9 @@ def test_records_travel_between_computers_in_orocos(tmp_path: Path) -> None:
     text = """\
 archgen: 1
 project: {id: p}
-types: {T: {fields: {x: {type: int64}, list: {type: "uint8[]"}}}}
+types: {T: {fields: {x: {type: int64}, list: {type: "uint8[]"}}}, Ask: {message: p_msgs/srv/Ask, request: {a: {type: int8}}}}
 hosts: {one: {}, two: {}}
-groups: {g: {components: {a: {outputs: {t: T}}, b: {inputs: {t: a.t}}}}}
+groups: {g: {components: {a: {outputs: {t: T, start: Ask}}, b: {inputs: {t: a.t, start: a.start}}}}}
 nodes: {a: {implements: g.a, host: one}, b: {implements: g.b, host: two}}
 """
     generate(write_project(tmp_path / "p", text), tmp_path / "w", "orocos")
@@ -167,3 +167,6 @@ nodes: {a: {implements: g.a, host: one}, b: {implements: g.b, host: two}}
         assert f'if (name == "{name}")' in files["src/transport.cpp"]
     assert 'type="CORBA"' not in files["deployment/one.cpf"]
     assert '<struct name="g_a" type="CORBA">' in files["deployment/two.cpf"]
+    # `connectOperations` of the deployer takes only what its own program has.
+    assert 'g_b.join_start("g_a", "start_");' in files["deployment/two.ops"]
+    assert "&GB::join_start, this, RTT::ClientThread" in files["src/g_b.cpp"]
