@@ -27,6 +27,8 @@ types:
   Map: {fields: {name: string, end: "float64[3]", more: {type: "float32[]", unit: m, comment: Cells}}}
 component_types:
   camera: {functionality: Sees., inputs: {}, outputs: {image: sensor_msgs/msg/Image}}
+  sieve: {functionality: Sifts., generic: [T], inputs: {in: T}, outputs: {out: T}}
+  ghost: {outputs: {image: sensor_msgs/msg/Image}}
 groups:
   sensing:
     title: Eyes
@@ -48,6 +50,7 @@ groups:
             internal_state: {schema: lidar.schema.json}
             threads: {publisher: {functions: {function: {source_text: [lidar.h], source_name: measure}}}}
       camera: {is: camera}
+      sieve: {is: sieve<scan>, inputs: {in: {from: sensing.clouds.scan}}}
       clouds: {role: source, inputs: {}, outputs: {scan: scan}}
   driving:
     description: Drives
@@ -98,7 +101,8 @@ properties: {mass: {unit: kg}}
 variants: {small: {without: driving.watcher}}
 """
 LOST = {
-    "component_types": ["/component_types", "/groups/sensing/components/camera/is"],
+    "component types that are generic": ["/component_types/sieve", "/groups/sensing/components/sieve/is"],
+    "without instances": ["/component_types/ghost"],
     "requirements": ["/requirements", "/groups/sensing/components/lidar/requirements"],
     "use cases": ["/use_cases"],
     "views": ["/views"],
@@ -118,21 +122,23 @@ LOST = {
     "what partners are called": ["/partners/lab/title"],
     "that a component has no inputs or no outputs": [
         *("/groups/driving/components/server/inputs", "/groups/driving/components/watcher/outputs"),
+        "/component_types/camera/inputs",
         *("/groups/sensing/components/clouds/inputs", "/groups/sensing/components/lidar/inputs"),
     ],
 }
 """What of the project does not come back, by the words of the page."""
 GAINED = {
     "a node for each component that is no device": [
-        f"/nodes/{name}" for name in ("camera", "clouds", "motor", "user", "watcher")
+        f"/nodes/{name}" for name in ("camera", "clouds", "motor", "sieve", "user", "watcher")
     ],
     "role and behaviour of the thread": [
         *(f"/groups/driving/components/arm/components/motor/{key}" for key in ("role", "timing")),
         *(f"/groups/driving/components/watcher/{key}" for key in ("role", "timing")),
+        *(f"/groups/sensing/components/sieve/{key}" for key in ("role", "timing")),
     ],
     "types and media of the ports of composed components": ["/groups/driving/components/arm/outputs/angle/type"],
-    "what instances have from their types": [
-        f"/groups/sensing/components/camera/{key}" for key in ("functionality", "outputs")
+    "what instances have from types that are written out": [
+        f"/groups/sensing/components/sieve/{key}" for key in ("functionality", "outputs")
     ],
 }
 
