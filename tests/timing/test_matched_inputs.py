@@ -108,6 +108,8 @@ def test_messages_of_one_job_match_at_once() -> None:
     stereo = event("stereo", 1, "left", "right", mode="match", within=0)
     analysis = analyse_system(system((camera, stereo), arcs))
     assert _ms(analysis.paces["stereo"].gap) == 50
+    # Each message has its match: the rate is that of the camera, and not at most that.
+    assert (analysis.paces["stereo"].rate.value, analysis.paces["stereo"].rate.side) == (20, "exact")
     assert {key: _ms(wait) for key, wait in analysis.matches["stereo"].waits.items()} == {"left": 0, "right": 0}
     assert [(_ms(fused.apart), _ms(fused.ages["left"])) for fused in find_fused_inputs(analysis)] == [(0, 3)]
 

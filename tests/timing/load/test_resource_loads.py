@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.timing.printed import show
+from tests.timing.printed import show, show_ms
 from tests.timing.sketches import analyse_sketch
 
 HOST = "hosts: {pc: {cores: 4}}\nresources: {gpu: {host: pc}}"
@@ -31,3 +31,12 @@ def test_a_user_whose_rate_nobody_knows_leaves_the_load_open() -> None:
     assert gpu.verdict == "unknown"
     assert dict(gpu.shares)["a"].value == pytest.approx(0.02)
     assert dict(gpu.shares)["b"].value is None
+
+
+def test_a_use_waits_for_one_of_each_other_user() -> None:
+    nodes = {
+        "a @pc": "rate: 10 Hz, wcet: 1 ms, uses: {gpu: 2 ms}",
+        "b @pc": "rate: 10 Hz, wcet: 1 ms, uses: {gpu: 3 ms}",
+    }
+    gpu = analyse_sketch(nodes, "", HOST).resources["gpu"]
+    assert {name: show_ms(wait) for name, wait in gpu.waits.items()} == {"a": "5", "b": "5"}
