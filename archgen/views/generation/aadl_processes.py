@@ -89,6 +89,8 @@ class Process:
         """The names of its threads by the complete ids of the components."""
         self.connections: list[dict[str, Any]] = []
         self.flows: list[dict[str, Any]] = []
+        self.flow_names: dict[tuple[str, str], str] = {}
+        """By texts and properties. Instances of one component type have it in common, for it has the flows of all."""
         self.thread_classifiers: list[dict[str, Any]] = []
         self._architecture = architecture
         self._endpoints = endpoints
@@ -229,6 +231,19 @@ class Process:
         if part.key not in self.features:
             name = self.features[part.key] = self.names.take_name(part.name)
             self.feature_items.append(make_item(name, part.text, [make_property("archgen::Is_Call", "true")]))
+
+    def add_flow(self, wanted_name: str, text: str, properties: list[AadlProperty]) -> str:
+        """Add a flow, if it is not there yet; return its name. One with other properties is another flow."""
+        key = (text, str(properties))
+        if key not in self.flow_names:
+            name, number = wanted_name, 2
+            while name in self.flow_names.values():
+                name, number = f"{wanted_name}_{number}", number + 1
+            self.flow_names[key] = self.names.take_name(name)
+        name = self.flow_names[key]
+        if not any(each["name"] == name for each in self.flows):
+            self.flows.append(make_item(name, text, properties))
+        return name
 
     def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
         """Join the ports of two components that this node implements."""

@@ -37,10 +37,13 @@ class ProgramBook:
         endpoints: dict[str, list[Endpoint]] = {}
         for endpoint in architecture.list_endpoints():
             endpoints.setdefault(endpoint.node, []).append(endpoint)
+        flow_names: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
         for node in context.wanted_nodes.values():
             kind, own_endpoints = kinds[node.id], endpoints.get(node.id, ())
             names = self._package_names[kind.category]
-            self.processes[node.id] = kind(architecture, types, node, own_endpoints, names)
+            process = self.processes[node.id] = kind(architecture, types, node, own_endpoints, names)
+            if declared := find_type(architecture, node):
+                process.flow_names = flow_names.setdefault((kind.category, declared.id), process.flow_names)
 
     def write_types(self, packages: Mapping[str, str]) -> None:
         """Write component types into the packages, which are given by category, and make their instances of them."""
