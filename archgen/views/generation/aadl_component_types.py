@@ -73,7 +73,7 @@ def _select_alike(processes: Sequence[Process]) -> list[Process]:
     texts: dict[tuple[str, str], str] = {}
     for process, own_shape in zip(processes, shapes, strict=True):
         own_texts = {("feature", each["name"]): each["text"] for each in process.feature_items}
-        own_texts |= {("flow", each["name"]): each["text"] for each in process.flows}
+        own_texts |= {("flow", each["name"]): f"{each['text']} {each['properties']}" for each in process.flows}
         if own_shape == shape and all(texts.get(key, text) == text for key, text in own_texts.items()):
             alike.append(process)
             texts |= own_texts
@@ -179,10 +179,9 @@ class TypeWriter:
         for process in self._shared.instances:
             for each in process.feature_items if section == "features" else process.flows:
                 if each["name"] not in items:
-                    properties = self._list_common(section, each["name"])
+                    is_whole = section == "flows" or _is_extra(each)
+                    properties = each["properties"] if is_whole else self._list_common(section, each["name"])
                     items[each["name"]] = make_item(each["name"], each["text"], properties)
-                    if _is_extra(each):
-                        items[each["name"]]["properties"] = each["properties"]
         return list(items.values())
 
     def _list_common(self, section: str, path: str | None = None) -> list[AadlProperty]:
@@ -197,9 +196,8 @@ def _list_said(process: Process) -> Iterator[tuple[_Key, str]]:
     """Yield all properties of a process with their values."""
     for each in process.list_words():
         yield ("words", "", each["name"]), each["value"]
-    for section, items in (("features", process.feature_items), ("flows", process.flows)):
-        for item in items:
-            for each in () if _is_extra(item) else item["properties"]:
-                yield (section, item["name"], each["name"]), each["value"]
+    for item in process.feature_items:
+        for each in () if _is_extra(item) else item["properties"]:
+            yield ("features", item["name"], each["name"]), each["value"]
     for each in process.properties:
         yield ("inside", each["applies_to"], each["name"]), each["value"]
