@@ -13,7 +13,7 @@ from archgen.cli import main as verbs
 from archgen.pipeline import CheckedProject, check_project
 from archgen.start import project_plan, start_answers, starter_slices
 from tests.property_sizes import count_examples
-from tests.running import RAMCIP, ROOT, archgen
+from tests.running import RAMCIP, ROOT, archgen_here
 
 FIRST = ROOT / "examples" / "first_robot"
 
@@ -115,7 +115,7 @@ def test_what_archgen_list_writes_comes_back() -> None:
 
 
 def test_connections_as_listed_come_back(tmp_path: Path) -> None:
-    table = archgen("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
+    table = archgen_here("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
     before, after = (
         check_project(FIRST).architecture,
         made(importers.import_tables([("c.csv", table)], "jazzy")).architecture,

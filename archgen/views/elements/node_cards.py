@@ -8,7 +8,13 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, name_medium, name_on_medium
 from archgen.views import inline_text
-from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, format_findings, known_facts
+from archgen.views.elements.card_parts import (
+    ElementCard,
+    drop_empty_lists,
+    format_fact,
+    known_facts,
+    list_finding_lines,
+)
 from archgen.views.elements.parameter_blocks import list_effective_lines
 from archgen.views.lookup import Lookup
 from archgen.views.start_phrases import describe_start
@@ -44,7 +50,7 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
     lists = (
         ("topics, services and actions", lines),
         *drop_empty_lists(("parameters", tuple(list_effective_lines(lookup, node)))),
-        ("findings", tuple(format_findings(lookup, node.id))),
+        ("findings", tuple(list_finding_lines(lookup, node.id))),
     )
     return ElementCard("node", node.id, node.title, node.at, known_facts(facts), lists)
 

@@ -71,7 +71,7 @@ def share_cell(value: TimingValue) -> Inlines:
     return figure_cell(value_format.display_share(value), value)
 
 
-def size_cell(value: TimingValue) -> Inlines:
+def byte_cell(value: TimingValue) -> Inlines:
     """Return a table cell for a number of bytes."""
     return figure_cell(value_format.display_bytes(value), value)
 
@@ -231,7 +231,7 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
             inline_text.to_inlines(Text(lookup.architecture.links[name].title, ref=f"link:{name}")),
             traffic_cell(load.traffic),
             share_cell(load.share),
-            size_cell(load.burst),
+            byte_cell(load.burst),
             duration_cell(load.queueing),
             inline_text.to_inlines(value_format.describe_missing(load.traffic, timing_lookup.analysis, 3)),
         )
@@ -259,7 +259,7 @@ def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table |
     rows = tuple(
         (
             inline_text.to_inlines(inline_text.topic_link(name)),
-            size_cell(topic_loads[name].size),
+            byte_cell(topic_loads[name].size),
             traffic_cell(topic_loads[name].published),
             traffic_cell(topic_loads[name].delivered),
         )
