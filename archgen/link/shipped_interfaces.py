@@ -30,7 +30,7 @@ class LazyInterfaces(Mapping[str, Interface]):
 
     def __getitem__(self, name: str) -> Interface:
         """Return the definition of `package/msg/Name`; raise KeyError where there is none."""
-        definition = self.get(name)
+        definition: Interface | None = self.get(name)
         if definition is None:
             raise KeyError(name)
         return definition
