@@ -95,14 +95,9 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["XDG_CACHE_HOME"] = cache_folder
         config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
-    _share_costly_things(config)
+    # It reads where the cache is.
+    from tests import kept_workers
 
-
-def _share_costly_things(config: pytest.Config) -> None:
-    """Share between tests what takes long and comes out the same each time."""
-    from tests import judged_projects, kept_workers
-
-    judged_projects.judge_shipped_once()
     kept_workers.keep_workers(config)
 
 

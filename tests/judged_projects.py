@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from unittest.mock import patch
 
 from archgen import pipeline
 from archgen.checking.checked_project import CheckedProject
-from tests.running import RAMCIP, ROOT
 
-_SHIPPED_FOLDERS = (RAMCIP, ROOT / "examples")
+_ROOT = Path(__file__).resolve().parents[1]
+_RAMCIP = _ROOT / "example_ramcip"
+_SHIPPED_FOLDERS = (_RAMCIP, _ROOT / "examples")
 _Key = tuple[object, ...]
 _JUDGED: dict[_Key, CheckedProject] = {}
 _check_project = pipeline.check_project
 
 
-def judge_shipped_once() -> None:
-    """Have `pipeline.check_project` judge a shipped project again only if it changed. Others it judges each time."""
-    pipeline.check_project = _check_once
+@functools.cache
+def judge_ramcip() -> CheckedProject:
+    """Judge the case study, once for all tests of this process that read what comes out."""
+    return _check_project(_RAMCIP)
+
+
+@contextmanager
+def judge_shipped_once() -> Iterator[None]:
+    """Have verbs judge a shipped project again only if it changed. Others they judge each time."""
+    with patch.object(pipeline, "check_project", _check_once):
+        yield
 
 
 def _check_once(

@@ -14,6 +14,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from archgen.__main__ import main
+from tests.judged_projects import judge_shipped_once
 
 ROOT = Path(__file__).resolve().parents[1]
 RAMCIP = ROOT / "example_ramcip"
@@ -52,6 +53,7 @@ def archgen_here(
         for name in ("FORCE_COLOR", "GITHUB_WORKSPACE"):
             os.environ.pop(name, None)
         stack.enter_context(chdir(cwd))
+        stack.enter_context(judge_shipped_once())
         stack.enter_context(patch.object(sys, "argv", command))
         streams = [io.TextIOWrapper(stream, encoding="utf-8") for stream in (out, err)]
         stack.enter_context(redirect_stdout(streams[0]))

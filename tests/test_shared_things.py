@@ -47,10 +47,12 @@ def test_a_process_is_given_back_unless_it_broke(tmp_path: Path) -> None:
 def test_a_project_is_judged_again_where_it_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(judged_projects, "_SHIPPED_FOLDERS", (tmp_path,))
     (tmp_path / "archgen.yaml").write_text(PROJECT, "utf-8")
-    first = pipeline.check_project(tmp_path)
-    assert pipeline.check_project(tmp_path) is first
-    (tmp_path / "archgen.yaml").write_text(PROJECT.replace("a.p", "a.o"), "utf-8")
-    assert pipeline.check_project(tmp_path).findings != first.findings
+    with judged_projects.judge_shipped_once():
+        first = pipeline.check_project(tmp_path)
+        assert pipeline.check_project(tmp_path) is first
+        (tmp_path / "archgen.yaml").write_text(PROJECT.replace("a.p", "a.o"), "utf-8")
+        assert pipeline.check_project(tmp_path).findings != first.findings
+    assert pipeline.check_project(tmp_path) is not pipeline.check_project(tmp_path)
 
 
 def test_a_verb_says_here_what_it_says_in_a_process_of_its_own(tmp_path: Path) -> None:

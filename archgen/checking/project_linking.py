@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen import compose, derivation, link
 from archgen.checking.interface_loading import load_project_interfaces
 from archgen.checking.merged_project import MergedProject
-from archgen.compose.project_expansion import ExpandedProject
+from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, replace

@@ -7,6 +7,7 @@ from typing import Any
 
 from archgen.pipeline import check_project
 from tests.generators.test_xmi_export import check_model, export, import_back, list_facts, list_names
+from tests.running import archgen_here
 
 GENERICS = """\
 archgen: 1
@@ -77,3 +78,10 @@ def test_a_selection_has_the_generic_types_of_its_components(tmp_path: Path) -> 
     (tmp_path / "archgen.yaml").write_text(GENERICS, encoding="utf-8")
     root = check_model(export(check_project(tmp_path), "long"))
     assert {*list_names(root, "Class")} == {"Filter", "Chain", "Filter<X>", "Chain<Twist>", "T", "X"}
+
+
+def test_a_project_without_component_types_has_no_classes_and_says_so(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text("project: {id: lab}\ntypes: {Image: {}}\n", encoding="utf-8")
+    done = archgen_here("export", "xmi", "--select", "type:", cwd=tmp_path)
+    assert b"there are no component types here: the model holds no class" in done.stderr
+    assert list_names(check_model(done.stdout.decode()), "Class") == []

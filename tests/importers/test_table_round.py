@@ -12,6 +12,7 @@ from archgen import importers
 from archgen.cli import main as verbs
 from archgen.pipeline import CheckedProject, check_project
 from archgen.start import project_plan, start_answers, starter_slices
+from tests.judged_projects import judge_ramcip
 from tests.property_sizes import count_examples
 from tests.running import RAMCIP, ROOT, archgen_here
 
@@ -99,7 +100,7 @@ def test_what_archgen_list_writes_comes_back() -> None:
         told.append((f"{sort}.csv", listed.stdout_bytes))
     found = importers.import_tables(told, "jazzy")
     assert found.diagnostics == ()
-    before, after = check_project(RAMCIP).architecture, made(found).architecture
+    before, after = judge_ramcip().architecture, made(found).architecture
     assert {(e.output, e.input) for e in after.edges} == {(e.output, e.input) for e in before.edges}
     assert {c.id: (c.title, c.owner, c.role) for c in after.components.values()} == {
         c.id: (c.title, c.owner, c.role) for c in before.components.values()

@@ -93,7 +93,7 @@ class ComponentBuilder:
         body: Body = read_component_words(scope)
         for part in structure.parts.values():
             if part.structure:
-                inner = self.build_overlay(part.structure, scope.go_into(part.part, None))
+                inner = self.build_overlay(part.structure, scope.go_below(part.part))
                 if inner:
                     body.setdefault("components", {})[part.id] = inner
         for port in structure.ports.ports:

@@ -52,7 +52,7 @@ class DataTypes:
             self._generic_names[name] = names
             self._ledger.take(signature)
         else:
-            words = f"`{name[:80]}` is no generic type: its template's parameters need a name each, of their own"
+            words = f"`{name[:80]}` is no generic type: its template's parameters need a name each, as `T`"
             self._ledger.leave(signature, words)
 
     def _read_fields(self, type_name: str, element: XmlElement) -> dict[str, dict[str, object]] | None:

@@ -13,13 +13,14 @@ from archgen.importers.xmi.uml_values import find_field_type, name_referenced
 SIGNATURE_KINDS = ("TemplateSignature", "RedefinableTemplateSignature")
 _PARAMETER_KINDS = ("ClassifierTemplateParameter", "TemplateParameter", "Parameter")
 _BOUND_PREFIX = f"{OWN_PREFIX}bound."
-_GENERIC_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,60}\Z")
+_GENERIC_NAME = re.compile(r"[A-Z][A-Za-z0-9]{0,63}\Z")
+"""As the language has it. Numbers that C++ hands to a template have other names, and are no types."""
 TypeArguments = tuple[str, ...]
 """What the generic names of a template stand for, in their order; none where it is no template."""
 
 
 def read_generic_names(index: UmlIndex, signature: XmlElement) -> tuple[str, ...]:
-    """Return the names of a template that stand for types; none where some have no name, or two the same."""
+    """Return the names of a template that stand for types; none where some are no names of types, or two the same."""
     formals = list_children(signature, *_PARAMETER_KINDS)
     references = [index.find_reference(each, "parameteredElement", "ownedParameteredElement") for each in formals]
     names = tuple(each.name if each else "" for each in references)
@@ -51,9 +52,7 @@ class TemplateClasses:
     def _read_signature(self, owner: XmlElement, signature: XmlElement) -> None:
         names = read_generic_names(self._index, signature)
         if not names or owner in self.generic_names:
-            words = (
-                f"{call(owner)} is no generic component type: its template's parameters need a name each, of their own"
-            )
+            words = f"{call(owner)} is no generic component type: its template's parameters need a name each, as `T`"
             self._ledger.leave(signature, words)
             return
         self.generic_names[owner] = names

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.port_media import uses_ros, word_of_medium
-from archgen.views import inline_text
+from archgen.views import timing_words
 from archgen.views.elements import promise_words
 from archgen.views.elements.card_parts import (
     ElementCard,
@@ -40,7 +40,7 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
         ("role", component.role or "?"),
         ("functionality", " ".join((component.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in component.requirements)),
-        ("timing", inline_text.format_short_timing(component.timing)),
+        ("timing", timing_words.format_short_timing(component.timing)),
         ("tags", ", ".join(component.tags)),
     ]
     architecture = lookup.architecture
@@ -83,7 +83,7 @@ def make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         ("owner", ", ".join(shell.owners) or "?"),
         ("functionality", " ".join((shell.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in shell.requirements)),
-        ("timing", inline_text.format_timing_sentence(shell.timing)),
+        ("timing", timing_words.format_timing_sentence(shell.timing)),
         ("worst way", "".join(run.text for run in make_whole_fact(lookup, shell.id))),
         ("tags", ", ".join(shell.tags)),
     ]

@@ -9,7 +9,7 @@ from archgen.model.component import Component, Group
 from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.parameter import format_parameter
-from archgen.views import inline_text
+from archgen.views import timing_words
 from archgen.views.elements import promise_words
 from archgen.views.elements.card_parts import (
     ElementCard,
@@ -105,7 +105,7 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
         ]
     elif kind in {"host", "container"}:
         if kind == "host":
-            facts.append(("scheduling", inline_text.format_core_orders(element)))
+            facts.append(("scheduling", timing_words.format_core_orders(element)))
         else:
             facts += _list_process_facts(element)
         # `kind` names the node's field here: `Node.host` or `Node.container`.

@@ -11,10 +11,11 @@ from archgen.model.node import Node
 from archgen.model.port_media import is_physical
 from archgen.views.generation.aadl_behaviours import Behaviour
 from archgen.views.generation.aadl_hints import list_own_sources
-from archgen.views.generation.aadl_processes import Process, list_component_words
+from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
+    list_component_words,
     make_classifier,
     make_item,
     make_named_properties,

@@ -22,8 +22,9 @@ from archgen.views.generation.aadl_ports import PortPart, find_outer_port
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
+    FlowBook,
     NameSpace,
-    list_tags,
+    list_component_words,
     make_classifier,
     make_item,
     make_named_properties,
@@ -89,8 +90,8 @@ class Process:
         """The names of its threads by the complete ids of the components."""
         self.connections: list[dict[str, Any]] = []
         self.flows: list[dict[str, Any]] = []
-        self.flow_names: dict[tuple[str, str], str] = {}
-        """By texts and properties. Instances of one component type have it in common, for it has the flows of all."""
+        self.flow_book = FlowBook()
+        """Instances of one component type have it in common, for the type has the flows of all."""
         self.thread_classifiers: list[dict[str, Any]] = []
         self._architecture = architecture
         self._endpoints = endpoints
@@ -235,12 +236,10 @@ class Process:
     def add_flow(self, wanted_name: str, text: str, properties: list[AadlProperty]) -> str:
         """Add a flow, if it is not there yet; return its name. One with other properties is another flow."""
         key = (text, str(properties))
-        if key not in self.flow_names:
-            name, number = wanted_name, 2
-            while name in self.flow_names.values():
-                name, number = f"{wanted_name}_{number}", number + 1
-            self.flow_names[key] = self.names.take_name(name)
-        name = self.flow_names[key]
+        if key not in self.flow_book.names:
+            name = self.flow_book.space.take_name(wanted_name)
+            self.flow_book.names[key] = self.names.take_name(name)
+        name = self.flow_book.names[key]
         if not any(each["name"] == name for each in self.flows):
             self.flows.append(make_item(name, text, properties))
         return name
@@ -287,14 +286,3 @@ class Process:
             subcomponents=self.subcomponents, connections=self.connections, properties=self.properties
         )
         return [*self.thread_classifiers, own_type, implementation]
-
-
-def list_component_words(element: Component | Node, role: str | None, owner: str | None) -> list[AadlProperty]:
-    """Return what a component says of itself beside its ports and timing."""
-    texts = make_text_properties(
-        description=element.description,
-        functionality=element.functionality if isinstance(element, Component) else None,
-        role=role,
-        owner=owner,
-    )
-    return [*texts, *(list_tags(element) if isinstance(element, Component) else [])]

@@ -10,7 +10,7 @@ from archgen.views.generation.aadl_component_types import TypeWriter, find_type,
 from archgen.views.generation.aadl_devices import Device, is_device
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_types import TypeBook
-from archgen.views.generation.aadl_words import NameSpace
+from archgen.views.generation.aadl_words import FlowBook, NameSpace
 from archgen.views.generation.generation_context import GenerationContext
 
 
@@ -37,13 +37,13 @@ class ProgramBook:
         endpoints: dict[str, list[Endpoint]] = {}
         for endpoint in architecture.list_endpoints():
             endpoints.setdefault(endpoint.node, []).append(endpoint)
-        flow_names: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
+        flow_books: dict[tuple[str, str], FlowBook] = {}
         for node in context.wanted_nodes.values():
             kind, own_endpoints = kinds[node.id], endpoints.get(node.id, ())
             names = self._package_names[kind.category]
             process = self.processes[node.id] = kind(architecture, types, node, own_endpoints, names)
             if declared := find_type(architecture, node):
-                process.flow_names = flow_names.setdefault((kind.category, declared.id), process.flow_names)
+                process.flow_book = flow_books.setdefault((kind.category, declared.id), process.flow_book)
 
     def write_types(self, packages: Mapping[str, str]) -> None:
         """Write component types into the packages, which are given by category, and make their instances of them."""

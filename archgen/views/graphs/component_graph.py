@@ -19,9 +19,10 @@ from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_flows import add_notes, flow_style, join_type_names, name_media, port_style
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.inline_text import count_noun, format_short_timing
+from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.port_warnings import warn_of_outputs
+from archgen.views.timing_words import format_short_timing
 
 DrawnNeighbour = tuple[Box, Arrow]
 _CALLS = {"service", "action"}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from archgen.timing.analysis import EventPace, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
-from archgen.views import element_references, inline_text
+from archgen.views import element_references, inline_text, timing_words
 from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
@@ -140,7 +140,7 @@ def _activity_row(
     response = timing_lookup.analysis.responses.get(activity.id)
     return (
         activity_link(timing_lookup, activity.id),
-        inline_text.to_inlines(inline_text.BEHAVIOUR_WORDS[pace.behaviour]) if pace.behaviour else (_MUTED_UNKNOWN,),
+        inline_text.to_inlines(timing_words.BEHAVIOUR_WORDS[pace.behaviour]) if pace.behaviour else (_MUTED_UNKNOWN,),
         figure_cell(_format_shown_rate(pace), pace.rate),
         # What runs on demand or once has no longest gap: nothing promises a next activation.
         duration_cell(pace.gap) if pace.behaviour not in {"on_demand", "once"} else (),

@@ -52,10 +52,11 @@ def test_without_a_binding_nothing_is_made_from_a_template(tmp_path: Path, bindi
     assert len([each for each in tell_notes(imported) if "uml:TemplateBinding" in each]) == bool(binding)
 
 
-def test_a_template_without_names_is_noted(tmp_path: Path) -> None:
-    imported = read_model(tmp_path, FILTER.replace('name="T" ', ""))
+@pytest.mark.parametrize("name", ["", 'name="maxSize" ', 'name="T_1" '])
+def test_a_template_without_names_for_types_is_noted(tmp_path: Path, name: str) -> None:
+    imported = read_model(tmp_path, FILTER.replace('name="T" ', name))
     assert "generic" not in merge_sections(imported)["groups"]["lab"]["components"]["filter"]
-    assert any("its template's parameters need a name each, of their own" in each for each in tell_notes(imported))
+    assert any("its template's parameters need a name each, as `T`" in each for each in tell_notes(imported))
 
 
 def test_a_component_bound_to_itself_is_no_circle(tmp_path: Path) -> None:
