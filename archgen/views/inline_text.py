@@ -37,6 +37,9 @@ def share_text(text: str, ref: str | None = None, *, code: bool = False) -> Text
 
 def to_inlines(*parts: str | Text) -> Inlines:
     """Turn strings and ready `Text` runs into one sequence of inlines."""
+    if len(parts) == 1:  # most have one
+        (part,) = parts
+        return (share_text(part) if isinstance(part, str) else part,)
     return tuple([share_text(part) if isinstance(part, str) else part for part in parts])
 
 
@@ -67,8 +70,11 @@ def count_to_inlines(count: int | None) -> Inlines:
 
 def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     """Join inlines with a separator, as `str.join` does."""
+    runs = list(items)
+    if len(runs) <= 1:  # most are one: an owner, a requirement, a reader
+        return runs[0] if runs else ()
     between = share_text(separator)
-    return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(items)]))
+    return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(runs)]))
 
 
 def join_lines(items: Iterable[Inlines]) -> Inlines:
