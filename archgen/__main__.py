@@ -51,6 +51,8 @@ def _run_verb() -> None:
         try:
             sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
         finally:
+            # At its end Python looks through all objects for garbage, whether or not it did so before: a tenth of a check.
+            gc.freeze()
             sys.stdout.flush()  # here, so that a closed pipe or a full disk is still handled by the caller
     except click.ClickException as error:
         error.show()

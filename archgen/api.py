@@ -169,7 +169,7 @@ class Project:
             raise ValueError(msg)
         issue_date = agreement_documents.parse_issue_date(date) if date else None
         earlier_version = (
-            signed_agreements.read_version_before(since, self.checked, self._source_path()) if since else None
+            signed_agreements.read_agreed_version(since, self.checked, self._source_path()) if since else None
         )
         agreement_documents.write_agreement(
             agreement_documents.make_project_agreement(

@@ -15,6 +15,7 @@ import pytest
 
 from archgen.derivation import derive_low_level
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.emit.graphviz import worker_pool
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
@@ -94,6 +95,10 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["XDG_CACHE_HOME"] = cache_folder
         config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
+    # It reads where the cache is.
+    from tests import kept_workers
+
+    kept_workers.keep_workers(config)
 
 
 def pytest_collection_finish() -> None:
@@ -111,6 +116,14 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
         archgen("build", RAMCIP, "--backend", "wiki", "--revision", REVISION, "--no-history", "-o", folder, cwd=place)
 
     return made_once(place / "ramcip", make)
+
+
+@pytest.fixture
+def fresh_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw in processes that start and end with each build, as users have them."""
+    from tests.kept_workers import KeptWorker
+
+    monkeypatch.setattr(worker_pool, "DrawingWorker", KeptWorker.__base__)
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,10 @@ others, which may open browsers or build sites, run in `make test` anyway.
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator
+import json
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -17,6 +20,10 @@ from coverage.exceptions import DataError
 
 LEAST_EXECUTED_SHARE = 0.4
 """The share of the lines in a module's functions that its test must execute."""
+WANTED_FILE = "wanted.json"
+"""Beside coverage's data: the measured files by the file of tests that is to execute them."""
+CONTEXT_VARIABLE = "ARCHGEN_RUNNING_TEST"
+"""By this variable a process that a test starts knows for which file of tests it runs."""
 
 
 def executed_share(measured: Coverage, file: str, executed: Iterable[int]) -> float:
@@ -42,18 +49,26 @@ def _function_bodies(tree: ast.Module) -> Iterator[tuple[int, int]]:
 
 
 class LeaveTheRestOut:
-    """Watches which lines this process and those that it started have executed so far."""
+    """Watches which lines this process and those that it started have executed so far, for each file of tests.
 
-    def __init__(self, measured: Coverage) -> None:
+    What is executed counts for the file whose tests run just then: coverage calls that a context.
+    """
+
+    def __init__(self, measured: Coverage, measured_files: Mapping[str, Sequence[str]]) -> None:
         self._measured = measured
-        files = measured.get_option("run:include")
-        assert isinstance(files, list)
-        self._lines_by_file: dict[str, set[int]] = {file: set() for file in files}
+        self._lines_by_test = {
+            test: {file: set[int]() for file in files} for test, files in sorted(measured_files.items())
+        }
         self._read_already: set[Path] = set()
+        self._running_test = ""
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_runtest_protocol(self) -> bool | None:
+    def pytest_runtest_protocol(self, item: pytest.Item) -> bool | None:
         """Say that a test has been run, if enough was executed before it."""
+        test = item.nodeid.partition("::")[0]
+        if test != self._running_test:
+            self._running_test = os.environ[CONTEXT_VARIABLE] = test
+            self._measured.switch_context(test)
         return True if self._is_enough() else None
 
     def _is_enough(self) -> bool:
@@ -71,16 +86,24 @@ class LeaveTheRestOut:
             self._read_already.add(file)
         return all(
             executed_share(self._measured, file, lines) >= LEAST_EXECUTED_SHARE
-            for file, lines in self._lines_by_file.items()
+            for file, lines in self._lines_by_test[self._running_test].items()
         )
 
     def _take_lines(self, data: CoverageData) -> None:
-        for file, lines in self._lines_by_file.items():
+        choose_context(data, self._running_test if len(self._lines_by_test) > 1 else None)
+        for file, lines in self._lines_by_test[self._running_test].items():
             lines.update(data.lines(file) or ())
+        choose_context(data, None)
+
+
+def choose_context(data: CoverageData, test: str | None) -> None:
+    """Ask only for what was executed while a file's tests ran; None is all, also what its import executed."""
+    data.set_query_contexts([f"^{re.escape(test)}$"] if test else None)
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Watch, where this process is measured."""
     measured = Coverage.current()
     assert measured is not None, "coverage begins by the variable COVERAGE_PROCESS_START"
-    config.pluginmanager.register(LeaveTheRestOut(measured))
+    wanted = Path(str(measured.get_option("run:data_file"))).with_name(WANTED_FILE)
+    config.pluginmanager.register(LeaveTheRestOut(measured, json.loads(wanted.read_text(encoding="utf-8"))))

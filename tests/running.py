@@ -1,14 +1,20 @@
-"""The command line as users have it: whole processes, away from the checkout."""
+"""The command line as users have it: whole processes, away from the checkout, or, which is cheaper, in this process."""
 
 from __future__ import annotations
 
 import fcntl
+import gc
+import io
 import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, chdir, contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
+from unittest.mock import patch
+
+from archgen.__main__ import main
+from tests.judged_projects import judge_shipped_once
 
 ROOT = Path(__file__).resolve().parents[1]
 RAMCIP = ROOT / "example_ramcip"
@@ -29,8 +35,45 @@ def archgen(
     done = subprocess.run(  # noqa: S603 - our own program
         command, cwd=cwd, env=environment, input=stdin, capture_output=True, check=False, timeout=1800
     )
+    return _demand_status(done, status)
+
+
+def archgen_here(
+    *words: str | Path, cwd: Path, status: int = 0, env: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[bytes]:
+    """Run a verb as `archgen` does, but in this process, where all is imported and shipped projects are judged already.
+
+    For tests of what a verb writes or says. What it imports, its streams, locale and settings of Python need a process.
+    """
+    command = ["archgen", *map(str, words)]
+    out, err = io.BytesIO(), io.BytesIO()
+    was_collecting = gc.isenabled()
+    with ExitStack() as stack:
+        stack.enter_context(patch.dict(os.environ, {"COLUMNS": "", **(env or {})}))
+        for name in ("FORCE_COLOR", "GITHUB_WORKSPACE"):
+            os.environ.pop(name, None)
+        stack.enter_context(chdir(cwd))
+        stack.enter_context(judge_shipped_once())
+        stack.enter_context(patch.object(sys, "argv", command))
+        streams = [io.TextIOWrapper(stream, encoding="utf-8") for stream in (out, err)]
+        stack.enter_context(redirect_stdout(streams[0]))
+        stack.enter_context(redirect_stderr(streams[1]))
+        left = 0
+        try:
+            main()
+        except SystemExit as stop:
+            left = stop.code if isinstance(stop.code, int) else 0
+        finally:
+            if was_collecting:
+                gc.enable()
+        for stream in streams:
+            stream.flush()
+        return _demand_status(subprocess.CompletedProcess(command, left, out.getvalue(), err.getvalue()), status)
+
+
+def _demand_status(done: subprocess.CompletedProcess[bytes], status: int) -> subprocess.CompletedProcess[bytes]:
     said = f"{done.stdout.decode()[-2000:]}\n{done.stderr.decode()[-4000:]}"
-    assert done.returncode == status, f"{' '.join(command[2:])} ended with {done.returncode}:\n{said}"
+    assert done.returncode == status, f"{' '.join(map(str, done.args))} ended with {done.returncode}:\n{said}"
     return done
 
 

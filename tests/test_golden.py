@@ -15,7 +15,7 @@ import pytest
 from tests import readable
 from tests.generators.middleware_projects import HEADLAMP
 from tests.generators.test_ros2_cpp import ROBOT
-from tests.running import RAMCIP, REVISION, ROOT, archgen, contents
+from tests.running import RAMCIP, REVISION, ROOT, archgen_here, contents
 
 GOLDEN = ROOT / "tests" / "golden"
 PAGES = (
@@ -33,7 +33,7 @@ def said(*words: str | Path) -> Callable[[Path], Files]:
     """Make the function that gives what a verb prints. It runs beside the project, which is named by its folder."""
 
     def printed(_: Path) -> Files:
-        return {"": archgen(*words, cwd=ROOT).stdout}
+        return {"": archgen_here(*words, cwd=ROOT).stdout}
 
     return printed
 
@@ -49,7 +49,7 @@ def written(path: str) -> Callable[[Path], Files]:
 
 
 def resolved(built: Path) -> Files:
-    archgen("pack", RAMCIP, "--resolved", "-o", built.parent / "resolved.yaml", cwd=built.parent)
+    archgen_here("pack", RAMCIP, "--resolved", "-o", built.parent / "resolved.yaml", cwd=built.parent)
     return {"": (built.parent / "resolved.yaml").read_bytes()}
 
 
@@ -69,7 +69,7 @@ def site(built: Path) -> Files:
 
 def neighbours(_: Path) -> Files:
     names = ("d2", "graphml", "mermaid", "plantuml", "structurizr", "xmi")
-    return {name: archgen("export", name, "-C", "example_ramcip", cwd=ROOT).stdout for name in names}
+    return {name: archgen_here("export", name, "-C", "example_ramcip", cwd=ROOT).stdout for name in names}
 
 
 def cpp_packages(built: Path) -> Files:
@@ -77,7 +77,7 @@ def cpp_packages(built: Path) -> Files:
     folder = built.parent / "cpp"
     folder.mkdir(exist_ok=True)
     (folder / "archgen.yaml").write_text(ROBOT, encoding="utf-8")
-    archgen("generate", "ros2_cpp", "-o", folder / "ws", cwd=folder)
+    archgen_here("generate", "ros2_cpp", "-o", folder / "ws", cwd=folder)
     return {name: data for name, data in contents(folder / "ws").items() if not name.startswith(".")}
 
 
@@ -88,7 +88,7 @@ def simulations(built: Path) -> Files:
     texts: Files = {}
     for backend in ("java", "python_simulation"):
         folder = built.parent / backend
-        archgen("generate", backend, "-o", folder, cwd=ROOT / "examples" / "cleaning_robot")
+        archgen_here("generate", backend, "-o", folder, cwd=ROOT / "examples" / "cleaning_robot")
         made = {name: data for name, data in contents(folder).items() if not name.startswith(".")}
         parts = (f"==== {name}\n".encode() + (b"" if "runtime/" in name else data) for name, data in made.items())
         texts[f"{backend}.txt"] = b"".join(parts)
@@ -102,7 +102,7 @@ def middlewares(built: Path) -> Files:
     folder.mkdir(exist_ok=True)
     (folder / "archgen.yaml").write_text(HEADLAMP, encoding="utf-8")
     for backend in ("openrtm", "orocos", "player"):
-        archgen("generate", backend, "-o", folder / backend, cwd=folder)
+        archgen_here("generate", backend, "-o", folder / backend, cwd=folder)
         made = {name: data for name, data in contents(folder / backend).items() if not name.startswith(".")}
         texts[f"{backend}.txt"] = b"".join(f"==== {name}\n".encode() + data for name, data in made.items())
     return texts

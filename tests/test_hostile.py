@@ -26,7 +26,7 @@ from tests import hostile
 from tests.browser_pages import launch_chromium
 from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
-from tests.running import archgen, contents, made_once
+from tests.running import archgen_here, contents, made_once
 
 WORDS = tuple(hostile.TEXTS)
 SCHEMES = {"http", "https", "mailto"}
@@ -50,7 +50,7 @@ def make(folder: Path, text: str) -> None:
     (folder / "project").mkdir(parents=True)
     (folder / "project" / "archgen.yaml").write_text(hostile.written(hostile.project(text)), encoding="utf-8")
     outputs = ("--backend", "wiki", "--revision", text[:80].replace("\0", ""), "-o", "../out")
-    done = archgen("build", *outputs, cwd=folder / "project", env={"XDG_CACHE_HOME": str(folder / "cache")})
+    done = archgen_here("build", *outputs, cwd=folder / "project", env={"XDG_CACHE_HOME": str(folder / "cache")})
     (folder / "said.txt").write_bytes(done.stdout + done.stderr)
 
 
@@ -190,12 +190,12 @@ def test_the_wiki_holds_nothing_active(project: Path) -> None:
 def test_the_packed_file_holds_the_texts_as_they_were(kind: str, project: Path, tmp_path: Path) -> None:
     packed = project.parent / "out" / "packed.yaml"
     shutil.copy(packed, tmp_path / "a.yaml")
-    archgen("pack", "a.yaml", "-o", "b.yaml", cwd=tmp_path)
+    archgen_here("pack", "a.yaml", "-o", "b.yaml", cwd=tmp_path)
     assert packed.read_bytes() == (tmp_path / "b.yaml").read_bytes()
     data = yaml.safe_load(packed.read_text("utf-8"))
     assert data["project"]["description"] == hostile.TEXTS[kind]
     assert data["nodes"]["n"]["executable"] == hostile.TEXTS[kind]
-    archgen("pack", "a.yaml", "--resolved", "-o", "c.yaml", cwd=tmp_path)
+    archgen_here("pack", "a.yaml", "--resolved", "-o", "c.yaml", cwd=tmp_path)
     assert yaml.safe_load((tmp_path / "c.yaml").read_text("utf-8"))["project"]["description"] == hostile.TEXTS[kind]
 
 
@@ -250,7 +250,7 @@ def test_ids_references_and_names_are_refused_in_words(kind: str, tmp_path: Path
     (tmp_path / "archgen.yaml").write_text(hostile.written(data), encoding="utf-8")
     for form in ("text", "github", "json", "sarif", "junit"):
         assert (form == "github") == bool(re.search(r"(?m)^::", said(tmp_path, "check", "--format", form, status=1)))
-    done = archgen("build", "--keep-going", "--backend", "wiki", cwd=tmp_path, status=1)
+    done = archgen_here("build", "--keep-going", "--backend", "wiki", cwd=tmp_path, status=1)
     assert hostile.controls((done.stdout + done.stderr).decode()) == []
     for path, page in contents(tmp_path / "archgen-out").items():
         if path.endswith(".html"):
@@ -262,6 +262,6 @@ def test_ids_references_and_names_are_refused_in_words(kind: str, tmp_path: Path
 def test_hostile_words_on_the_command_line(verb: str, status: int, tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text("archgen: 1\n")
     text = f"{EVERYWHERE}\x1b[2J\n::error::x"
-    done = archgen(*filter(None, (verb, text)), cwd=tmp_path, status=status)
+    done = archgen_here(*filter(None, (verb, text)), cwd=tmp_path, status=status)
     assert hostile.controls(done.stderr.decode()) == []
     assert done.stdout == b""

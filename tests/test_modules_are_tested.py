@@ -6,11 +6,13 @@ functions were executed. Before that, cheaply: the test exists, and imports lead
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,8 +21,14 @@ import coverage
 import pytest
 import yaml
 
-from tests.enough_executed import LEAST_EXECUTED_SHARE, executed_share
-from tests.running import ROOT
+from tests.enough_executed import (
+    CONTEXT_VARIABLE,
+    LEAST_EXECUTED_SHARE,
+    WANTED_FILE,
+    choose_context,
+    executed_share,
+)
+from tests.running import ROOT, made_once
 
 TABLE = ROOT / "tests" / "covered_by.yaml"
 COVERED_BY: dict[str, list[str]] = yaml.safe_load(TABLE.read_text(encoding="utf-8"))
@@ -149,35 +157,87 @@ def test_imports_lead_from_the_test_to_what_it_covers(test: str) -> None:
     assert sorted(set(COVERED_BY[test]) - _find_reachable(name)) == []
 
 
-def _executed_shares(test: str, modules: list[str], folder: Path) -> dict[str, float]:
-    """Run a test, and return which share of the lines in each module's functions it executed, until it was enough."""
-    files = {module: str(_list_modules()[module]) for module in modules}
+_ROWS_AT_ONCE = 12
+"""Files of tests that share a process: to start it, and to import all of archgen under measurement, takes seconds."""
+Shares = dict[str, dict[str, float]]
+"""By file of tests and module: which share of the lines in the module's functions the tests executed."""
+
+
+def _executed_shares(modules_by_test: Mapping[str, list[str]], folder: Path) -> Shares:
+    """Run files of tests in one process, each until it has executed enough, and return what each executed."""
+    folder.mkdir(exist_ok=True)
+    files = {test: [str(_list_modules()[each]) for each in modules] for test, modules in modules_by_test.items()}
+    all_files = "\n    ".join(dict.fromkeys(file for row in files.values() for file in row))
     settings = folder / "coveragerc"
     settings.write_text(
-        f"[run]\nparallel = true\ndata_file = {folder / 'data'}\ndisable_warnings = no-data-collected\ninclude =\n    "
-        + "\n    ".join(files.values())
+        f"[run]\nparallel = true\ndata_file = {folder / 'data'}\ndisable_warnings = no-data-collected\n"
+        f"core = ctrace\ncontext = ${{{CONTEXT_VARIABLE}-}}\ninclude =\n    {all_files}"
     )
+    (folder / WANTED_FILE).write_text(json.dumps(files), encoding="utf-8")
     # Coverage begins by this variable in every process: many tests run verbs as users do.
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "COVERAGE_PROCESS_START": str(settings)}
     plugins = ("-p", "no:cacheprovider", "-p", "tests.enough_executed")
-    command = [sys.executable, "-m", "pytest", "-q", "-x", *plugins, test]
+    command = [sys.executable, "-m", "pytest", "-q", "-x", *plugins, *files]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=False, text=True)  # noqa: S603
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     measured = coverage.Coverage(config_file=str(settings))
     measured.combine([str(folder)])
     data = measured.get_data()
-    return {module: executed_share(measured, file, data.lines(file) or ()) for module, file in files.items()}
+    shares: Shares = {}
+    for test, modules in modules_by_test.items():
+        choose_context(data, test if len(modules_by_test) > 1 else None)
+        executed = {module: data.lines(file) or () for module, file in zip(modules, files[test], strict=True)}
+        choose_context(data, None)
+        shares[test] = {
+            module: executed_share(measured, str(_list_modules()[module]), lines) for module, lines in executed.items()
+        }
+    return shares
+
+
+def _measure_together(test: str, request: pytest.FixtureRequest, folder: Path) -> dict[str, float]:
+    """Return what a row of the table executed, measured with its neighbours; nothing where that run failed."""
+    selected = [each for each in COVERED_BY if any(f"[{each}]" in item.nodeid for item in request.session.items)]
+    first = selected.index(test) // _ROWS_AT_ONCE * _ROWS_AT_ONCE
+    rows = {each: COVERED_BY[each] for each in selected[first : first + _ROWS_AT_ONCE]}
+
+    def measure(place: Path) -> None:
+        place.mkdir()
+        shares: Shares = {}
+        # One test that fails would leave the others of these rows without an answer: then each runs by itself.
+        with suppress(AssertionError):
+            shares = _executed_shares(rows, place / "measured")
+        (place / "shares.json").write_text(json.dumps(shares), encoding="utf-8")
+
+    place = made_once(folder / f"covered-{first}", measure)
+    answer: Shares = json.loads((place / "shares.json").read_text(encoding="utf-8"))
+    return answer.get(test, {})
+
+
+def _find_too_small(shares: Mapping[str, float]) -> dict[str, float]:
+    return {module: round(share, 2) for module, share in shares.items() if share < LEAST_EXECUTED_SHARE}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("test", COVERED_BY)
-def test_the_test_executes_what_it_covers(test: str, tmp_path: Path) -> None:
-    shares = _executed_shares(test, COVERED_BY[test], tmp_path)
-    assert {module: round(share, 2) for module, share in shares.items() if share < LEAST_EXECUTED_SHARE} == {}
+def test_the_test_executes_what_it_covers(
+    test: str, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, worker_id: str
+) -> None:
+    base = tmp_path_factory.getbasetemp()
+    shares = _measure_together(test, request, base if worker_id == "master" else base.parent)
+    if not shares or _find_too_small(shares):
+        # Among others it may find things done already that it does by itself: what it executes alone decides.
+        shares = _executed_shares({test: COVERED_BY[test]}, tmp_path_factory.mktemp("alone"))[test]
+    assert _find_too_small(shares) == {}
 
 
 @pytest.mark.slow
 def test_what_a_test_does_not_execute_is_noticed(tmp_path: Path) -> None:
-    shares = _executed_shares("tests/test_frozen.py", ["archgen.frozen", "archgen.forge.comment_post"], tmp_path)
-    assert shares["archgen.frozen"] > LEAST_EXECUTED_SHARE
-    assert shares["archgen.forge.comment_post"] == 0
+    rows = {
+        "tests/test_frozen.py": ["archgen.frozen", "archgen.forge.comment_post"],
+        "tests/test_float_sums.py": ["archgen.frozen"],
+    }
+    shares = _executed_shares(rows, tmp_path / "measured")
+    assert shares["tests/test_frozen.py"]["archgen.frozen"] > LEAST_EXECUTED_SHARE
+    assert shares["tests/test_frozen.py"]["archgen.forge.comment_post"] == 0
+    # What one file executes counts for no other.
+    assert shares["tests/test_float_sums.py"]["archgen.frozen"] < LEAST_EXECUTED_SHARE

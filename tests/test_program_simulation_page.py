@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import QUICK_START, ROOT, archgen
+from tests.running import QUICK_START, ROOT, archgen_here
 
 pytestmark = pytest.mark.build
 PAGE = (ROOT / "docs" / "program_simulation.md").read_text(encoding="utf-8")
@@ -58,7 +58,7 @@ def test_the_page(tmp_path: Path) -> None:
     for command in COMMANDS:
         words = command.replace("~/sim", str(sim)).split()
         if words[0] == "archgen":
-            archgen(*words[1:], cwd=ROOT / "examples" / "cleaning_robot")
+            archgen_here(*words[1:], cwd=ROOT / "examples" / "cleaning_robot")
         elif words[0] == "cd":
             folder = Path(words[1])
             (folder / "scenario.txt").write_text(scenario + BUSY_MOTOR, "utf-8")

@@ -13,7 +13,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import check_project
 from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.ros_environment import NEWEST_PYTHON, ROS_FOLDER, make_ros_python, ros_environment
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PAGE = (ROOT / "docs" / "tutorial_robot.md").read_text(encoding="utf-8")
 FILES = dict(re.findall(r"^```\w+\n# ([\w/]+\.\w+)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL))
@@ -35,7 +35,7 @@ def rover(tmp_path: Path) -> Path:
     write(tmp_path, "archgen.yaml")
     assert COMMANDS[:2] == ["check", "generate ros2_python -o ws"]
     for command in COMMANDS[:2]:
-        archgen(*command.split(), cwd=tmp_path)
+        archgen_here(*command.split(), cwd=tmp_path)
     for name in FILES:
         if name != "archgen.yaml":
             write(tmp_path, name)
@@ -70,7 +70,7 @@ def test_own_code_is_written_as_ros_developers_write(rover: Path) -> None:
 
 
 def test_there_is_a_launch_file_of_the_name_that_is_started(rover: Path) -> None:
-    archgen(*COMMANDS[2].split(), cwd=rover)
+    archgen_here(*COMMANDS[2].split(), cwd=rover)
     (package, file) = re.findall(r"ros2 launch (\w+) (\S+)", SCRIPTS[2])[0]
     assert (rover / "ws" / "src" / package / "launch" / file).is_file()
 
@@ -81,7 +81,7 @@ def test_a_change_is_said_and_own_code_stays(rover: Path) -> None:
     text = re.sub(r"^ +outputs: \{distance.*$", outputs, text, flags=re.MULTILINE)
     text = re.sub(r"^ +inputs: \{distance.*$", inputs, text, flags=re.MULTILINE)
     (rover / "archgen.yaml").write_text(text.replace("types:\n", f"types:\n{charge}\n"), encoding="utf-8")
-    done = archgen(*COMMANDS[3].split(), cwd=rover)
+    done = archgen_here(*COMMANDS[3].split(), cwd=rover)
     (warning,) = re.findall(r"^warning: .*$", PAGE, re.MULTILINE)
     assert warning in done.stderr.decode()
     own = "ws/src/rover_drive/rover_drive/explorer.py"

@@ -10,7 +10,7 @@ from archgen.analyses import RULES
 from archgen.bringup.start_plan import make_start_plan
 from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import check_project
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PAGE = (ROOT / "docs" / "start_up.md").read_text(encoding="utf-8")
 
@@ -41,7 +41,7 @@ def test_the_example_gives_what_the_page_says_of_its_start(tmp_path: Path) -> No
     (example,) = re.findall(r"^```yaml\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
     file = tmp_path / "archgen.yaml"
     file.write_text(f"archgen: 1\nproject: {{id: robot, title: Robot}}\n{example}", encoding="utf-8")
-    archgen("generate", "start", "-o", "robot", "--option", "folder=/srv/robot", cwd=tmp_path)
+    archgen_here("generate", "start", "-o", "robot", "--option", "folder=/srv/robot", cwd=tmp_path)
     for name in re.findall(r"robot/(start[\w./]*)|`(settings\.sh|start/hosts/|start/systemd/|start/compose/)", PAGE):
         assert (tmp_path / "robot" / "".join(name).rstrip("/")).exists(), name
     unit = (tmp_path / "robot" / "start" / "systemd" / "sim_pc" / "robot-stage.service").read_text(encoding="utf-8")

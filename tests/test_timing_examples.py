@@ -11,11 +11,11 @@ from fractions import Fraction
 import pytest
 from click.testing import CliRunner
 
-from archgen import pipeline
 from archgen.cli import main
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
+from tests.judged_projects import judge_ramcip
 from tests.running import RAMCIP, ROOT
 
 PAGE = ROOT / "docs" / "timing_examples.md"
@@ -46,7 +46,7 @@ def test_the_output_on_the_page_is_real(request: pytest.FixtureRequest, monkeypa
 
 @pytest.fixture(scope="module")
 def analysed() -> tuple[Analysis, dict[str, ChainResult]]:
-    architecture = pipeline.check_project(RAMCIP).architecture
+    architecture = judge_ramcip().architecture
     found = analyse_architecture(architecture)
     return found, bound_all_chains(found, architecture)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PAGE = (ROOT / "docs" / "uml.md").read_text(encoding="utf-8")
 
@@ -19,10 +19,10 @@ def test_the_commands_of_the_page_work(tmp_path: Path) -> None:
         # A model is merged into what came from it: see below.
         if "--merge" in words:
             continue
-        archgen(*words, cwd=tmp_path if number == 0 else project)
+        archgen_here(*words, cwd=tmp_path if number == 0 else project)
     shutil.copy(project / "robot.uml", tmp_path)
-    archgen("import", "xmi", "robot.uml", "-o", "robot", cwd=tmp_path)
-    merged = archgen("import", "xmi", "../robot.uml", "--merge", cwd=tmp_path / "robot")
+    archgen_here("import", "xmi", "robot.uml", "-o", "robot", cwd=tmp_path)
+    merged = archgen_here("import", "xmi", "../robot.uml", "--merge", cwd=tmp_path / "robot")
     assert b"as before" in merged.stdout
 
 

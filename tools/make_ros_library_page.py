@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen.link import mapping_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import load_shipped_types
+from archgen.project.shipped_library import load_shipped_component_types
 from archgen.project.shipped_sources import ShippedSource, list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 
@@ -63,7 +63,7 @@ def format_page() -> str:
     """Return the text of the page of all types."""
     rows: dict[tuple[str, ...], list[str]] = {}
     for distro in KNOWN_DISTROS:
-        for name, entry in load_shipped_types(distro).items():
+        for name, entry in load_shipped_component_types(distro).items():
             rows.setdefault(_format_row(name, mapping_values.get_body(entry)), []).append(distro)
     lines = [
         OPENING,
@@ -98,7 +98,7 @@ def _list_counts() -> Iterator[str]:
     yield "| distribution | types | facts | types read at the released version |"
     yield "|---|---|---|---|"
     for distro in _ORDER:
-        types, sources = load_shipped_types(distro), read_shipped_sources(distro)
+        types, sources = load_shipped_component_types(distro), read_shipped_sources(distro)
         facts = sum(len(list(list_type_facts(mapping_values.get_body(entry)))) for entry in types.values())
         fresh_types = [name for name in types if all(source.version == source.released for source in sources[name])]
         yield f"| {distro} | {len(types)} | {facts} | {len(fresh_types)} |"

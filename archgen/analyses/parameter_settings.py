@@ -12,9 +12,9 @@ from archgen.model.parameter_values import (
     find_declarations,
     find_effective_parameters,
     find_value_fault,
-    is_open,
+    is_open_parameter,
     is_ros_parameter,
-    list_components,
+    list_node_components,
 )
 from archgen.model.ros_distro import is_ros_1
 
@@ -89,7 +89,7 @@ def _find_unknown_settings(architecture: Architecture, component: Component) -> 
     ros_1 = is_ros_1(architecture.distro)
     for name, parameter in component.parameters.items():
         is_known = name in component_type.parameters or is_ros_parameter(name, ros_1=ros_1)
-        if not is_known and not is_open(name, (component,)):
+        if not is_known and not is_open_parameter(name, (component,)):
             yield Diagnostic(
                 "unknown-parameter",
                 f"`{component.id}` sets the parameter `{name}`, which its type `{component_type.id}` does not declare",
@@ -107,7 +107,7 @@ class _NodeJudge:
     def __init__(self, architecture: Architecture, node: Node) -> None:
         self.node = node
         self._ros_1 = is_ros_1(architecture.distro)
-        self._components = list_components(architecture, node)
+        self._components = list_node_components(architecture, node)
         self._declarations = find_declarations(architecture, node)
         self._is_judged = bool(self._components) and all(component.parameters for component in self._components)
 
@@ -122,7 +122,9 @@ class _NodeJudge:
             return True
         name = canonical_name(written_name, ros_1=self._ros_1)
         return (
-            name in self._declarations or is_ros_parameter(name, ros_1=self._ros_1) or is_open(name, self._components)
+            name in self._declarations
+            or is_ros_parameter(name, ros_1=self._ros_1)
+            or is_open_parameter(name, self._components)
         )
 
     def report_unknown(self, value: ParameterValue, *, may_guess: bool) -> Diagnostic:
@@ -313,7 +315,7 @@ def unused_parameter_file(architecture: Architecture) -> Iterator[Diagnostic]:
         /front/camera: {ros__parameters: {exposure: 30}}
     """
     for node in architecture.nodes.values():
-        if node.file_remarks and any(each.parameters for each in list_components(architecture, node)):
+        if node.file_remarks and any(each.parameters for each in list_node_components(architecture, node)):
             for remark in node.file_remarks:
                 yield Diagnostic("unused-parameter-file", remark.message, remark.at, help=remark.help, element=node.id)
 

@@ -42,6 +42,8 @@ def keep_acyclic(step_ids: Sequence[str], waits: Sequence[Wait]) -> tuple[list[W
 
 def _find_closing_waits(step_ids: Sequence[str], waits: Sequence[Wait]) -> Iterator[DroppedWait]:
     """Yield the waits of one loop that stay out."""
+    # Which set of waits costs least to leave out is NP-hard (minimum feedback arc set). So: what is needed most is taken in
+    # first, and among equals what goes forward in a greedy order; a wait that closes a circle with those stays out.
     order = _KeptOrder(_order_greedily(step_ids, waits))
     is_backward = [order.positions[wait.awaited] >= order.positions[wait.waiting] for wait in waits]
     for index in sorted(range(len(waits)), key=lambda each: (-waits[each].need, is_backward[each], each)):
@@ -62,6 +64,8 @@ class _KeptOrder:
         """Take a pair in, and return nothing; or return the way back that it would close to a circle."""
         if awaited == waiting:
             return (awaited,)
+        # Pearce and Kelly, "A dynamic topological sort algorithm for directed acyclic graphs" (2006): only steps between the
+        # two places of a new pair can have to move.
         lowest, highest = self.positions[waiting], self.positions[awaited]
         if highest >= lowest:
             way = self._find_way(waiting, awaited)

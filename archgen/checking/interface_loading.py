@@ -12,7 +12,7 @@ from archgen.syntax import project_files
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 
-def load_interfaces(
+def load_project_interfaces(
     loaded_project: LoadedProject, merged_table: MappingNode, declared_types: DeclaredTypes
 ) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
     """Read the project's own interface definitions, which override the shipped ones: files, `ros.definitions`, types."""

@@ -40,7 +40,7 @@ def judge_merged_project(
         loaded_project.lost_keys,
         is_partial=loaded_project.partial,
     )
-    rule_options, option_findings = option_settings.read_rule_options(loaded_project.rule_options, RULES_BY_NAME)
+    rule_options, option_findings = option_settings.settle_rule_options(loaded_project.rule_options, RULES_BY_NAME)
     all_diagnostics = (
         *title_guesses.add_title_guesses(
             (*loaded_project.diagnostics, *linked_project.link_findings), architecture, loaded_project.sources

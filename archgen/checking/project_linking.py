@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from archgen import compose, derivation, link
-from archgen.checking.interface_loading import load_interfaces
+from archgen.checking.interface_loading import load_project_interfaces
 from archgen.checking.merged_project import MergedProject
-from archgen.compose.project_expansion import ExpandedProject
+from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, replace
@@ -15,7 +15,7 @@ from archgen.link.parameter_reading import ReadParameters
 from archgen.link.project_types import declare_project_types
 from archgen.model.architecture import Architecture
 from archgen.model.known_parts import KnownParts
-from archgen.project.commit_days import find_commit_day
+from archgen.project.commit_days import find_newest_day
 
 
 class PartMemory:
@@ -51,7 +51,7 @@ def link_merged_project(merged_project: MergedProject, part_memory: PartMemory |
     )
     outline = element_outline.build_outline(expansion, linked_parts)
     declared_types = declare_project_types(loaded_project, merged_table, expansion, outline, damaged_elements)
-    known_interfaces, interface_findings = load_interfaces(loaded_project, merged_table, declared_types)
+    known_interfaces, interface_findings = load_project_interfaces(loaded_project, merged_table, declared_types)
     linked_architecture, link_findings = link.link_project(
         expansion,
         outline,
@@ -72,7 +72,7 @@ def link_merged_project(merged_project: MergedProject, part_memory: PartMemory |
     architecture = derivation.derive_low_level(
         read_parameters.architecture, part_memory.derived if part_memory else None
     )
-    commit_day = find_commit_day(loaded_project.files, architecture)
+    commit_day = find_newest_day(loaded_project.files, architecture)
     if commit_day is not None:
         architecture = replace(architecture, commit_day=commit_day)
     return LinkedProject(

@@ -53,6 +53,8 @@ def command(  # noqa: PLR0913 - one for each option
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     # The selector's word without a value: the component types of a project or a library, and nothing else.
     types_only = name == _TYPES_BACKEND and select is not None and select.strip() == "type:"
+    if types_only and not checked_project.architecture.component_types:
+        command_support.print_warning("there are no component types here: the model holds no class")
     output_options = OutputOptions(
         None if types_only else command_support.select_or_exit(checked_project, select),
         select or "",

@@ -157,15 +157,17 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
     merge: bool,
     dry_run: bool,
 ) -> None:
-    from archgen.edit.imported_slices import ImportOrigin, ImportRefusedError, plan_import
+    from archgen.edit.earlier_import import ImportOrigin
+    from archgen.edit.imported_slices import ImportRefusedError, find_known_ids, plan_import
 
-    imported = _read_model(import_format, files, arguments)
+    shown_arguments = tuple(f"{name}:={value}" for name, value in arguments.items())
+    origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files), shown_arguments)
+    known_ids = find_known_ids(origin, target) if merge and import_format.keeps_ids else {}
+    imported = _read_model(import_format, files, arguments, known_ids)
     if not imported.slices:
         _print_account(imported, None, form)
         click.echo("Nothing was written: there is nothing in it that archgen takes.", err=True)
         raise click.exceptions.Exit(1)
-    shown_arguments = tuple(f"{name}:={value}" for name, value in arguments.items())
-    origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files), shown_arguments)
     try:
         plan = plan_import(imported, origin, target, merge=merge)
     except ImportRefusedError as refusal:
@@ -180,11 +182,14 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
         raise click.exceptions.Exit(1)
 
 
-def _read_model(import_format: ImportFormat, files: list[Path], arguments: dict[str, str]) -> ForeignImport:
+def _read_model(
+    import_format: ImportFormat, files: list[Path], arguments: dict[str, str], known_ids: dict[str, str]
+) -> ForeignImport:
     from archgen.importers.foreign.foreign_import import ForeignFileError
 
     try:
         given = {"arguments": arguments} if import_format.takes_arguments else {}
+        given |= {"known_ids": known_ids} if import_format.keeps_ids else {}
         return import_format.load_reader()(files, **given)
     except ForeignFileError as error:
         _print_problem(str(error.span), error.message, error.help_line)
@@ -218,7 +223,13 @@ def _make_record(imported: ForeignImport, plan: ImportPlan | None) -> dict[str, 
         "taken": dict(sorted(imported.taken.items())),
         "notes": [_make_note_record(note) for note in imported.notes],
         "files": [
-            {"file": planned.file, "new": planned.is_new, "changed": planned.is_changed, "kept": planned.kept}
+            {
+                "file": planned.file,
+                "new": planned.is_new,
+                "changed": planned.is_changed,
+                "kept": planned.kept,
+                "replaced": planned.replaced,
+            }
             for planned in (plan.slices if plan else ())
         ],
     }
@@ -242,8 +253,13 @@ def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
         if not planned.is_new:
             yield f"{planned.file}: {'brought up to date' if planned.is_changed else 'as before'}"
             yield from (f"  not in the model, kept: {path}" for path in planned.kept)
+            yield from (f"  replaced: {change}" for change in planned.replaced)
         if planned.is_rewritten:
             yield "  written anew: comments could not stay in their places, and stand at the beginning"
+    for file in plan.left_files:
+        yield f"{file}: as before; nothing of it is in the model any more: take it out if it is gone"
+    for place, old_place in plan.moves.items():
+        yield f"the model has {old_place} as {place} by now: it stays where it is"
 
 
 def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:

@@ -92,7 +92,7 @@ def command(  # noqa: PLR0913 - one for each option
     earlier_version = _read_earlier(since, "--since", checked_project, project) if since else None
     if signed:
         earlier_version = _read_earlier(signed, "--signed", checked_project, project)
-    observations = measured_recordings.read_observations(checked_project, recordings) if recordings else ()
+    observations = measured_recordings.read_recorded_files(checked_project, recordings) if recordings else ()
     try:
         agreement = agreement_documents.make_project_agreement(
             checked_project,
@@ -178,10 +178,10 @@ def _read_earlier(revision: str, option: str, checked_project: CheckedProject, p
     """Read the project as it was. A revision that cannot be read is wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
-    from archgen.products.signed_agreements import read_version_before
+    from archgen.products.signed_agreements import read_agreed_version
     from archgen.project import ProjectNotFoundError
 
     try:
-        return read_version_before(revision, checked_project, project)
+        return read_agreed_version(revision, checked_project, project)
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(f"{option}: {error}")) from None

@@ -66,7 +66,7 @@ def answer_recordings(
         raise click.exceptions.Exit(1)
 
 
-def read_observations(checked_project: CheckedProject, paths: Sequence[Path]) -> tuple[Observation, ...]:
+def read_recorded_files(checked_project: CheckedProject, paths: Sequence[Path]) -> tuple[Observation, ...]:
     """Return what recordings say; what is wrong with them is printed. Ends with status 1 where something cannot be used."""
     from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.timing.chains.chain_bounds import bound_all_chains

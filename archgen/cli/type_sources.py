@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import SHIPPED_ID, load_shipped_types
+from archgen.project.shipped_library import SHIPPED_ID, load_shipped_component_types
 from archgen.project.shipped_sources import ShippedSource, read_shipped_sources
 
 
 def list_shipped_names() -> tuple[str, ...]:
     """Return the names of all types that ship for any distribution, as one writes them with the library's usual name."""
-    return tuple(sorted({f"{SHIPPED_ID}.{name}" for distro in KNOWN_DISTROS for name in load_shipped_types(distro)}))
+    return tuple(
+        sorted({f"{SHIPPED_ID}.{name}" for distro in KNOWN_DISTROS for name in load_shipped_component_types(distro)})
+    )
 
 
 def list_source_lines(name: str, distro: str | None) -> Iterator[str]:

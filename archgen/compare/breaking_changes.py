@@ -81,10 +81,10 @@ def mark_breaking_changes(
         else change
         for index, change in enumerate(context.changes)
     ]
-    return sort_gravest_first(marked_changes, policy)
+    return sort_breaks_first(marked_changes, policy)
 
 
-def sort_gravest_first(changes: Sequence[Change], policy: BreakPolicy) -> tuple[Change, ...]:
+def sort_breaks_first(changes: Sequence[Change], policy: BreakPolicy) -> tuple[Change, ...]:
     """Return changes with those that break somebody first, the gravest before the others, accepted ones after the rest."""
     # The sort is stable: within each class the order of `change_order` remains.
     return tuple(sorted(changes, key=lambda change: _rank_change(change, policy)))

@@ -13,6 +13,7 @@ from typing import Any
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit import slice_update
+from archgen.edit.earlier_import import ImportOrigin, keep_places, list_known_ids, read_earlier_import
 from archgen.edit.edit_proof import list_new_errors
 from archgen.importers.foreign.foreign_import import ForeignImport
 from archgen.model import element_ids
@@ -27,8 +28,13 @@ from archgen.syntax.yaml_writer import write_yaml
 
 _HOLDERS = frozenset(
     {"groups", "components", "component_types", "nodes", "types", "hosts", "inputs", "outputs", "links"}
+    | {"parameters", "operations", "fields"}
 )
 """Keys below which elements stand by their ids."""
+_GROWING_KEYS = frozenset({"from", "implements", "connects"})
+"""Keys whose lists people make longer: what they added to what the model says stays."""
+_TOOLS = {"xmi": "uml"}
+"""What `hints` call the tools whose ids an import leaves there, by format."""
 
 
 @dataclass(slots=True)
@@ -41,6 +47,8 @@ class PlannedSlice:
     is_changed: bool = True
     kept: list[str] = field(default_factory=list)
     """Elements that stand in the file and that the model does not name (any more): they stay."""
+    replaced: list[str] = field(default_factory=list)
+    """What the file said otherwise than the model: path, old and new value."""
     is_rewritten: bool = False
 
 
@@ -54,6 +62,10 @@ class ImportPlan:
     checked_project: CheckedProject
     errors: tuple[Diagnostic, ...]
     """Errors that the project has only with what is imported."""
+    moves: dict[str, str] = field(default_factory=dict)
+    """Where components stand in the project, by the place that the model has them in by now."""
+    left_files: tuple[str, ...] = ()
+    """Slices of the earlier import for which nothing is in the model any more: they stay."""
 
     @property
     def unread_files(self) -> list[str]:
@@ -70,22 +82,6 @@ class ImportRefusedError(Exception):
         self.message, self.diagnostics = message, diagnostics
 
 
-@dataclass(frozen=True, slots=True)
-class ImportOrigin:
-    """Where slices come from: the format, and the names of the files, as the first line of each slice says."""
-
-    format_name: str
-    file_names: tuple[str, ...]
-    arguments: tuple[str, ...] = ()
-    """Launch arguments as they were given, `NAME:=VALUE`: with others the same file is another model."""
-
-    @property
-    def header(self) -> str:
-        """Return the first line of each slice."""
-        names = " ".join(" ".join(word.split()) for word in (*self.file_names, *self.arguments))
-        return f"# From {names} by `archgen import {self.format_name}`; with --merge it is brought up to date.\n"
-
-
 def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, merge: bool) -> ImportPlan:
     """Plan the slices of an import in a folder, which may be new. Raise ImportRefusedError."""
     target = folder.resolve()
@@ -94,9 +90,11 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
     root = root or target
     prefix = "" if target == root else f"{target.relative_to(root).as_posix()}/"
     files = FolderFiles(root) if root.is_dir() else None
+    earlier = read_earlier_import(target, origin) if merge else {}
+    new_slices, moves = keep_places(earlier, imported.slices, _TOOLS.get(origin.format_name, origin.format_name))
     slices = [
         _plan_slice(f"{prefix}{name}", data, imported.comments.get(name, {}), origin, files, merge=merge)
-        for name, data in imported.slices.items()
+        for name, data in new_slices.items()
     ]
     if is_new_project:
         slices.insert(0, PlannedSlice(PROJECT_FILE, write_yaml(_make_project_data(imported, root, slices))))
@@ -106,7 +104,14 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
     if not is_new_project and files is not None:
         before = pipeline.judge_project(load_from_files(files, PROJECT_FILE))
         errors = list(list_new_errors(before, judged))
-    return ImportPlan(root, slices, is_new_project, judged, tuple(errors))
+    left_files = tuple(f"{prefix}{name}" for name in earlier if name not in new_slices)
+    return ImportPlan(root, slices, is_new_project, judged, tuple(errors), moves, left_files)
+
+
+def find_known_ids(origin: ImportOrigin, folder: Path) -> dict[str, str]:
+    """Return the ids that elements have since an earlier import, by those of the other tool."""
+    earlier = read_earlier_import(folder.resolve(), origin)
+    return list_known_ids(earlier, _TOOLS.get(origin.format_name, origin.format_name))
 
 
 def find_root(folder: Path) -> Path | None:
@@ -146,9 +151,9 @@ def _plan_slice(  # noqa: PLR0913 - what, where and how
     if old_file.problem:
         msg = f"{file} cannot be brought up to date"
         raise ImportRefusedError(msg, (old_file.problem,))
-    if not old_file.text.startswith(origin.header.rstrip("\n")):
+    if not origin.is_of(old_file.text):
         msg = (
-            f"{file} does not come from this file: nothing was written; its first line would be "
+            f"{file} does not come from this file: nothing was written; a comment at its top would be "
             f"`{origin.header.strip()}`; `-o` names another folder"
         )
         raise ImportRefusedError(msg)
@@ -170,6 +175,7 @@ def _update_slice(file: str, old_text: str, new_text: str) -> PlannedSlice:
         is_new=False,
         is_changed=updated.text != old_text,
         kept=list(_list_kept(old_content.data, new_content.data)),
+        replaced=list(_list_replaced(old_content.data, merged)),
         is_rewritten=updated.is_rewritten,
     )
 
@@ -181,9 +187,30 @@ def _lay_over(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
         old_value = old.get(key)
         if isinstance(value, Mapping) and isinstance(old_value, Mapping):
             merged[key] = _lay_over(old_value, value)
-        else:
+        elif key not in _GROWING_KEYS or not _has_all(old_value, value):
             merged[key] = value
     return merged
+
+
+def _has_all(old: object, new: object) -> bool:
+    """Whether a list has all that the model says, and more."""
+    wanted = new if isinstance(new, list) else [new]
+    return isinstance(old, list) and all(each in old for each in wanted)
+
+
+def _list_replaced(old: Mapping[str, Any], merged: Mapping[str, Any], path: str = "") -> Iterator[str]:
+    """Yield where the old values gave way, with both."""
+    for key, value in old.items():
+        inner_path, new_value = f"{path}.{key}" if path else key, merged[key]
+        if isinstance(value, Mapping) and isinstance(new_value, Mapping):
+            yield from _list_replaced(value, new_value, inner_path)
+        elif value != new_value:
+            yield f"{inner_path}: {_quote(value)} by {_quote(new_value)}"
+
+
+def _quote(value: object) -> str:
+    words = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+    return f"`{words[:80]}`" if not isinstance(value, Mapping) and value is not None else "what stands there"
 
 
 def _list_kept(old: Mapping[str, Any], new: Mapping[str, Any], path: str = "", *, holds: bool = False) -> Iterator[str]:
@@ -192,6 +219,11 @@ def _list_kept(old: Mapping[str, Any], new: Mapping[str, Any], path: str = "", *
         inner_path = f"{path}.{key}" if path and holds else key if holds else path
         if holds and key not in new:
             yield inner_path
+        elif key in _GROWING_KEYS and key in new and isinstance(value, list):
+            wanted = new[key] if isinstance(new[key], list) else [new[key]]
+            extra = [str(each) for each in value if each not in wanted]
+            if extra and _has_all(value, wanted):
+                yield f"{inner_path} {key} {', '.join(extra)}"
         elif isinstance(value, Mapping):
             inner = new.get(key)
             inner = inner if isinstance(inner, Mapping) else {}

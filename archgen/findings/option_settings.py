@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _MAX_QUOTED_LENGTH = 40
 
 
-def read_rule_options(
+def settle_rule_options(
     written_options: Mapping[str, Mapping[str, WrittenOption]], rules: Mapping[str, Rule]
 ) -> tuple[Mapping[str, OptionValues], tuple[Diagnostic, ...]]:
     """Return the values of the options that a project sets, by rule and option, and the findings about the others.

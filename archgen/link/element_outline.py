@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.compose import ExpandedProject
-from archgen.compose.project_expansion import ComponentShell
+from archgen.compose.expanded_project import ComponentShell
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.compose.project_expansion import ComponentShell
+from archgen.compose.expanded_project import ComponentShell
 from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortKey, PortSources
 

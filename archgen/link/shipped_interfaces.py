@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -30,13 +30,20 @@ class LazyInterfaces(Mapping[str, Interface]):
 
     def __getitem__(self, name: str) -> Interface:
         """Return the definition of `package/msg/Name`; raise KeyError where there is none."""
+        definition: Interface | None = self.get(name)
+        if definition is None:
+            raise KeyError(name)
+        return definition
+
+    # A method of its own: most names that are asked for are `float64` and the like, and an exception for each takes long.
+    def get(self, name: str, default: Any = None) -> Any:  # noqa: ANN401 - as Mapping has it
+        """Return the definition of `package/msg/Name`, or another value where there is none."""
         if name in self._own_interfaces:
             return self._own_interfaces[name]
         for distro in self._distros:
-            fields = _load_fields(distro).get(name)
-            if fields is not None:
-                return Interface(name, (tuple(_parse_field(text) for text in fields),))
-        raise KeyError(name)
+            if name in _load_fields(distro):
+                return _parse_interface(distro, name)
+        return default
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over all names, the project's own first, each once."""
@@ -126,6 +133,12 @@ def _load_fields(distro: str) -> dict[str, list[str]]:
     file = _DATA_FOLDER / f"{_SAME_FIELDS_AS.get(distro, distro)}.fields.json"
     fields_by_interface: dict[str, list[str]] = json.loads(file.read_text(encoding="utf-8"))
     return fields_by_interface
+
+
+@lru_cache(4096)
+def _parse_interface(distro: str, name: str) -> Interface:
+    """Parse an interface of a distribution. Views ask for the same ones again and again."""
+    return Interface(name, (tuple(_parse_field(text) for text in _load_fields(distro)[name]),))
 
 
 def _parse_field(text: str) -> InterfaceField:

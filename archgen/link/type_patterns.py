@@ -18,7 +18,6 @@ from archgen.model.architecture import Architecture
 from archgen.model.type_patterns import PATTERN_GROUP, TypePatterns
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
-"""The group of the patterns; ids of groups have no blanks."""
 _OUTER_SECTIONS = ("component_types", "libraries", "types", "ros", "project")
 """What a type may refer to. Nodes, chains and the like are about instances."""
 

@@ -75,7 +75,7 @@ def is_date(text: str) -> bool:
     return _DATE.fullmatch(text) is not None
 
 
-def compare_values(text: str, other_text: str) -> int | None:
+def order_values(text: str, other_text: str) -> int | None:
     """Return -1, 0 or 1 as the first value is less, equal or greater; None where they have no order.
 
     Figures are compared only in the same unit, days with days; any other text has no order.

@@ -78,7 +78,7 @@ EVERY_PARAMETER = "*"
 """The name in `open` below which everything stands."""
 
 
-def is_open(name: str, components: tuple[Component, ...]) -> bool:
+def is_open_parameter(name: str, components: tuple[Component, ...]) -> bool:
     """Whether a parameter is below an open set of one of the components; all are where `*` is open."""
     return any(
         opened in {name, EVERY_PARAMETER} or name.startswith(f"{opened}.")
@@ -87,7 +87,7 @@ def is_open(name: str, components: tuple[Component, ...]) -> bool:
     )
 
 
-def list_components(architecture: Architecture, node: Node) -> tuple[Component, ...]:
+def list_node_components(architecture: Architecture, node: Node) -> tuple[Component, ...]:
     """Return the components that a node implements."""
     return tuple(architecture.components[name] for name in node.implements if name in architecture.components)
 
@@ -95,7 +95,7 @@ def list_components(architecture: Architecture, node: Node) -> tuple[Component, 
 def find_declarations(architecture: Architecture, node: Node) -> Mapping[str, Parameter]:
     """Return the parameters that the components of a node declare; of those with one name the first component's."""
     ros_1 = is_ros_1(architecture.distro)
-    components = list_components(architecture, node)
+    components = list_node_components(architecture, node)
     if len(components) == 1 and not ros_1:
         return components[0].parameters  # of nearly all nodes: rules ask for them again and again
     declarations: dict[str, Parameter] = {}
@@ -154,11 +154,11 @@ def find_value_fault(parameter: Parameter, value: object) -> str | None:
     if value is None or (isinstance(value, str) and _SUBSTITUTION_MARK in value):
         return None
     if parameter.type is not None and not _has_type(value, parameter.type):
-        return f"{describe_value(value)} is no `{parameter.type}`"
+        return f"{describe_parameter_value(value)} is no `{parameter.type}`"
     # Choices say by themselves what a value may be.
     inferred_type = _infer_type(parameter.value) if parameter.type is None and parameter.choices is None else None
     if inferred_type is not None and not _has_type(value, inferred_type):
-        return f"{describe_value(value)} is no {_TYPE_PHRASES[inferred_type]}"
+        return f"{describe_parameter_value(value)} is no {_TYPE_PHRASES[inferred_type]}"
     items = value if isinstance(value, list) else [value]
     if parameter.choices is not None and not _is_choice(value, parameter.choices):
         shown_choices = ", ".join(f"`{_shorten(choice)}`" for choice in parameter.choices[:_MAX_CHOICES])
@@ -169,11 +169,11 @@ def find_value_fault(parameter: Parameter, value: object) -> str | None:
         for item in items:
             if _is_number(item) and not least <= item <= greatest:
                 limits = f"`{format_parameter(least)}` to `{format_parameter(greatest)}`"
-                return f"{describe_value(item)} is outside of its range, {limits}"
+                return f"{describe_parameter_value(item)} is outside of its range, {limits}"
     return None
 
 
-def describe_value(value: object) -> str:
+def describe_parameter_value(value: object) -> str:
     """Return a value for a sentence: in backticks, cut where it is long, text in quotes."""
     text = _shorten(value)
     return f'`"{text}"`' if isinstance(value, str) else f"`{text}`"

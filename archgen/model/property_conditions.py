@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
-from archgen.model.element_annotations import compare_values
+from archgen.model.element_annotations import order_values
 from archgen.model.node import Node
 
 _CONDITION = re.compile(r"([a-z0-9_*]+)\s*(?:(>=|<=|=|>|<)\s*((?![<=>]).*\S))?")
@@ -38,7 +38,7 @@ class PropertyCondition(NamedTuple):
     def _fits(self, text: str, matches: Callable[[str, str], bool]) -> bool:
         if self.sign is None:
             return True
-        order = compare_values(text, self.value)
+        order = order_values(text, self.value)
         if order is not None:
             return _ORDERS[self.sign](order)
         return self.sign == "=" and matches(self.value, text)

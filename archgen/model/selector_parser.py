@@ -108,7 +108,7 @@ def parse_selector(text: str) -> ParsedSelector:
     return ParsedSelector(tuple(words), tuple(problems))
 
 
-def split_words(text: str) -> Iterator[str]:
+def split_selector(text: str) -> Iterator[str]:
     """Yield the words of a selector as they are written, with their `-`."""
     return (match[0] for match in _WORD_PATTERN.finditer(text))
 

@@ -12,7 +12,7 @@ from archgen.link import mapping_values
 from archgen.model.element_ids import make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
 from archgen.passes.pass_shape import PassWork
-from archgen.passes.written_places import find_type, list_holders, list_type_sections
+from archgen.passes.written_places import find_type_path, list_holders, list_type_sections
 from archgen.syntax.yaml_tree import MappingNode
 
 _WORD = re.compile(r"[a-z0-9]+")
@@ -81,7 +81,7 @@ def _specialise_reference(
             continue
         # Types of a library see only one another.
         prefix = f"{path[1]}." if path[0] == "libraries" else ""
-        generic_path = find_type(tree, prefix + expression.name)
+        generic_path = find_type_path(tree, prefix + expression.name)
         if generic_path is None:
             continue
         known_name = names.get((generic_path, expression.arguments))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.compose.project_expansion import Expansion
+from archgen.compose.expanded_project import Expansion
 from archgen.link import mapping_values
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.selector_rewriting import list_selected, rewrite_selectors

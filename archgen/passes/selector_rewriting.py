@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.model.selector_keys import matches_wildcard
-from archgen.model.selector_parser import parse_selector, split_words
+from archgen.model.selector_parser import parse_selector, split_selector
 from archgen.passes.project_tree import ProjectTree, list_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
@@ -82,7 +82,7 @@ def _rewrite_at(node: YamlNode, path: tuple[str, ...], rename_word: RenameWord) 
         return MappingNode({**node.entries, entry.key: MappingEntry(entry.key, entry.key_span, value)}, node.span)
     if not isinstance(node, ScalarNode) or node.value is None:
         return node
-    words = list(split_words(node.text))
+    words = list(split_selector(node.text))
     renamed_words = [_rewrite_word(word, rename_word) for word in words]
     if renamed_words == words:
         return node

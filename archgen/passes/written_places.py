@@ -40,7 +40,7 @@ def list_type_sections(tree: ProjectTree) -> list[TreePath]:
     return [("component_types",), *(("libraries", name, "component_types") for name in libraries)]
 
 
-def find_type(tree: ProjectTree, name: str) -> TreePath | None:
+def find_type_path(tree: ProjectTree, name: str) -> TreePath | None:
     """Return the path of a component type by the name under which the project knows it, None where there is none."""
     library, dot, inner = name.partition(".")
     path: TreePath = ("libraries", library, "component_types", inner) if dot else ("component_types", name)
@@ -55,7 +55,7 @@ def find_type_of(tree: ProjectTree, path: TreePath) -> TreePath | None:
         if expression is not None:
             # Types of a library see only one another.
             prefix = f"{path[1]}." if path[0] == "libraries" else ""
-            return find_type(tree, prefix + expression.name)
+            return find_type_path(tree, prefix + expression.name)
     return None
 
 

@@ -30,13 +30,13 @@ def find_signed_tags(root: Path, first: str, second: str) -> tuple[SignedTag, ..
 def read_signed_version(checked_project: CheckedProject, signed_tag: SignedTag) -> ProjectVersion | None:
     """Read a project as it was signed; None where that cannot be read."""
     try:
-        version = read_version_before(f"refs/tags/{signed_tag.name}", checked_project)
+        version = read_agreed_version(f"refs/tags/{signed_tag.name}", checked_project)
     except (GitError, ProjectNotFoundError):
         return None
     return replace(version, name=signed_tag.name)
 
 
-def read_version_before(revision: str, checked_project: CheckedProject, path: Path | None = None) -> ProjectVersion:
+def read_agreed_version(revision: str, checked_project: CheckedProject, path: Path | None = None) -> ProjectVersion:
     """Read a project as it was, also where it lay in another folder. `path` is where it is now, by default its root.
 
     Raise `git.GitError` and `project.ProjectNotFoundError`.

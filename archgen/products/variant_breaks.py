@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from archgen.compare import Change, Comparison
-from archgen.compare.breaking_changes import sort_gravest_first
+from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
@@ -52,7 +52,7 @@ def add_variant_breaks(comparison: Comparison, variant_comparisons: dict[str, Co
     idle_everywhere = [set(each.idle_acceptances) for each in variant_comparisons.values()]
     return replace(
         comparison,
-        changes=sort_gravest_first(changes, comparison.policy),
+        changes=sort_breaks_first(changes, comparison.policy),
         idle_acceptances=tuple(
             entry for entry in comparison.idle_acceptances if all(entry in idle for idle in idle_everywhere)
         ),

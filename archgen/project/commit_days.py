@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from archgen.syntax.project_files import ProjectFiles
 
 
-def find_commit_day(files: ProjectFiles, architecture: Architecture) -> str | None:
+def find_newest_day(files: ProjectFiles, architecture: Architecture) -> str | None:
     """Return the day of the newest commit, as YYYY-MM-DD: of the commit that the files are of, else of HEAD.
 
     None where nothing in the project ends on a day (then git is not asked), and where git knows none.

@@ -137,7 +137,9 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         diagnostics=tuple(state.diagnostics),
         ignores={document.file: document.ignores for document in state.documents if document.ignores},
         rule_settings={
-            entry.key: Severity(severity.text) for entry in rule_entries if (severity := severity_of(entry.value))
+            entry.key: Severity(severity.text)
+            for entry in rule_entries
+            if (severity := find_severity_setting(entry.value))
         },
         rule_options=read_rule_options(rule_entries),
         rule_spans={entry.key: entry.key_span for entry in rule_entries},
@@ -157,7 +159,7 @@ def _list_rule_entries(state: ReadingState) -> Iterator[MappingEntry]:
         yield from mapping if isinstance(mapping, MappingNode) else ()
 
 
-def severity_of(setting: YamlNode) -> ScalarNode | None:
+def find_severity_setting(setting: YamlNode) -> ScalarNode | None:
     """Return where a rule's severity is written: as its setting, or below `severity`; None where it is not."""
     node = setting.get("severity") if isinstance(setting, MappingNode) else setting
     return node if isinstance(node, ScalarNode) and node.value is not None else None

@@ -41,7 +41,7 @@ def choose_distro(distro: str | None) -> str | None:
 
 
 @cache
-def load_shipped_types(distro: str | None) -> Mapping[str, MappingEntry]:
+def load_shipped_component_types(distro: str | None) -> Mapping[str, MappingEntry]:
     """Return the component types that ship for a distribution, in normal form, by name; none for one that is not known.
 
     They are shared: nobody may change their trees.
@@ -65,7 +65,7 @@ def read_shipped_document(distro: str | None, span: Span) -> YamlDocument:
     """
     types = {
         name: MappingEntry(name, span, _move_node(entry.value, span))
-        for name, entry in load_shipped_types(choose_distro(distro)).items()
+        for name, entry in load_shipped_component_types(choose_distro(distro)).items()
     }
     section = MappingEntry("component_types", span, MappingNode(types, span))
     return YamlDocument(span.file, MappingNode({section.key: section}, span))
@@ -73,12 +73,12 @@ def read_shipped_document(distro: str | None, span: Span) -> YamlDocument:
 
 def is_shipped_type(name: str, distro: str | None) -> bool:
     """Whether a type ships for a project's distribution."""
-    return name in load_shipped_types(choose_distro(distro))
+    return name in load_shipped_component_types(choose_distro(distro))
 
 
 def describe_missing_type(name: str, distro: str | None) -> str | None:
     """Return for which distributions a type ships that does not for a project's; None where it ships for none."""
-    distros = [each for each in KNOWN_DISTROS if name in load_shipped_types(each)]
+    distros = [each for each in KNOWN_DISTROS if name in load_shipped_component_types(each)]
     if not distros:
         return None
     meant_distro = f"the project's distribution, {choose_distro(distro)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.project.project_loading import LoadedProject, read_rule_options, severity_of
+from archgen.project.project_loading import LoadedProject, find_severity_setting, read_rule_options
 from archgen.project.source_reading import ReadingState, expand_source_pattern
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
@@ -35,7 +35,7 @@ def adopt_settings(loaded_project: LoadedProject, root: MappingNode) -> LoadedPr
         for pattern in (patterns.items if isinstance(patterns, SequenceNode) else ())
         for file in expand_source_pattern(state, pattern)
     ]
-    severities = {entry.key: severity_of(entry.value) for entry in rule_entries}
+    severities = {entry.key: find_severity_setting(entry.value) for entry in rule_entries}
     return replace(
         loaded_project,
         rule_settings={name: Severity(scalar.text) for name, scalar in severities.items() if scalar},

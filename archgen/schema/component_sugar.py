@@ -23,7 +23,7 @@ _WORD_BREAK = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|[^A-Z
 _PORT_SIDES = ("inputs", "outputs")
 
 
-def list_components(root: MappingNode) -> Iterator[tuple[str, MappingNode]]:
+def list_component_bodies(root: MappingNode) -> Iterator[tuple[str, MappingNode]]:
     """Yield the bodies of all components and component types of a document by complete id, outer ones first."""
     for holder in _list_holders(root):
         if not holder.is_group:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.parameter import MAX_NAME_LENGTH
-from archgen.schema.component_sugar import list_components
+from archgen.schema.component_sugar import list_component_bodies
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ _LIMIT_COUNT = 2
 
 def expand_parameters(root: MappingNode) -> Iterator[Diagnostic]:
     """Bring the parameters of all components into the normal form, in place: declarations by dotted name."""
-    for component_id, body in list_components(root):
+    for component_id, body in list_component_bodies(root):
         entry = body.entries.get("parameters")
         if entry is not None and isinstance(entry.value, MappingNode):
             expander = _SetExpander(component_id)

@@ -136,7 +136,7 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     sugar_diagnostics = component_sugar.expand_sugar(document)
     indicator_diagnostics = tuple(
         diagnostic
-        for _, component in component_sugar.list_components(document.root)
+        for _, component in component_sugar.list_component_bodies(document.root)
         for diagnostic in _collect_overall(component)
     )
     parameter_diagnostics = tuple(expand_parameters(document.root))

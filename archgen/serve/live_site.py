@@ -33,9 +33,9 @@ from archgen.serve.project_state import (
     renew_changes,
     renew_history,
 )
-from archgen.serve.site_index import SiteIndex, list_figures, make_index
+from archgen.serve.site_index import SiteIndex, list_page_drawings, make_index
 from archgen.views.pages.report_outline import make_notices
-from archgen.views.pages.single_page import make_page
+from archgen.views.pages.single_page import make_page_at
 from archgen.views.shapes import Page
 
 _IDLE_TIME = 0.4
@@ -216,7 +216,7 @@ class LiveSite:
             index = self._current_index()
         page = index.pages.get(path)
         if page is not None and index.state is not state:
-            page = make_page(state.lookup, state.edition, page.anchor)
+            page = make_page_at(state.lookup, state.edition, page.anchor)
         if page is None:
             # New, gone, or one that cannot be made by itself.
             index = self._current_index()
@@ -233,7 +233,7 @@ class LiveSite:
             notices=make_notices(state.lookup, state.edition),
             links=renew_ids(frame.links, path, page),
         )
-        drawings = [state.edition.drawings[name] for name in list_figures(page) if name in state.edition.drawings]
+        drawings = [state.edition.drawings[name] for name in list_page_drawings(page) if name in state.edition.drawings]
         self._picture_ids |= {page_pictures.picture_path(drawing.id): drawing.id for drawing in drawings}
         chapter_writer = ChapterWriter(state.checked_project.chapters.read_picture)
         data = site.write_page(path, page, self._pictures.find_pictures(drawings), frame, chapter_writer)

@@ -65,7 +65,7 @@ def make_index(state: ProjectState) -> SiteIndex:
     return SiteIndex(state, frame, {frame.links.files[page.path]: page for page in pages})
 
 
-def list_figures(page: Page) -> Iterator[str]:
+def list_page_drawings(page: Page) -> Iterator[str]:
     """Yield the ids of the drawings that a page shows."""
     for card in page.dashboard.cards if page.dashboard else ():
         yield from (block.graph for block in card.blocks if isinstance(block, Figure))

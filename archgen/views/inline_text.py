@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import lru_cache
 from itertools import chain
 
@@ -11,20 +11,12 @@ from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component
-from archgen.model.declared_timing import InputTiming, Timing
-from archgen.model.deployment import Host
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.port_media import ROS, key_of_channel, name_medium, name_on_medium
 from archgen.model.quantity import Quantity
 from archgen.model.source_repository import SourceRepository
 from archgen.views.shapes import Inlines, Text
 
-BEHAVIOUR_WORDS = {
-    "periodic": "periodic",
-    "event": "event-driven",
-    "on_demand": "on demand",
-    "once": "once, at the start",
-}
 NODE_KIND_WORDS = {
     "node": "node",
     "lifecycle": "lifecycle node",
@@ -45,6 +37,9 @@ def share_text(text: str, ref: str | None = None, *, code: bool = False) -> Text
 
 def to_inlines(*parts: str | Text) -> Inlines:
     """Turn strings and ready `Text` runs into one sequence of inlines."""
+    if len(parts) == 1:  # most have one
+        (part,) = parts
+        return (share_text(part) if isinstance(part, str) else part,)
     return tuple([share_text(part) if isinstance(part, str) else part for part in parts])
 
 
@@ -75,8 +70,11 @@ def count_to_inlines(count: int | None) -> Inlines:
 
 def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     """Join inlines with a separator, as `str.join` does."""
+    runs = list(items)
+    if len(runs) <= 1:  # most are one: an owner, a requirement, a reader
+        return runs[0] if runs else ()
     between = share_text(separator)
-    return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(items)]))
+    return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(runs)]))
 
 
 def join_lines(items: Iterable[Inlines]) -> Inlines:
@@ -224,112 +222,6 @@ def list_qos_settings(qos: Qos) -> list[str]:
 def format_qos_cell(qos: Qos) -> Inlines:
     """Describe a quality of service for a table cell; a default that nobody wrote is muted."""
     return (Text(format_qos(qos)),) if qos.written else (Text("default", muted=True),)
-
-
-def format_timing_sentence(timing: Timing | None) -> str:
-    """Write everything a `timing` section says on one line; empty for None."""
-    if timing is None:
-        return ""
-    execution_range = f"{timing.bcet} to {timing.wcet}" if timing.bcet and timing.wcet else ""
-    parts = (
-        BEHAVIOUR_WORDS[timing.behaviour] if timing.behaviour else "",
-        f"period {timing.period}" if timing.period else "",
-        f"{timing.rate}" if timing.rate else "",
-        f"jitter {timing.jitter}" if timing.jitter else "",
-        f"triggered by {_describe_trigger(timing)}" if timing.trigger else "",
-        f"fires at each {timing.every}th" if timing.every else "",
-        f"at least {timing.throttle} apart" if timing.throttle else "",
-        f"dropped messages are {timing.dropped}" if timing.dropped else "",
-        f"execution {execution_range}" if execution_range else "",
-        f"execution up to {timing.wcet}" if timing.wcet and not execution_range else "",
-        f"execution at least {timing.bcet}" if timing.bcet and not execution_range else "",
-        *_describe_measured_times(timing),
-        f"storing inputs: {', '.join(_format_stored_inputs(timing))}" if timing.inputs else "",
-        f"uses {', '.join(_format_uses(timing))}" if timing.uses else "",
-        f"declared response {timing.response}" if timing.response else "",
-        f"publishes only at times: {', '.join(_format_timed_outputs(timing))}" if timing.outputs else "",
-        f"calls for each activation: {', '.join(_format_calls(timing))}" if timing.calls else "",
-        f"priority {timing.priority}" if timing.priority is not None else "",
-        f"deadline {timing.deadline}" if timing.deadline else "",
-        f"core {timing.core}" if timing.core is not None else "",
-        f"cores {', '.join(map(str, timing.cores))}" if timing.cores else "",
-    )
-    return "; ".join(part for part in parts if part)
-
-
-def _format_calls(timing: Timing) -> list[str]:
-    """Format `calls` as "port count"; ports by the last part of their id."""
-    return [f"{name.rsplit('.', 1)[-1]} {count}" for name, count in timing.calls.items()]
-
-
-def _describe_trigger(timing: Timing) -> str:
-    """Describe which inputs trigger an activation."""
-    if timing.trigger is None:
-        return ""
-    if timing.trigger.inputs is None:
-        return f"{timing.trigger.mode} of the inputs"
-    names = ", ".join(name.rsplit(".", 1)[-1] for name in timing.trigger.inputs)
-    if timing.trigger.mode == "match":
-        return f"matching messages of {names}, at most {timing.trigger.within} apart"
-    return f"{timing.trigger.mode} of {names}"
-
-
-def _describe_measured_times(timing: Timing) -> Iterator[str]:
-    """Describe what is written of measurements: whether the worst case is one, and percentiles."""
-    times = timing.measured_times
-    if times is not None:
-        if times.is_measured:
-            yield "the longest execution is measured, not proven"
-        if times.percentiles:
-            yield f"measured {', '.join(f'{name} {time}' for name, time in times.percentiles.items())}"
-
-
-def _format_stored_inputs(timing: Timing) -> list[str]:
-    """Format how long storing each input takes."""
-    return [f"{name.rsplit('.', 1)[-1]} {_format_storing(each)}" for name, each in timing.inputs.items()]
-
-
-def _format_storing(input_timing: InputTiming) -> str:
-    if input_timing.stored_at_once:
-        return "at once"
-    is_range = input_timing.bcet and input_timing.wcet
-    return f"{f'{input_timing.bcet} to ' if is_range else ''}{input_timing.wcet or '?'}"
-
-
-def _format_uses(timing: Timing) -> list[str]:
-    """Format how long each resource is used."""
-    return [f"{name} {f'{each.min} to ' if each.min else ''}{each.max}" for name, each in timing.uses.items()]
-
-
-def format_callback_groups(node: Node) -> str:
-    """Format a node's callback groups: `fast: obstacle_stop; slow: planner, mapper`."""
-    return "; ".join(
-        f"{name}: {', '.join(component.rpartition('.')[2] for component in members)}"
-        for name, members in node.callback_groups.items()
-    )
-
-
-def format_core_orders(host: Host) -> str:
-    """Format the orders of single cores: `core 0 edf, core 3 fifo`."""
-    return ", ".join(f"core {core} {order}" for core, order in host.core_scheduling.items())
-
-
-def _format_timed_outputs(timing: Timing) -> list[str]:
-    """Format the outputs that are not published at every activation."""
-    return [
-        f"{name.rsplit('.', 1)[-1]}" + (f" (at least each {output.max_gap})" if output.max_gap else "")
-        for name, output in timing.outputs.items()
-    ]
-
-
-def format_short_timing(timing: Timing | None) -> str:
-    """Write rate or period and worst-case execution time for a table cell: `10 Hz, up to 80 ms`."""
-    if timing is None:
-        return ""
-    rate = timing.rate or timing.period
-    timing_parts = [str(rate) if rate else BEHAVIOUR_WORDS.get(timing.behaviour, "") if timing.behaviour else ""]
-    timing_parts.append(f"up to {timing.wcet}" if timing.wcet else "")
-    return ", ".join(part for part in timing_parts if part)
 
 
 def count_noun(count: int, noun: str) -> str:

@@ -111,7 +111,7 @@ def describe_unknown(step: StartStep) -> str:
     return "started by somebody else" if step.signals else "nothing says how it is started"
 
 
-def describe_state(step: StartStep) -> str:
+def describe_lifecycle(step: StartStep) -> str:
     """Return what brings a lifecycle node into which state; empty for all others."""
     if step.state is None:
         return ""

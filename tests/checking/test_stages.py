@@ -8,7 +8,7 @@ from archgen import project
 from archgen.checking.all_rules import ALL_RULES, list_structural_errors
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.interface_loading import load_interfaces, read_interface_files
+from archgen.checking.interface_loading import load_project_interfaces, read_interface_files
 from archgen.checking.merged_project import MergedProject, merge_project
 from archgen.checking.named_contents import read_named_contents
 from archgen.checking.project_judging import judge_merged_project
@@ -86,7 +86,9 @@ def test_definitions_of_the_project_come_before_shipped_ones(tmp_path: Path) -> 
     )
     texts, _ = read_interface_files(merged_project.loaded_project)
     assert texts == {"msgs/msg/Own.msg": "int32 x\n"}
-    interfaces, findings = load_interfaces(merged_project.loaded_project, merged_project.table, DeclaredTypes({}))
+    interfaces, findings = load_project_interfaces(
+        merged_project.loaded_project, merged_project.table, DeclaredTypes({})
+    )
     assert findings == ()
     assert {"msgs/msg/Own", "own_msgs/msg/Inline", "std_msgs/msg/Bool"} <= interfaces.names
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from archgen.__main__ import main
+from tests.judged_projects import judge_shipped_once
 
 ROOT = Path(__file__).resolve().parents[2]
 BROKEN = """\
@@ -41,7 +42,7 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
 
     def call(*words: object) -> Ran:
         monkeypatch.setattr(sys, "argv", ["archgen", *map(str, words)])
-        with pytest.raises(SystemExit) as stopped:
+        with pytest.raises(SystemExit) as stopped, judge_shipped_once():
             main()
         printed = capsys.readouterr()
         code = stopped.value.code

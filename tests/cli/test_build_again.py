@@ -14,7 +14,7 @@ from archgen.products import full_build, product_writing
 from tests.running import contents
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from archgen.products.product_inputs import Product, ProductInputs
     from archgen.products.product_writing import StartedProducts
@@ -64,15 +64,24 @@ class Builds:
         return self.count
 
 
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a folder for the pictures that were drawn so far."""
+    return tmp_path_factory.mktemp("drawn")
+
+
 @pytest.fixture
-def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Builds:
+def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, drawn: Path) -> Iterator[Builds]:
     project = tmp_path / "robot"
     project.mkdir()
     (project / "archgen.yaml").write_text(PROJECT, "utf-8")
     (project / "intro.md").write_text("Hello ![a plan](plan.svg)\n", "utf-8")
     (project / "plan.svg").write_text(SVG, "utf-8")
     (project / "plan.png").write_bytes(_png(200))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    # Stamps and reports of its own, and the pictures of all: to draw them anew each time would take longer than all else.
+    cache = tmp_path / "cache" / "archgen"
+    shutil.copytree(drawn, cache)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache.parent))
     builds = Builds(run, project, tmp_path / "out")
     start = product_writing.start_products
 
@@ -81,7 +90,9 @@ def build(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Builds:
         return start(inputs, products)
 
     monkeypatch.setattr(full_build, "start_products", recorded)
-    return builds
+    yield builds
+    for picture in cache.glob("*.picture"):
+        shutil.copy(picture, drawn)
 
 
 def test_what_nothing_changed_of_is_not_made_again(build: Builds) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen.cli import component_type_listing
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import load_shipped_types
+from archgen.project.shipped_library import load_shipped_component_types
 from tests.cli.conftest import Run
 
 HEAD = "archgen: 1\nproject: {id: robot, title: Robot}\nros: {distro: jazzy}\n"
@@ -36,7 +36,7 @@ def test_own_types_have_what_they_are_made_from(run: Run, tmp_path: Path) -> Non
 def test_a_library_offers_also_what_nobody_uses(run: Run, tmp_path: Path) -> None:
     project = write_project(tmp_path, f"libraries: {{parts: builtin}}\n{OWN}")
     names = [row[0] for row in read_rows(run, project)[1:]]
-    assert names == ["arm", "hand", *(f"parts.{name}" for name in load_shipped_types("jazzy"))]
+    assert names == ["arm", "hand", *(f"parts.{name}" for name in load_shipped_component_types("jazzy"))]
     assert [row[0] for row in read_rows(run, project, "--library", "parts")[1:]] == names[2:]
 
 
@@ -48,7 +48,7 @@ def test_what_ships_is_found_by_who_has_none_of_it(run: Run, tmp_path: Path) -> 
     assert "ros.slam_toolbox" in shipped.out
     assert shipped.err == "With `libraries: {ros: builtin}` in archgen.yaml the project may name these.\n"
     assert [row[0] for row in read_rows(run, project, "--library", "builtin")[1:]] == [
-        f"ros.{name}" for name in load_shipped_types("jazzy")
+        f"ros.{name}" for name in load_shipped_component_types("jazzy")
     ]
 
 

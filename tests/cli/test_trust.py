@@ -10,7 +10,7 @@ import pytest
 
 from tests import repositories
 from tests.cli.conftest import Run
-from tests.running import archgen
+from tests.running import archgen_here
 
 PROJECT = """\
 archgen: 1
@@ -33,7 +33,7 @@ def test_a_backend_of_the_branch_runs_only_if_the_main_line_names_it(
     repositories.git(folder, "checkout", "-q", "-b", "stranger")
     repositories.commit(folder, {**BACKEND, "archgen.yaml": PROJECT + "review: {backends: [mine]}\n"})
     words = ("build", "-o", tmp_path / "out", "--backend", "mine", "--trust", "main", "--select", "b")
-    done = archgen(*words, cwd=folder, status=0 if runs else 2)
+    done = archgen_here(*words, cwd=folder, status=0 if runs else 2)
     if runs:
         assert (tmp_path / "out/mine/t.txt").read_text() == "made\n"
     else:
@@ -43,9 +43,11 @@ def test_a_backend_of_the_branch_runs_only_if_the_main_line_names_it(
 
 def test_a_shipped_backend_needs_no_leave_and_an_unknown_revision_is_wrong_usage(tmp_path: Path) -> None:
     folder = repositories.repository(tmp_path / "robot", {"archgen.yaml": PROJECT})
-    archgen("build", "-o", tmp_path / "out", "--backend", "wiki", "--trust", "HEAD", cwd=folder)
+    archgen_here("build", "-o", tmp_path / "out", "--backend", "wiki", "--trust", "HEAD", cwd=folder)
     assert list((tmp_path / "out/wiki").iterdir())
-    done = archgen("build", "-o", tmp_path / "out", "--backend", "mine", "--trust", "nowhere", cwd=folder, status=2)
+    done = archgen_here(
+        "build", "-o", tmp_path / "out", "--backend", "mine", "--trust", "nowhere", cwd=folder, status=2
+    )
     assert b"nowhere" in done.stderr
 
 

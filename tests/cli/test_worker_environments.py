@@ -45,6 +45,7 @@ def environments(monkeypatch: pytest.MonkeyPatch) -> Mapping[str, dict[str, str]
     return started
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_workers_see_what_they_need_and_nothing_else(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, environments: Mapping[str, dict[str, str]]
 ) -> None:

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
+from archgen import pipeline
 from archgen.compare import Comparison
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.edits import list_edits
+from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
+from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.type_edits import find_type_edits
 from archgen.compare.type_origins import TypeKey, trace_origins
 from archgen.emit.data.comparison_json import write_comparison_json
@@ -242,3 +248,19 @@ groups: {g: {components: {a: {is: station}, b: {is: station, node: {start: {read
 )  # fmt: skip
 def test_the_start_up_of_a_type_is_told_once(compared: Compared, old: str, new: str, line: str) -> None:
     assert list_texts(compared(TYPED_START, TYPED_START.replace(old, new, 1))) == [line]
+
+
+def test_of_a_type_without_a_pattern_only_what_it_says_itself_is_known(tmp_path: Path) -> None:
+    """A version whose patterns were not linked, as where a caller gives the architecture alone."""
+    (tmp_path / "robot.yaml").write_text(ROBOT, encoding="utf-8")
+    architecture = pipeline.check_project(tmp_path / "robot.yaml").architecture
+    context = ReadContext(ArchitectureVersion(architecture), MatchedIds())
+    motor = architecture.component_types["motor"]
+    values = {key.name: key.value_of(motor, context) for key in COMPONENT_TYPE.keys if key.name != "title"}
+    assert {name: value for name, value in values.items() if value} == {
+        "functionality": "Turns.",
+        "inputs.": {"target": "Goal"},
+        "outputs.": {"state": "State"},
+    }
+    # A key of many values has none, a plain one is not known.
+    assert (values["timing."], values["parameters."], values["tags"], values["role"]) == ({}, {}, None, None)

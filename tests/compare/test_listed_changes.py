@@ -7,7 +7,7 @@ from pathlib import Path
 from archgen import pipeline
 from archgen.compare import compare_versions, list_changes
 from archgen.products.compared_versions import make_comparison_input
-from tests.running import RAMCIP
+from tests.judged_projects import judge_ramcip
 
 BEFORE = """\
 archgen: 1
@@ -41,7 +41,7 @@ def test_changes_are_those_of_a_comparison(tmp_path: Path) -> None:
 
 
 def test_a_variant_of_the_example_differs_as_a_comparison_says() -> None:
-    checked = pipeline.check_project(RAMCIP)
+    checked = judge_ramcip()
     base = make_comparison_input(checked)
     for variant in checked.variants.values():
         after = make_comparison_input(variant)

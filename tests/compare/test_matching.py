@@ -10,6 +10,7 @@ from archgen import pipeline
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.match_elements import match_elements
 from archgen.model.architecture import Architecture
 
 ROBOT = """\
@@ -94,3 +95,15 @@ def test_features(architecture: Architecture, key: str) -> None:
         marks = sorted(feature.marks(relations, element))
         found.append(f"{feature.name} {feature.weight:g}{generated}: {' '.join(marks)}".rstrip())
     assert sorted(found) == sorted(EXPECTED[key])
+
+
+def test_an_id_that_another_element_has_taken_over_is_nobody_elses(tmp_path: Path) -> None:
+    """The requirement that was R2 is gone: R2 is the text of R1 now."""
+    versions = []
+    for number, texts in enumerate(({"R1": "Sees the person.", "R2": "Grasps."}, {"R2": "Sees the person."})):
+        file = tmp_path / f"{number}.yaml"
+        sections = "".join(f"  {name}: {{description: {text}}}\n" for name, text in texts.items())
+        file.write_text(f"requirements:\n{sections}", encoding="utf-8")
+        versions.append(pipeline.check_project(file).architecture)
+    matched = match_elements(*versions)
+    assert {name: matched.find_new_id("requirement", name) for name in ("R1", "R2")} == {"R1": "R2", "R2": None}

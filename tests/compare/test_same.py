@@ -15,6 +15,7 @@ from archgen import pipeline
 from archgen.compare import ArchitectureVersion, Change, Comparison, compare_versions
 from archgen.products.compared_versions import make_comparison_input
 from archgen.syntax import yaml_writer as writer
+from tests.judged_projects import judge_ramcip
 from tests.running import RAMCIP
 
 
@@ -29,7 +30,7 @@ def ramcip() -> ArchitectureVersion:
 
 @pytest.fixture(scope="module")
 def packed() -> dict[str, object]:
-    data: dict[str, object] = pipeline.check_project(RAMCIP).pack_project().data
+    data: dict[str, object] = judge_ramcip().pack_project().data
     return data
 
 

@@ -19,6 +19,7 @@ from archgen.views.generation.aadl_view import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from tests import hostile
 from tests.generators.aadl_judge import Classifier, find_member, judge_packages
+from tests.judged_projects import judge_ramcip
 from tests.running import ROOT, contents
 
 EXAMPLES = [
@@ -243,7 +244,7 @@ def test_chains_that_are_no_flows_are_told(lab: CheckedProject, tmp_path: Path) 
     assert "heard: end to end flow talker.chatter_flow -> talker_chatter_to_listener -> listener." in system
     assert "Latency => 0 ns .. 50 ms;" in system
     assert "inside: end to end flow" in system
-    ramcip = make_view(GenerationContext(check_project(ROOT / "example_ramcip").architecture)).data
+    ramcip = make_view(GenerationContext(judge_ramcip().architecture)).data
     (comment,) = [comment for package in ramcip["packages"] for comment in package["comments"]]
     assert comment.startswith("The chain speech_to_reply is no end to end flow here: from `voice_activity`")
 

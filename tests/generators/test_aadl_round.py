@@ -11,7 +11,7 @@ import yaml
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PROJECT = """\
 archgen: 1
@@ -27,6 +27,8 @@ types:
   Map: {fields: {name: string, end: "float64[3]", more: {type: "float32[]", unit: m, comment: Cells}}}
 component_types:
   camera: {functionality: Sees., inputs: {}, outputs: {image: sensor_msgs/msg/Image}}
+  sieve: {functionality: Sifts., generic: [T], inputs: {in: T}, outputs: {out: T}}
+  ghost: {outputs: {image: sensor_msgs/msg/Image}}
 groups:
   sensing:
     title: Eyes
@@ -48,6 +50,7 @@ groups:
             internal_state: {schema: lidar.schema.json}
             threads: {publisher: {functions: {function: {source_text: [lidar.h], source_name: measure}}}}
       camera: {is: camera}
+      sieve: {is: sieve<scan>, inputs: {in: {from: sensing.clouds.scan}}}
       clouds: {role: source, inputs: {}, outputs: {scan: scan}}
   driving:
     description: Drives
@@ -98,7 +101,8 @@ properties: {mass: {unit: kg}}
 variants: {small: {without: driving.watcher}}
 """
 LOST = {
-    "component_types": ["/component_types", "/groups/sensing/components/camera/is"],
+    "component types that are generic": ["/component_types/sieve", "/groups/sensing/components/sieve/is"],
+    "without instances": ["/component_types/ghost"],
     "requirements": ["/requirements", "/groups/sensing/components/lidar/requirements"],
     "use cases": ["/use_cases"],
     "views": ["/views"],
@@ -118,21 +122,23 @@ LOST = {
     "what partners are called": ["/partners/lab/title"],
     "that a component has no inputs or no outputs": [
         *("/groups/driving/components/server/inputs", "/groups/driving/components/watcher/outputs"),
+        "/component_types/camera/inputs",
         *("/groups/sensing/components/clouds/inputs", "/groups/sensing/components/lidar/inputs"),
     ],
 }
 """What of the project does not come back, by the words of the page."""
 GAINED = {
     "a node for each component that is no device": [
-        f"/nodes/{name}" for name in ("camera", "clouds", "motor", "user", "watcher")
+        f"/nodes/{name}" for name in ("camera", "clouds", "motor", "sieve", "user", "watcher")
     ],
     "role and behaviour of the thread": [
         *(f"/groups/driving/components/arm/components/motor/{key}" for key in ("role", "timing")),
         *(f"/groups/driving/components/watcher/{key}" for key in ("role", "timing")),
+        *(f"/groups/sensing/components/sieve/{key}" for key in ("role", "timing")),
     ],
     "types and media of the ports of composed components": ["/groups/driving/components/arm/outputs/angle/type"],
-    "what instances have from their types": [
-        f"/groups/sensing/components/camera/{key}" for key in ("functionality", "outputs")
+    "what instances have from types that are written out": [
+        f"/groups/sensing/components/sieve/{key}" for key in ("functionality", "outputs")
     ],
 }
 
@@ -150,7 +156,7 @@ def list_differences(old: Any, new: Any, path: str = "") -> list[tuple[str, str]
 
 
 def pack(folder: Path, to: Path) -> Any:  # noqa: ANN401 - what YAML holds
-    archgen("pack", folder, "-o", to, cwd=folder)
+    archgen_here("pack", folder, "-o", to, cwd=folder)
     return yaml.safe_load(to.read_text(encoding="utf-8"))
 
 
@@ -160,8 +166,8 @@ def differences(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str
     source, back = folder / "source", folder / "back"
     source.mkdir()
     (source / "archgen.yaml").write_text(PROJECT, encoding="utf-8")
-    archgen("generate", "aadl", "-C", source, "-o", folder / "ws", cwd=folder)
-    archgen("import", "aadl", *sorted((folder / "ws" / "aadl").iterdir()), "-o", back, cwd=folder)
+    archgen_here("generate", "aadl", "-C", source, "-o", folder / "ws", cwd=folder)
+    archgen_here("import", "aadl", *sorted((folder / "ws" / "aadl").iterdir()), "-o", back, cwd=folder)
     return list_differences(pack(source, folder / "source.yaml"), pack(back, folder / "back.yaml"))
 
 
@@ -185,7 +191,7 @@ def test_nothing_comes_back_as_something_else(differences: list[tuple[str, str]]
 def test_examples_are_read_back(example: str, tmp_path: Path) -> None:
     project = check_project(ROOT / example)
     write_workspace(project, OutputOptions(), "aadl", tmp_path / "ws")
-    archgen("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
+    archgen_here("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
     again = check_project(tmp_path / "back")
     assert not again.has_errors, [each.message for each in again.findings if each.effective_severity == "error"]
     assert len(again.architecture.groups) >= len(project.architecture.groups)
@@ -205,9 +211,9 @@ def drop_classifiers(data: Any) -> Any:  # noqa: ANN401 - what YAML holds
 def test_the_talker_of_the_paper_goes_back(tmp_path: Path) -> None:
     models = ROOT / "tests" / "importers" / "aadl" / "models"
     files = [models / f"{name}.aadl" for name in ("chatter", "chat_msgs", "ros", "cnc", "topic_properties")]
-    archgen("import", "aadl", *files, "-o", tmp_path / "talking", cwd=tmp_path)
-    archgen("generate", "aadl", "-C", tmp_path / "talking", "-o", tmp_path / "ws", cwd=tmp_path)
-    archgen("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
+    archgen_here("import", "aadl", *files, "-o", tmp_path / "talking", cwd=tmp_path)
+    archgen_here("generate", "aadl", "-C", tmp_path / "talking", "-o", tmp_path / "ws", cwd=tmp_path)
+    archgen_here("import", "aadl", *sorted((tmp_path / "ws" / "aadl").iterdir()), "-o", tmp_path / "back", cwd=tmp_path)
     first, again = (pack(tmp_path / name, tmp_path / f"{name}.yaml") for name in ("talking", "back"))
     assert "talk" in str(first)
     assert "talker.schema.json" in str(first)

@@ -66,11 +66,19 @@ def test_hostile_text_stays_text(generator: str, hostile_project: CheckedProject
     assert {path.name for path in tmp_path.iterdir()} <= {"ws"}
 
 
+@pytest.fixture(scope="module")
+def judged_twice() -> tuple[CheckedProject, CheckedProject]:
+    """Judge the case study twice, which takes longer than what a generator does with it."""
+    return check_project(ROOT / "example_ramcip"), check_project(ROOT / "example_ramcip")
+
+
 @pytest.mark.parametrize("generator", GENERATORS)
-def test_the_same_input_gives_the_same_bytes(generator: str, tmp_path: Path) -> None:
-    project = check_project(ROOT / "example_ramcip")
+def test_the_same_input_gives_the_same_bytes(
+    generator: str, tmp_path: Path, judged_twice: tuple[CheckedProject, CheckedProject]
+) -> None:
+    project, other = judged_twice
     first = write_workspace(project, OutputOptions(), generator, tmp_path / "first")
-    write_workspace(check_project(ROOT / "example_ramcip"), OutputOptions(), generator, tmp_path / "second")
+    write_workspace(other, OutputOptions(), generator, tmp_path / "second")
     assert contents(tmp_path / "first") == contents(tmp_path / "second")
     if first.plan is None:
         return

@@ -18,7 +18,7 @@ from archgen.views.generation.program_senders import is_envelope
 from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.ros_2_kilted import build_interfaces, kilted_environment, make_kilted_python
 from tests.ros_environment import NEWEST_PYTHON
-from tests.running import archgen
+from tests.running import archgen_here
 
 ROBOT = """\
 archgen: 1
@@ -44,7 +44,7 @@ def write_enveloped(folder: Path, distro: str, *passes: str) -> Path:
     """Return a folder with the project behind the pass `envelope` and others."""
     (folder / "p").mkdir()
     (folder / "p" / "archgen.yaml").write_text(ROBOT.replace("DISTRO", distro), encoding="utf-8")
-    archgen("transform", "envelope", *passes, "-o", folder / "e", cwd=folder / "p", status=0)
+    archgen_here("transform", "envelope", *passes, "-o", folder / "e", cwd=folder / "p", status=0)
     return folder / "e"
 
 
@@ -81,7 +81,7 @@ def test_only_a_text_and_a_payload_are_an_envelope() -> None:
 @pytest.mark.parametrize(("backend", "distro"), [("ros1_python", "noetic"), ("ros2_python", "jazzy")])
 def test_it_is_written_as_ros_developers_write(backend: str, distro: str, tmp_path: Path) -> None:
     project = write_enveloped(tmp_path, distro)
-    archgen("generate", backend, "-o", tmp_path / "w", cwd=project, status=0)
+    archgen_here("generate", backend, "-o", tmp_path / "w", cwd=project, status=0)
     command = [sys.executable, "-m", "flake8", "--isolated", *AMENT_FLAKE8, str(tmp_path / "w")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
     assert (done.returncode, done.stdout) == (0, "")
@@ -147,7 +147,7 @@ def test_foreign_senders_are_refused_on_ros_2(tmp_path: Path) -> None:
     project = write_enveloped(tmp_path, "kilted")
     workspace = tmp_path / "w"
     for backend in ("ros_interfaces", "ros2_python"):
-        archgen("generate", backend, "-o", workspace, cwd=project, status=0)
+        archgen_here("generate", backend, "-o", workspace, cwd=project, status=0)
     (workspace / "src" / "rt_arm" / "rt_arm" / "motor.py").write_text(MOTOR, encoding="utf-8")
     prefix = build_interfaces(workspace / "src" / "rt_msgs", tmp_path)
     environment = kilted_environment(37, workspace, prefix, tmp_path)

@@ -140,3 +140,33 @@ groups: {g: {components: {a: {outputs: {one: A, two: B}}}}}
     assert generate(write_project(tmp_path / "p", text), tmp_path / "w", "orocos") == [
         "the field `a` of `p_msgs/msg/B` is left out: by it `p_msgs/msg/B` would hold itself"
     ]
+
+
+def test_a_period_of_openrtm_is_that_of_the_only_context(tmp_path: Path) -> None:
+    """`execution_contexts: Type(25.0)` makes a context called 25.0, which runs a million times a second."""
+    text = "archgen: 1\ngroups: {g: {components: {a: {outputs: {}, timing: {rate: 25 Hz}}}}}\n"
+    generate(write_project(tmp_path / "p", text), tmp_path / "w", "openrtm")
+    lines = (tmp_path / "w" / "openrtm" / "config" / "g_a.conf").read_text("utf-8").splitlines()
+    assert "exec_cxt.periodic.rate: 25.0" in lines
+    assert not [line for line in lines if line.startswith("execution_contexts")]
+
+
+def test_records_travel_between_computers_in_orocos(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+project: {id: p}
+types: {T: {fields: {x: {type: int64}, list: {type: "uint8[]"}}}, Ask: {message: p_msgs/srv/Ask, request: {a: {type: int8}}}}
+hosts: {one: {}, two: {}}
+groups: {g: {components: {a: {outputs: {t: T, start: Ask}}, b: {inputs: {t: a.t, start: a.start}}}}}
+nodes: {a: {implements: g.a, host: one}, b: {implements: g.b, host: two}}
+"""
+    generate(write_project(tmp_path / "p", text), tmp_path / "w", "orocos")
+    files = {path: data.decode() for path, data in contents(tmp_path / "w" / "orocos").items()}
+    for name in ("/p/p_msgs/T", "/p/p_msgs/T[]", "/p/list_of_Octet", "/p/int64_t"):
+        assert f'"{name}"' in files["src/typekit.cpp"]
+        assert f'if (name == "{name}")' in files["src/transport.cpp"]
+    assert 'type="CORBA"' not in files["deployment/one.cpf"]
+    assert '<struct name="g_a" type="CORBA">' in files["deployment/two.cpf"]
+    # `connectOperations` of the deployer takes only what its own program has.
+    assert 'g_b.join_start("g_a", "start_");' in files["deployment/two.ops"]
+    assert "&GB::join_start, this, RTT::ClientThread" in files["src/g_b.cpp"]

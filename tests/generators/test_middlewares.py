@@ -65,7 +65,7 @@ ROWS = {
     },
     "R5 periodic": {
         "orocos": [("deployment/robot_pc.cpf", '<simple name="Period" type="double"><value>0.01</value></simple>'), ("src/guppy_80.cpp", "behaviour_->step();")],
-        "openrtm": [("config/assembly_force_sensor.conf", "execution_contexts: PeriodicExecutionContext(100.0)"), ("profiles/assembly_force_sensor.xml", 'rtc:executionRate="100.0"')],
+        "openrtm": [("config/assembly_force_sensor.conf", "exec_cxt.periodic.rate: 100.0"), ("profiles/assembly_force_sensor.xml", 'rtc:executionRate="100.0"')],
         "player": [("robot_pc.cfg", 'period "0.01"')],
     },
     "R5 not periodic": {

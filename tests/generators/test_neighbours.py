@@ -22,7 +22,7 @@ from archgen.products.workspace_product import write_workspace
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.structure_view import make_view
 from tests import hostile
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PROJECT = """\
 archgen: 1
@@ -271,7 +271,7 @@ def check_nodl(document: dict[str, object]) -> None:
 
 
 def test_tables_hold_what_the_model_holds(lab: CheckedProject, tmp_path: Path) -> None:
-    archgen("build", "--only", "csv", "-C", str(lab.root), "-o", str(tmp_path), cwd=tmp_path)
+    archgen_here("build", "--only", "csv", "-C", str(lab.root), "-o", str(tmp_path), cwd=tmp_path)
     tables = {
         each.stem: list(csv.DictReader(io.StringIO(each.read_text(encoding="utf-8"), newline="")))
         for each in tmp_path.rglob("*.csv")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import archgen
+from tests.running import archgen_here
 
 PROJECT = """\
 archgen: 1
@@ -74,7 +74,7 @@ CALLED = ("on_timer", "receive_map_image", "serve_ask", "receive_log_image")
 )
 def test_a_lock_for_each_group(groups: str, side_by_side: tuple[bool, ...], tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text(PROJECT.replace("GROUPS", groups))
-    archgen("generate", "ros1_python", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path)
+    archgen_here("generate", "ros1_python", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path)
     package = tmp_path / "w" / "src" / "rt_g"
     expected = dict(zip(CALLED, side_by_side, strict=True))
     done = subprocess.run(  # noqa: S603 - what was generated here

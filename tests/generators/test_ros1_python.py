@@ -17,7 +17,7 @@ from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.node_programs import make_view
 from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.hostile import TEXTS
-from tests.running import archgen
+from tests.running import archgen_here
 
 ROBOT = """\
 archgen: 1
@@ -63,7 +63,7 @@ def generate_nodes(folder: Path, text: str, workspace: Path, status: int = 0) ->
     """Generate into a workspace, and return what is said of it."""
     folder.mkdir(exist_ok=True)
     (folder / "archgen.yaml").write_text(text, encoding="utf-8")
-    done = archgen("generate", "ros1_python", "-o", workspace, "--keep-going", cwd=folder, status=status)
+    done = archgen_here("generate", "ros1_python", "-o", workspace, "--keep-going", cwd=folder, status=status)
     return (done.stdout + done.stderr).decode()
 
 

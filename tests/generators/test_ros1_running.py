@@ -20,7 +20,7 @@ from tests.ros_1_environment import (
     ros_1_environment,
     run_programs,
 )
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 pytestmark = pytest.mark.ros
 
@@ -33,7 +33,7 @@ def write_project(folder: Path, text: str) -> Architecture:
 
 def generate_workspace(project: Path, workspace: Path, *words: str) -> None:
     for backend in ("ros_interfaces", "ros1_python", "ros1_launch"):
-        archgen("generate", backend, "-o", workspace, *words, cwd=project, status=0)
+        archgen_here("generate", backend, "-o", workspace, *words, cwd=project, status=0)
 
 
 def judge_graph(environment: dict[str, str], architecture: Architecture) -> dict[str, Any]:
@@ -162,7 +162,7 @@ def test_the_cleaning_robot_runs_as_its_model_says(folder: Path) -> None:
     text = (ROOT / "examples" / "cleaning_robot" / "archgen.yaml").read_text(encoding="utf-8")
     written = write_project(folder / "p", text.replace("distro: jazzy", "distro: noetic"))
     passes = ["envelope", "remove_generics", "flatten"]
-    archgen("transform", *passes, "-o", folder / "flat", cwd=folder / "p", status=0)
+    archgen_here("transform", *passes, "-o", folder / "flat", cwd=folder / "p", status=0)
     architecture = pipeline.check_project(folder / "flat").architecture
     assert list_modelled(architecture)[0] == list_modelled(written)[0]
     workspace = folder / "w"

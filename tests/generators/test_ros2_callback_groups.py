@@ -12,7 +12,7 @@ from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.node_programs import make_view
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
-from tests.running import archgen
+from tests.running import archgen_here
 
 PROJECT = """\
 archgen: 1
@@ -116,7 +116,7 @@ def test_groups_run_side_by_side_and_callbacks_of_one_do_not(tmp_path: Path) -> 
     if sys.version_info[:2] > NEWEST_PYTHON or sys.platform != "linux":
         pytest.skip(f"there is no ROS 2 for {sys.platform} and Python {sys.version.split()[0]}")
     make_brain(tmp_path, GROUPS)
-    archgen("generate", "ros2_python", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path)
+    archgen_here("generate", "ros2_python", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path)
     environment = ros_environment(62, tmp_path) | {"PYTHONPATH": str(tmp_path / "w" / "src" / "rt_g")}
     command = [str(make_ros_python()), "-c", WATCHED]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own

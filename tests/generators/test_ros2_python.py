@@ -19,7 +19,7 @@ from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.node_programs import make_view
 from tests.hostile import TEXTS
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 # What ament_flake8 of Jazzy has in its configuration.
 AMENT_FLAKE8 = (
@@ -76,7 +76,7 @@ def generate(folder: Path, text: str, workspace: Path, status: int = 0) -> str:
     """Generate into a workspace, and return what is said of it."""
     folder.mkdir(exist_ok=True)
     (folder / "archgen.yaml").write_text(text, encoding="utf-8")
-    done = archgen("generate", "ros2_python", "-o", workspace, "--keep-going", cwd=folder, status=status)
+    done = archgen_here("generate", "ros2_python", "-o", workspace, "--keep-going", cwd=folder, status=status)
     return (done.stdout + done.stderr).decode()
 
 

@@ -16,13 +16,14 @@ from archgen.products.project_outputs import render_exported
 from archgen.products.project_views import select_elements
 from archgen.syntax.yaml_writer import write_yaml
 from tests import hostile
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 ID = "{http://www.omg.org/spec/XMI/20131001}id"
 TYPE = "{http://www.omg.org/spec/XMI/20131001}type"
 REFERENCES = frozenset(
     {"type", "client", "supplier", "general", "realizingClassifier", "utilizedElement", "deployedArtifact", "role"}
-    | {"memberEnd", "association", "annotatedElement"}
+    | {"memberEnd", "association", "annotatedElement", "signature", "formal", "actual", "parameter"}
+    | {"parameteredElement", "templateParameter"}
 )
 EXAMPLES = {
     **{name: ROOT / "examples" / name for name in ("arm", "cleaning_robot", "drone", "headlamp")},
@@ -143,18 +144,30 @@ def list_names(root: ET.Element, kind: str) -> list[str]:
 
 
 def test_select_type_gives_the_classes_of_a_library_abstract_ones_too(library: Path) -> None:
-    root = check_model(archgen("export", "xmi", "--select", "type:", cwd=library).stdout.decode())
-    assert list_names(root, "Class") == ["Sensor", "Camera head", "Viewer"]
+    root = check_model(archgen_here("export", "xmi", "--select", "type:", cwd=library).stdout.decode())
+    assert list_names(root, "Class") == ["Sensor", "Camera head", "Viewer", "Filter", "T"]
     abstract = [each.attrib["name"] for each in root.iter() if each.attrib.get("isAbstract") == "true"]
     assert abstract == ["Sensor"]
     assert not list_names(root, "Component")
     assert not list_names(root, "Node")
-    assert {*list_names(root, "Port")} == {"image"}
+    assert {*list_names(root, "Port")} == {"image", "raw", "clean"}
     assert {*list_names(root, "Operation")} >= {"get_image"}
 
 
+def test_classes_of_a_library_with_ids_of_a_tool_come_back_as_types(tmp_path: Path) -> None:
+    text = "component_types: {eye: {outputs: {image: Image}, hints: {uml: {id: _1}}}}\nproject: {id: lab}\n"
+    (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
+    file = tmp_path / "library.uml"
+    file.write_bytes(archgen_here("export", "xmi", "--select", "type:", cwd=tmp_path).stdout)
+    sections = {key: value for each in read_xmi([file]).slices.values() for key, value in each.items()}
+    assert sections["component_types"] == {
+        "eye": {"outputs": {"image": {"type": "Image"}}, "hints": {"uml": {"id": "_1"}}}
+    }
+    assert "groups" not in sections
+
+
 def test_other_exports_still_ask_for_a_value_of_type(library: Path) -> None:
-    refused = archgen("export", "graphml", "--select", "type:", cwd=library, status=2)
+    refused = archgen_here("export", "graphml", "--select", "type:", cwd=library, status=2)
     assert b"`type:` needs a value" in refused.stderr
 
 
@@ -169,9 +182,8 @@ def test_types_parameters_and_values_come_back(library: Path, tmp_path: Path) ->
     packed = check_project(back).pack_project().data
     original = check_project(library).pack_project().data
     types: Any = original["component_types"]
-    # A generic type has no class: UML's templates are not written.
     assert packed["component_types"] == {
-        **{name: types[name] for name in ("camera", "viewer")},
+        **{name: types[name] for name in ("camera", "viewer", "filter")},
         "sensor": {
             "abstract": True,
             "parameters": {

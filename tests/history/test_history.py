@@ -15,7 +15,7 @@ from archgen.history.project_commits import list_commits
 from archgen.pipeline import CheckedProject
 from archgen.project import LoadedProject, find_tracked_project
 from tests import repositories
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 START = """\
 archgen: 1
@@ -67,7 +67,7 @@ def test_a_point_for_each_commit_that_changed_the_project(robot: Path) -> None:
 
 def test_findings_count_for_the_whole_the_group_and_the_partner(robot: Path) -> None:
     rows = {(row.scope, row.id): row.findings.warning for row in count_history(robot).points[0].rows}
-    said = json.loads(archgen("check", "--format", "json", cwd=robot).stdout)["summary"]
+    said = json.loads(archgen_here("check", "--format", "json", cwd=robot).stdout)["summary"]
     assert rows["project", "archgen" if ("project", "archgen") in rows else "robot"] > said["warning"]
     assert rows["group", "sensing"] == rows["partner", "p"] > 0
     assert rows["partner", "q"] == 0
@@ -150,13 +150,13 @@ def test_where_nothing_was_committed_there_is_an_error(tmp_path: Path) -> None:
     (folder / "archgen.yaml").write_text(START)
     with pytest.raises(git.NoCommitsError):
         count_history(folder)
-    done = archgen("stats", "--history", cwd=folder, status=2)
+    done = archgen_here("stats", "--history", cwd=folder, status=2)
     assert b"nothing was committed in this repository yet" in done.stderr
 
 
 def test_the_terminal_shows_what_grew(robot: Path, tmp_path: Path) -> None:
     env = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
-    lines = archgen("stats", "--history", "--by", "month", cwd=robot, env=env).stdout.decode().splitlines()
+    lines = archgen_here("stats", "--history", "--by", "month", cwd=robot, env=env).stdout.decode().splitlines()
     assert lines[0].split() == [
         *("when", "groups", "components", "connections", "nodes"),
         *("described", "typed", "mapped", "timed", "traced", "findings"),
@@ -168,18 +168,18 @@ def test_the_terminal_shows_what_grew(robot: Path, tmp_path: Path) -> None:
 
 def test_json_is_as_the_schema_says_and_csv_is_safe_to_open(robot: Path, tmp_path: Path) -> None:
     env = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
-    data = json.loads(archgen("stats", "--history", "--format", "json", cwd=robot, env=env).stdout)
+    data = json.loads(archgen_here("stats", "--history", "--format", "json", cwd=robot, env=env).stdout)
     schema = json.loads((ROOT / "schemas/history.schema.json").read_text(encoding="utf-8"))
     jsonschema_rs.validator_for(schema).validate(data)
     assert (data["by"], data["complete"], len(data["points"])) == ("revision", True, 3)
-    rows = archgen("stats", "--history", "--format", "csv", cwd=robot, env=env).stdout.decode().splitlines()
+    rows = archgen_here("stats", "--history", "--format", "csv", cwd=robot, env=env).stdout.decode().splitlines()
     assert rows[0].startswith("commit,day,scope,id,title,components,described")
     assert any(",partner,q,'=Q,1," in row for row in rows)
 
 
 def test_options_that_need_the_history(robot: Path) -> None:
     for words in (("--by", "month"), ("--format", "csv")):
-        assert b"belong to --history" in archgen("stats", *words, cwd=robot, status=2).stderr
+        assert b"belong to --history" in archgen_here("stats", *words, cwd=robot, status=2).stderr
 
 
 def test_a_folder_older_than_the_project_in_it(tmp_path: Path) -> None:

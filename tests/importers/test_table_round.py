@@ -12,8 +12,9 @@ from archgen import importers
 from archgen.cli import main as verbs
 from archgen.pipeline import CheckedProject, check_project
 from archgen.start import project_plan, start_answers, starter_slices
+from tests.judged_projects import judge_ramcip
 from tests.property_sizes import count_examples
-from tests.running import RAMCIP, ROOT, archgen
+from tests.running import RAMCIP, ROOT, archgen_here
 
 FIRST = ROOT / "examples" / "first_robot"
 
@@ -99,7 +100,7 @@ def test_what_archgen_list_writes_comes_back() -> None:
         told.append((f"{sort}.csv", listed.stdout_bytes))
     found = importers.import_tables(told, "jazzy")
     assert found.diagnostics == ()
-    before, after = check_project(RAMCIP).architecture, made(found).architecture
+    before, after = judge_ramcip().architecture, made(found).architecture
     assert {(e.output, e.input) for e in after.edges} == {(e.output, e.input) for e in before.edges}
     assert {c.id: (c.title, c.owner, c.role) for c in after.components.values()} == {
         c.id: (c.title, c.owner, c.role) for c in before.components.values()
@@ -115,7 +116,7 @@ def test_what_archgen_list_writes_comes_back() -> None:
 
 
 def test_connections_as_listed_come_back(tmp_path: Path) -> None:
-    table = archgen("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
+    table = archgen_here("list", "--of", "connections", "--format", "csv", "-C", FIRST, cwd=tmp_path).stdout
     before, after = (
         check_project(FIRST).architecture,
         made(importers.import_tables([("c.csv", table)], "jazzy")).architecture,

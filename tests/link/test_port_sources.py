@@ -54,3 +54,22 @@ def test_each_port_of_a_composed_component_says_what_stands_behind_it(tmp_path: 
         "output g.outer.middle.x": ("g.outer.middle.inner.x",),
         "output g.outer.middle.inner.x": ("g.outer.middle.inner.deep.x",),
     }
+
+
+def test_an_input_that_several_outputs_fit_counts_as_written_and_another_does_not(tmp_path: Path) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text(
+        """\
+groups:
+  g:
+    autoconnect: ports
+    components:
+      left: {outputs: {image: Image}}
+      right: {outputs: {image: Image}}
+      eye: {inputs: {image: {type: Image}, light: {type: Image}}}
+""",
+        encoding="utf-8",
+    )
+    ports = pipeline.check_project(file).architecture.inputs
+    assert ports["g.eye.image"].from_written  # so that it is not reported a second time, as one without a source
+    assert not ports["g.eye.light"].from_written

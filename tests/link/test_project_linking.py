@@ -327,3 +327,15 @@ def test_a_node_without_component_times_its_own_keys(linked: Linked) -> None:
     node = linked("nodes: {n: {subscribes: {x: }, timing: {trigger: [x]}}}")[0].nodes["n"]
     assert node.timing[""].trigger == Trigger("any", ("x",))
     assert [(use.key, use.port) for use in node.uses] == [("x", None)]
+
+
+def test_what_of_its_executor_a_node_says_itself_has_a_place_and_the_rest_none(linked: Linked) -> None:
+    architecture, _ = linked("""
+nodes:
+  n: {threads: 2, reentrant: true}
+  m:
+""")
+    places = {
+        name: {key: at.line for key, at in node.executor_places.items()} for name, node in architecture.nodes.items()
+    }
+    assert places == {"n": {"threads": 3, "reentrant": 3}, "m": {}}

@@ -12,9 +12,9 @@ from archgen.model.annotated_elements import KINDS, list_annotated_elements
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.element_annotations import (
     PropertyDeclaration,
-    compare_values,
     describe_range,
     find_property_fault,
+    order_values,
     read_figure,
 )
 from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_condition
@@ -63,7 +63,7 @@ def test_a_figure_is_a_number_with_any_unit(text: str, figure: tuple[str, str] |
     ],
 )
 def test_only_what_is_measured_alike_is_compared(text: str, other: str, order: int | None) -> None:
-    assert compare_values(text, other) == order
+    assert order_values(text, other) == order
 
 
 def declared(**keys: object) -> PropertyDeclaration:

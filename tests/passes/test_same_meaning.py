@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from archgen.pipeline import check_project, transform_project
+from tests.judged_projects import judge_ramcip
 from tests.passes.same_meaning import EXAMPLES, check_packed, pack, transform_alike, write_project
 
 ALL = ("connect_components", "connect_ports", "connect_types", "resolve_instances", "remove_generics")
@@ -24,7 +25,7 @@ def test_the_examples(example: str, tmp_path: Path) -> None:
 
 
 def test_ramcip(tmp_path: Path) -> None:
-    checked = check_project(EXAMPLES.parent / "example_ramcip")
+    checked = judge_ramcip()
     transformed = transform_alike(checked, *ALL)
     check_packed(transformed, tmp_path)
 

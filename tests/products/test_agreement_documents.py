@@ -17,7 +17,6 @@ from lxml import etree
 from markdown_it import MarkdownIt
 
 import archgen
-from archgen import pipeline, resources
 from archgen.products import agreement_documents
 from archgen.products.agreement_documents import PartnersError
 from archgen.products.compared_versions import read_version
@@ -26,6 +25,7 @@ from archgen.views.agreement import PartnerAgreement
 from tests import hostile
 from tests.agreeing import DUO, checked, written
 from tests.emit.docx import inspection, judges
+from tests.judged_projects import judge_ramcip
 from tests.repositories import commit, git, repository
 from tests.running import QUICK_START
 
@@ -51,9 +51,7 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 def make_agreement(kind: str, folder: Path) -> PartnerAgreement:
     """Make the agreement of a small project, of the case study or of hostile texts."""
     if kind == "ramcip":
-        return agreement_documents.make_project_agreement(
-            pipeline.check_project(resources.resource_path("example_ramcip")), "sssa", "tum", None, "r1"
-        )
+        return agreement_documents.make_project_agreement(judge_ramcip(), "sssa", "tum", None, "r1")
     if kind == "duo":
         earlier = read_version(
             None, written(folder / "before", DUO.replace("30 Hz", "20 Hz").replace("info: sensor", "x: sensor"))

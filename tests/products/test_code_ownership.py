@@ -21,6 +21,7 @@ from archgen.products import code_ownership
 from archgen.views.elements import element_card
 from archgen.views.tables import element_rows
 from tests.agreeing import DUO, checked, view
+from tests.judged_projects import judge_ramcip
 from tests.repositories import repository
 
 OWNED = """\
@@ -190,7 +191,7 @@ def test_a_pattern_matches_its_file_and_breaks_out_of_no_line(path: str, line: s
 
 
 def test_every_line_is_a_pattern_with_handles(tmp_path: Path) -> None:
-    text = code_ownership.make_codeowners(check_project(Path(__file__).parents[2] / "example_ramcip")).text
+    text = code_ownership.make_codeowners(judge_ramcip()).text
     for line in [*text.splitlines(), *code_ownership.make_codeowners(checked(tmp_path, DUO)).text.splitlines()]:
         path, *handles = re.split(r"(?<!\\) ", line)
         assert (

@@ -7,7 +7,7 @@ from pathlib import Path
 from archgen.pipeline import check_project
 from archgen.products.code_ownership import make_codeowners
 from archgen.products.schema_renewal import digest_texts, list_project_names
-from archgen.views.elements.component_type_blocks import make_type_table
+from archgen.views.elements.component_type_blocks import make_component_type_table
 from archgen.views.lookup import make_lookup
 from tests.repositories import repository
 
@@ -49,7 +49,7 @@ def test_the_table_of_component_types_says_of_which_library_each_is_and_has_no_e
     }.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(content)
-    table = make_type_table(make_lookup(check_project(tmp_path).architecture))
+    table = make_component_type_table(make_lookup(check_project(tmp_path).architecture))
     assert table is not None
     assert [column.title for column in table.columns] == ["Type", "Library", "Purpose", "Instances"]
     assert ["".join(run.text for run in row[1]) for row in table.rows] == ["", "common"]

@@ -11,7 +11,7 @@ from archgen.products.repository_comparison import compare_projects_below, list_
 from tests.repositories import commit, repository
 from tests.repositories import git as git_command
 from tests.repositories import git as run_git
-from tests.running import archgen
+from tests.running import archgen_here
 
 LIBRARY = "component_types: {laser: {parameters: {range: 5.0}, outputs: {scan: sensor_msgs/msg/LaserScan}}}\n"
 USER = """archgen: 1
@@ -87,7 +87,7 @@ def test_a_range_lists_the_projects_of_both_ends(top: Path, first: str) -> None:
 def test_without_versions_the_working_tree_is_compared_with_the_last_commit_of_the_main_line(top: Path) -> None:
     (top / "common" / "a.yaml").write_text(LIBRARY.replace("5.0", "6.0"))
     assert compare(top, None) == compare(top, "main")
-    archgen("diff", "robots/one", cwd=top, status=2)
+    archgen_here("diff", "robots/one", cwd=top, status=2)
 
 
 def test_in_a_project_or_outside_of_a_repository_there_is_no_list(
@@ -99,14 +99,14 @@ def test_in_a_project_or_outside_of_a_repository_there_is_no_list(
 
 
 def test_the_verb_ends_as_it_does_for_one_project(top: Path) -> None:
-    archgen("diff", "HEAD", "--exit-code", cwd=top)
+    archgen_here("diff", "HEAD", "--exit-code", cwd=top)
     (top / "common" / "a.yaml").write_text(LIBRARY.replace("LaserScan", "Image"))
-    done = archgen("diff", "HEAD", "--exit-code", cwd=top, status=1)
+    done = archgen_here("diff", "HEAD", "--exit-code", cwd=top, status=1)
     assert done.stdout.decode().splitlines()[-1] == "`archgen diff -C FOLDER` says what changed in a project."
-    archgen("diff", "HEAD", "--breaking", cwd=top)
+    archgen_here("diff", "HEAD", "--breaking", cwd=top)
     (top / "robots" / "one" / "archgen.yaml").write_text(USER + "review: {breaking: error}\n")
-    archgen("diff", "HEAD", "--breaking", cwd=top, status=1)
-    refused = archgen("diff", "HEAD", "--format", "json", cwd=top, status=2)
+    archgen_here("diff", "HEAD", "--breaking", cwd=top, status=1)
+    refused = archgen_here("diff", "HEAD", "--format", "json", cwd=top, status=2)
     assert "this folder only holds projects: name one with -C, such as `-C robots/one`" in refused.stderr.decode()
 
 
@@ -131,20 +131,20 @@ def test_what_cannot_be_read_is_not_removed(top: Path) -> None:
 @pytest.mark.parametrize("named", ["robots/two", "./robots/two", "robots/two/archgen.yaml"])
 def test_the_folder_that_is_named_says_which_project_is_meant_at_the_revision(top: Path, named: str) -> None:
     (top / "robots" / "two" / "archgen.yaml").write_text(PLAIN.replace("G}", "H}"))
-    assert "title `G` → `H`" in archgen("diff", "HEAD", named, cwd=top).stdout.decode()
-    assert "title `H` → `G`" in archgen("diff", named, "HEAD", cwd=top).stdout.decode()
+    assert "title `G` → `H`" in archgen_here("diff", "HEAD", named, cwd=top).stdout.decode()
+    assert "title `H` → `G`" in archgen_here("diff", named, "HEAD", cwd=top).stdout.decode()
 
 
 def test_a_folder_of_another_repository_says_nothing_of_the_one_here(
     top: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     other = repository(tmp_path_factory.mktemp("other"), {"archgen.yaml": PLAIN})
-    archgen("diff", "HEAD", str(other), cwd=top, status=2)
+    archgen_here("diff", "HEAD", str(other), cwd=top, status=2)
 
 
 def test_a_branch_that_is_called_as_a_folder_is_the_branch(top: Path) -> None:
     (top / "two").mkdir()
     (top / "two" / "archgen.yaml").write_text(PLAIN)
     git_command(top, "branch", "two")
-    lines = archgen("diff", "HEAD", "two", cwd=top).stdout.decode().splitlines()
+    lines = archgen_here("diff", "HEAD", "two", cwd=top).stdout.decode().splitlines()
     assert lines == ["robots/one  nothing changed", "robots/two  nothing changed"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen.pipeline import check_at_revision, check_project
-from archgen.project.commit_days import find_commit_day
+from archgen.project.commit_days import find_newest_day
 from tests.repositories import commit, repository
 
 ROBOT = """\
@@ -58,5 +58,5 @@ def test_git_is_not_asked_where_nothing_ends_on_a_day(tmp_path: Path) -> None:
     plain = ROBOT.replace("until: 2024-05-01, ", "")
     (folder / "archgen.yaml").write_text(plain, encoding="utf-8")
     checked = check_project(folder)
-    assert find_commit_day(checked.loaded_project.files, checked.architecture) is None
+    assert find_newest_day(checked.loaded_project.files, checked.architecture) is None
     assert checked.architecture.commit_day is None

@@ -15,7 +15,7 @@ from archgen.link.shipped_interfaces import load_shipped_interfaces
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.model.message_types import full_message_name
 from archgen.project import shipped_library
-from archgen.project.shipped_library import load_shipped_types, read_shipped_document
+from archgen.project.shipped_library import load_shipped_component_types, read_shipped_document
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
 from tests.repositories import repository
 from tests.running import ROOT
@@ -49,7 +49,7 @@ def test_an_instance_of_each_type_needs_its_inputs_and_the_parameters_that_nobod
     distro: str, tmp_path: Path
 ) -> None:
     file, loud_findings = tmp_path / "project.yaml", {}
-    for name, entry in load_shipped_types(distro).items():
+    for name, entry in load_shipped_component_types(distro).items():
         file.write_text(write_instance(distro, name, mapping_values.get_body(entry)), encoding="utf-8")
         checked_project = pipeline.check_project(file)
         assert {finding.span.file for finding in checked_project.findings} == {"project.yaml"}, name
@@ -67,7 +67,7 @@ def test_each_message_is_held_for_each_distribution_that_has_the_type(distro: st
     names = load_shipped_interfaces(distro).names
     missing = {
         f"{name}.{port}: {text}"
-        for name, entry in load_shipped_types(distro).items()
+        for name, entry in load_shipped_component_types(distro).items()
         for side in ("inputs", "outputs")
         for port, _, body in mapping_values.iterate_elements(mapping_values.get_body(entry), side)
         if mapping_values.get_text(body, "medium") != "physical"
@@ -79,7 +79,7 @@ def test_each_message_is_held_for_each_distribution_that_has_the_type(distro: st
 
 @pytest.mark.parametrize("distro", KNOWN_DISTROS)
 def test_each_type_says_what_it_is_and_where_what_it_sends_goes(distro: str) -> None:
-    types = load_shipped_types(distro)
+    types = load_shipped_component_types(distro)
     assert len(types) >= (60 if distro in {"noetic", "humble", "jazzy", "kilted"} else 50)
     for name, entry in types.items():
         body = mapping_values.get_body(entry)
@@ -119,14 +119,14 @@ def test_the_table_of_distributions_names_what_there_is() -> None:
 
 
 def test_distributions_differ() -> None:
-    assert "move_base" in load_shipped_types("noetic")
-    assert "move_base" not in load_shipped_types("jazzy")
-    assert "planner_server" not in load_shipped_types("rolling")
+    assert "move_base" in load_shipped_component_types("noetic")
+    assert "move_base" not in load_shipped_component_types("jazzy")
+    assert "planner_server" not in load_shipped_component_types("rolling")
     commands = {
         distro: mapping_values.get_text(
             mapping_values.get_mapping(
                 mapping_values.get_mapping(
-                    mapping_values.get_body(load_shipped_types(distro)["controller_server"]), "outputs"
+                    mapping_values.get_body(load_shipped_component_types(distro)["controller_server"]), "outputs"
                 ),
                 "cmd_vel",
             ),

@@ -10,14 +10,14 @@ import pytest
 from archgen import resources
 from archgen.link import mapping_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import load_shipped_types
+from archgen.project.shipped_library import load_shipped_component_types
 from archgen.project.shipped_sources import SOURCE_KINDS, ShippedSource, list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_parser import parse_yaml
 
 
 @pytest.mark.parametrize("distro", KNOWN_DISTROS)
 def test_each_fact_has_exactly_one_source_and_no_source_is_for_nothing(distro: str) -> None:
-    types, sources = load_shipped_types(distro), read_shipped_sources(distro)
+    types, sources = load_shipped_component_types(distro), read_shipped_sources(distro)
     assert list(sources) == list(types), "types and sources, in the order of their names"
     for name, entry in types.items():
         facts = sorted(list_type_facts(mapping_values.get_body(entry)))

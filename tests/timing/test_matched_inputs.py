@@ -13,10 +13,11 @@ from archgen.simulation import simulate_system
 from archgen.simulation.time_matching import make_matcher
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.fused_inputs import find_fused_inputs
+from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.load.match_windows import MatchedInput, find_match_windows
 from archgen.timing.run_analysis import analyse_architecture, analyse_system
 from archgen.timing.system.timing_system import Activity, TimingSystem
-from tests.simulation.systems import arc, event, system, timed
+from tests.simulation.systems import arc, call, event, system, timed
 from tests.timing.random_systems import architecture
 
 
@@ -107,6 +108,8 @@ def test_messages_of_one_job_match_at_once() -> None:
     stereo = event("stereo", 1, "left", "right", mode="match", within=0)
     analysis = analyse_system(system((camera, stereo), arcs))
     assert _ms(analysis.paces["stereo"].gap) == 50
+    # Each message has its match: the rate is that of the camera, and not at most that.
+    assert (analysis.paces["stereo"].rate.value, analysis.paces["stereo"].rate.side) == (20, "exact")
     assert {key: _ms(wait) for key, wait in analysis.matches["stereo"].waits.items()} == {"left": 0, "right": 0}
     assert [(_ms(fused.apart), _ms(fused.ages["left"])) for fused in find_fused_inputs(analysis)] == [(0, 3)]
 
@@ -200,3 +203,15 @@ def _pair(slow: int, fast: int, *, within: int | None, jitter: int = 0) -> Timin
 
 def _ms(value: object) -> Fraction:
     return value.value / 10**6  # type: ignore[attr-defined, no-any-return]
+
+
+@pytest.mark.parametrize(("is_called", "age"), [(False, 140), (True, 140 + 270)])
+def test_a_call_works_again_with_a_match_that_may_be_a_gap_old(*, is_called: bool, age: int) -> None:
+    of = _pair(100, 30, within=40)
+    if is_called:
+        caller = timed("caller", 50, 1)
+        request, answer = call("caller", "fuse")
+        of = system((*of.activities.values(), caller), (*of.arcs, request, answer))
+    analysis = analyse_system(of)
+    slow = next(one for one in of.arcs if one.source == "slow")
+    assert _ms(StepDelays.of_analysis(analysis).holding_age(slow)) == age

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from archgen import pipeline, resources
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
+from tests.judged_projects import judge_ramcip
 from tests.timing.printed import show_ms
 from tests.timing.sketches import analyse_sketch
 
@@ -59,7 +59,7 @@ def test_only_where_the_number_of_cores_does_not_matter_there_is_a_bound(
 
 
 def test_no_chain_of_ramcip_is_missed_for_a_number_of_cores_that_nobody_wrote() -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     written = bound_all_chains(analyse_architecture(architecture), architecture)
     for host in architecture.hosts.values():
         changed = replace(architecture, hosts={**architecture.hosts, host.id: replace(host, cores=None)})

@@ -16,6 +16,7 @@ from archgen.views.agreement import PartnerAgreement, make_agreement
 from archgen.views.agreement.message_fields import field_table, list_field_rows
 from archgen.views.shapes import Outline, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
+from tests.judged_projects import judge_ramcip
 
 
 def made(folder: Path, first: str = "north", second: str = "south", source: str = DUO) -> PartnerAgreement:
@@ -163,7 +164,7 @@ def test_all_interfaces_are_those_of_each_pair(tmp_path: Path, name: str) -> Non
 
 
 def test_every_connection_between_owners_is_in_their_agreement() -> None:
-    found = view(pipeline.check_project(resources.resource_path("example_ramcip")))
+    found = view(judge_ramcip())
     architecture, partners = found.architecture, sorted(found.architecture.partners)
     agreed = {
         (each.key, port.id): each.pair
@@ -412,7 +413,7 @@ def _table(outline: Outline, title: str) -> Table:
 
 @pytest.mark.parametrize(("first", "second"), [("certh", "sssa"), ("accrea", "tum"), ("forth", "certh")])
 def test_the_case_study_s_pictures_account_for_all_that_flows(first: str, second: str) -> None:
-    found = view(pipeline.check_project(resources.resource_path("example_ramcip")))
+    found = view(judge_ramcip())
     made_of = make_agreement(found, first, second)
     assert made_of.graph.asked == sum(arrow.count for arrow in made_of.graph.arrows)
     assert {box.id for box in made_of.graph.boxes} >= {end for a in made_of.graph.arrows for end in (a.tail, a.head)}

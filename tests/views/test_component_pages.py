@@ -14,7 +14,7 @@ from archgen.model.architecture import Architecture
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.pages.single_page import make_page
+from archgen.views.pages.single_page import make_page_at
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.report.ros_blocks import make_ros_blocks
 from archgen.views.search import make_search_entries
@@ -157,7 +157,7 @@ def test_without_types_nothing_is_said_of_them(tmp_path: Path) -> None:
     "anchor", ["component:arms.arm", "component:arms.arm.hand.finger", "component_type:motor", "page:component_types"]
 )
 def test_a_page_by_itself_is_the_same(robot: Architecture, anchor: str) -> None:
-    assert make_page(make_lookup(robot), DocumentEdition(), anchor) == list_pages(robot)[anchor]
+    assert make_page_at(make_lookup(robot), DocumentEdition(), anchor) == list_pages(robot)[anchor]
 
 
 def test_a_composed_component_that_is_not_designed_to_its_end_has_one_page(tmp_path: Path) -> None:

@@ -25,6 +25,7 @@ from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.records import resolved_record
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Paragraph, Section, Table, Text
 from archgen.views.tables import element_rows, statistics_tables
+from tests.judged_projects import judge_ramcip
 
 WITHOUT_PAGE = {"frame", "link", "chain", "view", "policy"}
 """Sorts of element that stand in a table or a chapter of their own and have no page."""
@@ -32,7 +33,7 @@ WITHOUT_PAGE = {"frame", "link", "chain", "view", "policy"}
 
 @pytest.fixture(scope="module")
 def checked() -> CheckedProject:
-    return pipeline.check_project(resources.resource_path("example_ramcip"))
+    return judge_ramcip()
 
 
 @pytest.fixture(scope="module")

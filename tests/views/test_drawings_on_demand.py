@@ -16,7 +16,7 @@ from archgen.views.agreement.partner_exchanges import gather_exchanges
 from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.pages import partner_pages, site_pages
 from archgen.views.pages.report_outline import DetailLevel
-from archgen.views.pages.single_page import make_page
+from archgen.views.pages.single_page import make_page_at
 
 PROJECTS = Path(__file__).parents[2]
 LEVELS = get_args(DetailLevel)
@@ -59,9 +59,9 @@ def test_each_page_is_the_one_of_the_whole_site(name: str, level: DetailLevel, m
     pages = site_pages.make_pages(views.lookup, views.edition)
     edition = replace(views.edition, drawings=DrawingsOnDemand(views.lookup, level))
     for page in pages:
-        single_page = make_page(views.lookup, edition, page.anchor)
+        single_page = make_page_at(views.lookup, edition, page.anchor)
         # Two requirements may have names that give one path: the numbers behind it take all pages to know.
         assert single_page is not None, page.anchor
         assert replace(single_page, path=page.path) == page
-    assert make_page(views.lookup, edition, "component:nobody.here") is None
-    assert make_page(views.lookup, edition, "nonsense") is None
+    assert make_page_at(views.lookup, edition, "component:nobody.here") is None
+    assert make_page_at(views.lookup, edition, "nonsense") is None

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from archgen import pipeline
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.views.pages import site_pages
 from archgen.views.shapes import Inlines, Page, Section, Table
+from tests.judged_projects import judge_ramcip
 
 ROOT = Path(__file__).resolve().parents[2]
 FIGURE = re.compile(
@@ -26,7 +26,7 @@ UNITS |= {"bit/s": 1, "kbit/s": 10**3, "Mbit/s": 10**6, "Gbit/s": 10**9}
 
 @pytest.fixture(scope="module")
 def pages() -> tuple[Page, ...]:
-    views = project_views.make_views(pipeline.check_project(ROOT / "example_ramcip"), OutputOptions(revision="test"))
+    views = project_views.make_views(judge_ramcip(), OutputOptions(revision="test"))
     return tuple(site_pages.make_pages(views.lookup, views.edition))
 
 

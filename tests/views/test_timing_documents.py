@@ -7,19 +7,19 @@ from dataclasses import replace
 
 import pytest
 
-from archgen import pipeline, resources
 from archgen.views.drawing_set import make_drawings
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.shapes import Bullets, Facts, Figure, Section, Table
 from archgen.views.timing import element_timing, timing_tables
+from tests.judged_projects import judge_ramcip
 from tests.timings import timed
 
 
 @pytest.fixture(scope="module")
 def view() -> Lookup:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     return make_lookup(architecture, timing_lookup=timed(architecture))
 
 

@@ -54,7 +54,7 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     def draw_piece(share: float) -> FlowPiece:
         size = (width * share, height * share)
         run = format_picture(writer, (raster, drawing), size, shape.alt or shape.caption)
-        piece = write_picture(writer, PictureRun(run, size[1]), sheet, keep_next=shape.numbered)
+        piece = write_picture_paragraph(writer, PictureRun(run, size[1]), sheet, keep_next=shape.numbered)
         return replace(piece, picture=scalable_picture)
 
     least = _LEAST_SIZE / (_TYPE_SIZE * scale)
@@ -90,7 +90,7 @@ def choose_sheet(writer: DocxWriter, width: float, height: float) -> tuple[Paper
     return sheet, scale
 
 
-def write_picture(
+def write_picture_paragraph(
     writer: DocxWriter, picture: PictureRun, sheet: PaperSheet | None, *, keep_next: bool = True
 ) -> FlowPiece:
     """Write a paragraph that holds a picture alone."""

@@ -13,7 +13,7 @@ from markdown_it.tree import SyntaxTreeNode
 
 from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.docx_writer import DocxWriter
-from archgen.emit.docx.figures import read_chapter_picture, write_picture
+from archgen.emit.docx.figures import read_chapter_picture, write_picture_paragraph
 from archgen.emit.docx.list_numbering import LIST_LEVELS
 from archgen.emit.docx.markdown_spans import ChapterSource, read_content, read_inlines
 from archgen.emit.docx.page_flow import FlowPiece
@@ -190,7 +190,7 @@ def _write_picture(writer: DocxWriter, node: SyntaxTreeNode, context: BlockConte
     if picture is None:
         return []
     title = " ".join(str(node.attrs.get("title", "") or node.content).split())
-    pieces = [write_picture(writer, picture, None, keep_next=bool(title))]
+    pieces = [write_picture_paragraph(writer, picture, None, keep_next=bool(title))]
     if title:
         pieces.append(write_caption(writer, f"{context.source.anchor}!{title}", title, None))
     return pieces

@@ -113,7 +113,7 @@ def write_picture(picture_id: str, picture: Picture, links: SiteLinks) -> bytes 
         return None
     current_page = open_page(drawing.picture_path(picture_id), links)
     svg = drawing.standalone_svg(picture.svg, current_page.href, drawing.standalone_style(current_page.root))
-    return drawing.write_signs(svg.decode()).encode()
+    return drawing.write_picture_signs(svg.decode()).encode()
 
 
 @cache

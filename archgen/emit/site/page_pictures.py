@@ -40,7 +40,7 @@ def inline_svg(svg: bytes, resolve_href: HrefResolver, name: str) -> str:
     Ids are removed: several pictures may be on one page, and nothing refers to them.
     """
     text = _COMMENT.sub("", _HEAD.sub("", svg.decode("utf-8"), count=1))
-    text = write_signs(_resolve_links(_ID.sub(r"<\1", text), resolve_href))
+    text = write_picture_signs(_resolve_links(_ID.sub(r"<\1", text), resolve_href))
     return _SVG.sub(
         lambda found: f'<svg{_keep_attributes(found[1])} role="group" aria-label="{name}">', text, count=1
     ).strip()
@@ -55,7 +55,7 @@ def standalone_svg(svg: bytes, resolve_href: HrefResolver, style: str = "") -> b
     return _ROOT.sub(lambda found: f"{found.group()}\n<style>{style}</style>", text, count=1).encode()
 
 
-def write_signs(text: str) -> str:
+def write_picture_signs(text: str) -> str:
     """Write the signs of comparisons in a picture's texts as pages do: they take less room than what was laid out."""
     return text.replace("&lt;= ", "≤ ").replace("&gt;= ", "≥ ")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from archgen.emit.terminal import list_formats
 from archgen.model.project_history import History, HistoryPoint
-from archgen.views.tables.project_growth import format_change, format_findings, format_step_share, name_point
+from archgen.views.tables.project_growth import format_change, format_finding_counts, format_step_share, name_point
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 
 VERSION = 1
@@ -32,7 +32,7 @@ def _history_row(point: HistoryPoint, history: History) -> tuple[str, ...]:
         name_point(point, history),
         *map(str, counts),
         *(format_step_share(project_row, step) for step in PROGRESS_STEPS),
-        format_findings(project_row.findings),
+        format_finding_counts(project_row.findings),
     )
 
 
@@ -48,7 +48,7 @@ def _format_changes(history: History, width: int | None) -> str:
             (format_step_share(old_row, step) if old_row else "", format_step_share(row, step))
             for step in PROGRESS_STEPS
         ]
-        pairs.append((format_findings(old_row.findings) if old_row else "", format_findings(row.findings)))
+        pairs.append((format_finding_counts(old_row.findings) if old_row else "", format_finding_counts(row.findings)))
         rows.append((f"{row.scope} {row.title}", *(format_change(*pair) for pair in pairs)))
     if not rows:
         return ""

@@ -57,7 +57,7 @@ def _describe_step(number: int, step: StartStep) -> Iterator[str]:
     for wait in start_phrases.name_waits(step):
         until = {"ended": " until it has ended", "started": " until it is started"}.get(wait.until, "")
         yield f"{_INDENT}waits for {wait.awaited}{until} ({'; '.join(wait.reasons)})"
-    state = start_phrases.describe_state(step)
+    state = start_phrases.describe_lifecycle(step)
     if state:
         yield f"{_INDENT}state: {state}"
     ready = start_phrases.describe_ready(step)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers.aadl.aadl_tokens import MAX_TOKENS, AadlText, TooManyTokensError
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
 from archgen.importers.aadl.classifier_names import ClassifierNames
@@ -27,15 +28,15 @@ from archgen.importers.aadl.untaken_notes import tell_untaken
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
 
-MAX_BYTES = 16_000_000
-
 
 def read_aadl(files: Sequence[Path]) -> ForeignImport:
     """Return what files in AADL say. Raise ForeignFileError for one that cannot be read at all."""
     notes = NoteList()
     names = ClassifierNames()
+    tokens_left = MAX_TOKENS
     for file in files:
-        parsed = _read_file(file, notes)
+        parsed = _read_file(file, notes, tokens_left)
+        tokens_left -= parsed.token_count
         names.add_packages(parsed.packages)
         names.add_property_sets(parsed.property_sets)
     for name, span, first in names.repeated:
@@ -45,9 +46,14 @@ def read_aadl(files: Sequence[Path]) -> ForeignImport:
     return _ModelImport(names, notes).make_import()
 
 
-def _read_file(file: Path, notes: NoteList) -> ParsedText:
-    text = _decode(str(file), read_bounded(file, MAX_BYTES), notes)
-    parsed = parse_text(str(file), text)
+def _read_file(file: Path, notes: NoteList, max_tokens: int) -> ParsedText:
+    text = _decode(str(file), read_bounded(file), notes)
+    try:
+        parsed = parse_text(str(file), text, max_tokens)
+    except TooManyTokensError as error:
+        words = f"up to here the model has more than {MAX_TOKENS:,} words and signs"
+        span = AadlText(str(file), text).span(error.offset, error.offset + 1)
+        raise ForeignFileError(words, span, "import the packages that you need") from None
     if not parsed.packages and not parsed.property_sets:
         fault = parsed.faults[0] if parsed.faults else None
         words = "there is no AADL in it: neither a package nor a property set"

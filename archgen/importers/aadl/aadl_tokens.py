@@ -23,6 +23,16 @@ _TOKEN = re.compile(
     re.VERBOSE | re.DOTALL,
 )
 END, OPEN_ANNEX = "end of the file", "annex without an end"
+MAX_TOKENS = 4_000_000
+"""So many are a model of 500,000 elements, which take about 1 GB of memory."""
+
+
+class TooManyTokensError(Exception):
+    """A model has more tokens than anybody writes; `offset` is where the first one too many stands."""
+
+    def __init__(self, offset: int) -> None:
+        super().__init__(offset)
+        self.offset = offset
 
 
 class Token(NamedTuple):
@@ -57,16 +67,26 @@ class AadlText:
         return line, offset - self._line_starts[line - 1] + 1
 
 
-def scan_tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a text without blanks and comments; END is the last, again and again."""
-    offset, size, match_token = 0, len(text), _TOKEN.match
+def scan_tokens(text: str, max_tokens: int = MAX_TOKENS) -> Iterator[Token]:
+    """Yield the tokens of a text without blanks and comments; END is the last, again and again.
+
+    Raise TooManyTokensError.
+    """
+    offset, size, match_token, tokens_left = 0, len(text), _TOKEN.match, max_tokens
     while offset < size:
+        tokens_left -= 1
+        if tokens_left < 0:
+            raise TooManyTokensError(offset)
         match = match_token(text, offset)
         if match is None:
             yield Token("stray", text[offset], offset, text[offset])
             offset += 1
             continue
         kind = match.lastgroup or ""
+        if kind == "blank":
+            tokens_left += 1
+            offset = match.end()
+            continue
         if kind == "annex":
             end = text.find("**}", offset + 3)
             if end < 0:
@@ -75,9 +95,8 @@ def scan_tokens(text: str) -> Iterator[Token]:
             yield Token(kind, text[offset : end + 3], offset, "")
             offset = end + 3
             continue
-        if kind != "blank":
-            token_text = match.group()
-            yield Token(kind, token_text, offset, token_text.lower() if kind == "name" else token_text)
+        token_text = match.group()
+        yield Token(kind, token_text, offset, token_text.lower() if kind == "name" else token_text)
         offset = match.end()
     while True:
         yield Token(END, "", size, "")

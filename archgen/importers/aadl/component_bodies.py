@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
-from archgen.importers.aadl.archgen_words import find_own_text, read_component_words
+from archgen.importers.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure, keep_thread
 from archgen.importers.aadl.import_notes import NoteList
@@ -93,9 +93,12 @@ class ComponentBuilder:
         body: Body = read_component_words(scope)
         for part in structure.parts.values():
             if part.structure:
-                inner = self.build_overlay(part.structure, scope.go_into(part.part, None))
+                inner = self.build_overlay(part.structure, scope.go_below(part.part))
                 if inner:
                     body.setdefault("components", {})[part.id] = inner
+        for port in structure.ports.ports:
+            if words := read_port_words(scope, port.path):
+                reach_port(body, "inputs" if port.is_input else "outputs", port.id).update(words)
         if not structure.parts and (timing := map_timing(scope, _find_thread_path(structure), self._notes)):
             body["timing"] = timing
         return body

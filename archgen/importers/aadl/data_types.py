@@ -54,12 +54,25 @@ class DataTypes:
         if not use.name or use.category == UNBOUND:
             return ""
         if use.known is None:
-            return _name_unknown(use.name, kind)
+            return self._name_unknown(use.name, kind)
         if use.known.is_of_library and use.known.classifier.name.lower().startswith("untyped"):
             return ""
         name = self._name_known(use.known, kind)
         values = [self.name_use(value) for value in use.bindings.values()]
         return f"{name}<{', '.join(values)}>" if values and all(values) else name
+
+    def _name_unknown(self, full_name: str, kind: str) -> str:
+        """Return the name of a type that is in none of the files: nothing else is called so."""
+        if message := _make_message(full_name, kind):
+            return message
+        key = f"unknown {full_name.lower()}"
+        if key not in self._names:
+            package, _, own_name = full_name.partition(".")[0].rpartition("::")
+            if own_name in self._taken_names and package:
+                own_name = f"{own_name} ({package.replace('::', ' ')})"
+            self._names[key] = own_name
+            self._taken_names.add(own_name)
+        return self._names[key]
 
     def add_all(self) -> int:
         """Take all data that are types of the model; return how many."""
@@ -210,16 +223,16 @@ class DataTypes:
                 self._notes.add_counted(f"Base_Types::{name}", words, use.known.classifier.span, fate="noted")
             if name in _SIZELESS_TYPES:
                 return _SIZELESS_TYPES[name]
-        return self.name_use(use)
+        type_name = self.name_use(use)
+        if use.name and use.known is None and "/" not in type_name:
+            # A field names a type that there is.
+            self.types.setdefault(type_name, {"hints": {"aadl": {"classifier": use.full_name}}})
+        return type_name
 
 
 def _is_library_data(known: KnownClassifier) -> bool:
     name = known.classifier.name.lower().partition(".")[0]
     return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or known.is_of_library
-
-
-def _name_unknown(name: str, kind: str) -> str:
-    return _make_message(name, kind) or name.rpartition("::")[2].partition(".")[0]
 
 
 def _find_message(resolved: Resolved, kind: str) -> str:

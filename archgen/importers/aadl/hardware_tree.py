@@ -12,7 +12,7 @@ from archgen.importers.aadl.classifier_names import fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_references
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
-from archgen.importers.aadl.structures import HARDWARE_CATEGORIES
+from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_path
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
 
 PROCESSORS = frozenset({"processor", "virtual processor"})
@@ -88,7 +88,7 @@ class HardwareFinder:
         self._add_bindings(resolved, scope, path)
         for connection in resolved.connections.values():
             if connection.kind in _BUS_ACCESSES and connection.source:
-                tree.join(_lower((*path, *connection.source)), _lower((*path, *connection.target)))
+                tree.join(fold_path((*path, *connection.source)), fold_path((*path, *connection.target)))
         for name, part in resolved.parts.items():
             inner = self._resolver.resolve(part.use)
             inner_path, inner_scope = (*path, name), scope.go_into(part, inner)
@@ -132,8 +132,4 @@ def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], Prope
             key = fold_property_name(association.name)
             if key in {"actual_processor_binding", "actual_connection_binding"}:
                 for path in association.paths or ((),):
-                    yield ((name, *_lower(path)), key), association
-
-
-def _lower(path: Path) -> Path:
-    return tuple(step.lower() for step in path if step.lower() != "self")
+                    yield ((name, *fold_path(path)), key), association

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tokens import END, AadlText
+from archgen.importers.aadl.aadl_tokens import END, MAX_TOKENS, AadlText
 from archgen.importers.aadl.aadl_tree import Package, PropertySet
 from archgen.importers.aadl.classifier_parsing import at_classifier, parse_annex, parse_classifier
 from archgen.importers.aadl.feature_parsing import CATEGORIES, accept_one_of
@@ -24,12 +24,13 @@ class ParsedText:
     faults: list[SyntaxFault] = field(default_factory=list)
     unpackaged: Package | None = None
     """What stands in no package, as AADL's first version has it; it is among the packages, with an empty name."""
+    token_count: int = 0
 
 
-def parse_text(file: str, text: str) -> ParsedText:
-    """Return the packages and property sets of a text; what cannot be read is among its faults."""
+def parse_text(file: str, text: str, max_tokens: int = MAX_TOKENS) -> ParsedText:
+    """Return the packages and property sets of a text; what cannot be read is among its faults. Raise TooManyTokensError."""
     parsed = ParsedText()
-    cursor = TokenCursor(AadlText(file, text))
+    cursor = TokenCursor(AadlText(file, text), max_tokens)
     # What stands outside of a package is told once, not word by word.
     is_lost = False
     while cursor.token.kind != END:
@@ -51,7 +52,7 @@ def parse_text(file: str, text: str) -> ParsedText:
                 cursor.tell(error)
             is_lost = True
             _skip_to_unit(cursor)
-    parsed.faults = cursor.faults
+    parsed.faults, parsed.token_count = cursor.faults, cursor.token_count
     return parsed
 
 

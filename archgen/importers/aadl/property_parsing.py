@@ -23,6 +23,7 @@ from archgen.importers.aadl.token_cursor import SECTION_WORDS, TokenCursor
 
 _LINK_WORDS = ("reference", "classifier", "compute")
 _VALUE_ENDS = frozenset({",", ";", ")", "]", "}", "applies", "in", "::", ".."})
+_BEHIND_NUMBERS = frozenset({"applies", "in", "delta", "units"})
 _MAX_EXPONENT = 400
 
 
@@ -175,13 +176,9 @@ def _parse_number(cursor: TokenCursor) -> AadlValue:
         cursor.fail("a number is missing here")
     value = _read_number(cursor)
     unit = ""
-    if cursor.token.kind == "name" and not _is_behind_value(cursor):
+    if cursor.token.kind == "name" and cursor.token.word not in _BEHIND_NUMBERS:
         unit = cursor.advance().text
     return AadlNumber(sign * value, unit, "." in token.text)
-
-
-def _is_behind_value(cursor: TokenCursor) -> bool:
-    return cursor.at("applies") or cursor.at("in") or cursor.at("delta") or cursor.at("units")
 
 
 def _read_number(cursor: TokenCursor) -> Fraction:

@@ -67,7 +67,8 @@ class Scope:
     inner: Resolved | None
     layers: tuple[tuple[Resolved, Path], ...] = ()
     hidden: Resolved | None = None
-    """The classifier where only what is written around it is asked for."""
+    """The type of an instance of which only what is written around it is asked for; `hidden_path` leads on from there."""
+    hidden_path: Path = ()
 
     def find(self, path: Path, name: str) -> Property | None:
         """Return the association of a property to what stands at a path, or None."""
@@ -121,7 +122,7 @@ class Scope:
         for way in ways:
             if found := self.find(way, name):
                 return found
-        if self.hidden and any(self._find_inside(self.hidden, way, name) for way in ways):
+        if any(self.find_hidden(way, name) for way in ways):
             return None
         for outer, prefix in reversed(self.layers):
             for length in range(len(prefix) - 1, -1, -1):
@@ -144,6 +145,16 @@ class Scope:
         if part.written.properties:
             layers.append((_wrap_properties(part), ()))
         return Scope(self.resolver, self.used, inner, tuple(layers))
+
+    def find_hidden(self, path: Path, name: str) -> Property | None:
+        """Return what the type of an instance itself says of it."""
+        return self._find_inside(self.hidden, (*self.hidden_path, *path), name) if self.hidden else None
+
+    def go_below(self, part: Part) -> Scope:
+        """Return what is written around an instance of something in whose type a subcomponent stands, for that."""
+        name = part.written.name.lower()
+        layers = tuple((outer, (*prefix, name)) for outer, prefix in self.layers)
+        return Scope(self.resolver, self.used, None, layers, self.hidden, (*self.hidden_path, name))
 
     def says_anything(self) -> bool:
         """Whether an association around the classifier applies to it or to something in it, or is handed down to it."""

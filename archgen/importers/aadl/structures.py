@@ -174,7 +174,7 @@ class StructureFinder:
         """Find which port of the thread stands behind which of the process."""
         name = thread.written.name.lower()
         for connection in found.resolved.connections.values():
-            ends = [_fold_path(connection.source), _fold_path(connection.target)]
+            ends = [fold_path(connection.source), fold_path(connection.target)]
             inside = next((end[1:] for end in ends if len(end) > 1 and end[0] == name), None)
             outside = next((end for end in ends if end and end[0] != name), None)
             if connection.kind not in WIRE_KINDS:
@@ -199,7 +199,7 @@ class StructureFinder:
 
     def _list_ends(self, found: Structure, written_path: Path) -> list[tuple[Path, End]] | None:
         """Return the ports that an end of a connection means, with their paths below it; None if it is no component's."""
-        path = _fold_path(written_path)
+        path = fold_path(written_path)
         if not path:
             return []
         part = found.parts.get(path[0]) if len(path) > 1 else None
@@ -245,5 +245,6 @@ def _is_only_hardware(structure: Structure) -> bool:
     )
 
 
-def _fold_path(path: Path) -> Path:
+def fold_path(path: Path) -> Path:
+    """Return a path as it is compared: in lower case, without `self`."""
     return tuple(step.lower() for step in path if step.lower() != "self")

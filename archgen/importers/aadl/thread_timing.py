@@ -56,8 +56,8 @@ def _map_dispatch(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     protocol = read_word(scope.value(path, "dispatch_protocol"))
     if protocol_property is None and scope.hidden:
         # What the component type says need not be said again, but counts.
-        own_scope = Scope(scope.resolver, scope.used, scope.hidden)
-        protocol = read_word(own_scope.value(path, "dispatch_protocol"))
+        own_property = scope.find_hidden(path, "dispatch_protocol")
+        protocol = read_word(own_property.value if own_property else None)
     elif protocol in _BEHAVIOURS:
         timing["behaviour"] = _BEHAVIOURS[protocol]
     elif protocol == "background" and scope.resolver.names.is_own:

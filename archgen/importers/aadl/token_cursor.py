@@ -10,7 +10,7 @@ from typing import NoReturn
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
-from archgen.importers.aadl.aadl_tokens import END, OPEN_ANNEX, AadlText, Token, scan_tokens
+from archgen.importers.aadl.aadl_tokens import END, MAX_TOKENS, OPEN_ANNEX, AadlText, Token, scan_tokens
 
 MAX_DEPTH = 60
 """How deep values, bindings and types may stand in one another."""
@@ -124,14 +124,16 @@ class AadlSyntaxError(Exception):
 class TokenCursor:
     """A place among the tokens of a text; `faults` are all errors that were met."""
 
-    def __init__(self, source: AadlText) -> None:
-        """Stand before the first token."""
+    def __init__(self, source: AadlText, max_tokens: int = MAX_TOKENS) -> None:
+        """Stand before the first token; behind `max_tokens` going on raises TooManyTokensError."""
         self.source = source
         self.faults: list[SyntaxFault] = []
-        self._tokens = scan_tokens(source.text)
+        self._tokens = scan_tokens(source.text, max_tokens)
         self._ahead: deque[Token] = deque()
         self._depth = 0
         self.last_end = 0
+        self.token_count = 0
+        """How many tokens were left behind."""
         self.token = next(self._tokens)
 
     def peek(self, distance: int = 1) -> Token:
@@ -144,6 +146,7 @@ class TokenCursor:
     def advance(self) -> Token:
         """Go on by a token, and return the one that was left."""
         token = self.token
+        self.token_count += 1
         self.last_end = token.offset + len(token.text)
         self.token = self._ahead.popleft() if self._ahead else next(self._tokens)
         return token

@@ -10,7 +10,7 @@ from archgen.frozen import dataclass
 from archgen.importers.foreign.foreign_import import ForeignImport
 
 ForeignReader = Callable[..., ForeignImport]
-"""Takes the files, and by name the launch arguments where its format has such."""
+"""Takes the files, and by name the launch arguments and the known ids where its format has such."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +26,8 @@ class ImportFormat:
     """`module:function`; the function takes the files and returns a ForeignImport, or raises ForeignFileError."""
     takes_arguments: bool = False
     """Whether values of launch arguments may be given: `NAME:=VALUE`."""
+    keeps_ids: bool = False
+    """Whether the function takes `known_ids`, too: ids that elements have since an earlier import, by the other tool's."""
 
     def load_reader(self) -> ForeignReader:
         """Return the function that reads files of this format."""
@@ -49,6 +51,7 @@ IMPORT_FORMATS: dict[str, ImportFormat] = {
             "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
             (".xmi", ".uml", ".mdzip", ".zargo"),
             "archgen.importers.xmi:read_xmi",
+            keeps_ids=True,
         ),
         ImportFormat(
             "nodl",

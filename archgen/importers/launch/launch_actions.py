@@ -21,6 +21,14 @@ class LaunchCondition:
 
 
 @dataclass(slots=True, eq=False)
+class ConditionalValue:
+    """A remap, parameter, variable or argument of an action that counts only under conditions."""
+
+    value: LaunchValue
+    conditions: list[LaunchCondition]
+
+
+@dataclass(slots=True, eq=False)
 class LaunchAction:
     """One action. `word` is what the file calls it, `values` its arguments by archgen's names for them."""
 

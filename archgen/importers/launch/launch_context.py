@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
@@ -74,33 +75,28 @@ class LaunchContext:
         if isinstance(value, Substitution):
             return self._resolve_substitution(value, depth + 1)
         if isinstance(value, list | tuple):
-            return self._join(value, "", depth + 1)
+            return self._join(value, depth + 1)
         if isinstance(value, Mapping):
             return UnknownValue("a mapping where a text is expected")
         return write_plain(value) if is_plain(value) else name_object(value)
 
-    def _join(self, parts: Sequence[LaunchValue], separator: str, depth: int) -> str | UnknownValue:
+    def _join(self, parts: Sequence[LaunchValue], depth: int, *, is_path: bool = False) -> str | UnknownValue:
         texts: list[str] = []
         for part in parts:
             text = self.resolve(part, depth)
             if isinstance(text, UnknownValue):
                 return text
             texts.append(text)
-        if separator:
-            # As os.path.join has it: an absolute part begins anew.
-            start = max((n for n, text in enumerate(texts) if text.startswith("/")), default=0)
-            texts = [
-                text.rstrip(separator) if n < len(texts[start:]) - 1 else text for n, text in enumerate(texts[start:])
-            ]
-        joined = separator.join(texts)
+        # As os.path.join has it: an absolute part begins anew, an empty one adds nothing.
+        joined = posixpath.join("", *texts) if is_path else "".join(texts)
         return joined if len(joined) <= MAX_TEXT else UnknownValue("a very long text")
 
     def _resolve_substitution(self, value: Substitution, depth: int) -> str | UnknownValue:  # noqa: PLR0911 - a kind each
         match value.kind:
             case "join":
-                return self._join(value.parts, "", depth)
+                return self._join(value.parts, depth)
             case "path":
-                return self._join(value.parts, "/", depth)
+                return self._join(value.parts, depth, is_path=True)
             case "typed" | "text_of":
                 return self.resolve(value.parts[0], depth)
             case "var":
@@ -117,7 +113,7 @@ class LaunchContext:
                 verdict = self.judge(value, depth)
                 return UnknownValue(describe_value(value)) if verdict is None else write_plain(verdict)
             case kind:
-                return self._join([f"$({kind}", *(f" {describe_value(part)}" for part in value.parts), ")"], "", depth)
+                return self._join([f"$({kind}", *(f" {describe_value(part)}" for part in value.parts), ")"], depth)
 
     def _resolve_argument(self, value: Substitution, depth: int) -> str | UnknownValue:
         name = self.resolve(value.parts[0], depth)

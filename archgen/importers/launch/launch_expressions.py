@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Callable
 
 from archgen.importers.launch.launch_values import OPEN
@@ -34,6 +35,8 @@ def _evaluate_node(node: ast.expr, look_up: ArgumentLookup, depth: int) -> Plain
         case ast.Name(id=name) | ast.Call(func=ast.Name(id="arg"), args=[ast.Constant(value=str() as name)]):
             known = look_up(name)
             return None if known is None else _read_word(known)
+        case ast.Call(func=ast.Name(id="int" | "float" | "str" as kind), args=[argument], keywords=[]):
+            return _convert_value(kind, _evaluate_node(argument, look_up, depth + 1))
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return calculate_number(ast.Sub(), 0, _evaluate_node(operand, look_up, depth + 1))
         case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -63,6 +66,20 @@ def _calculate(sign: ast.operator, left: PlainResult, right: PlainResult) -> str
     if isinstance(left, str) and isinstance(right, str):
         return left + right if isinstance(sign, ast.Add) else None
     return calculate_number(sign, left, right)
+
+
+def _convert_value(kind: str, value: PlainResult) -> PlainResult:
+    if value is None or kind == "str":
+        return None if value is None else str(value)
+    try:
+        number = float(value) if len(str(value)) < _MAX_DIGITS else None
+    except ValueError:
+        return None
+    if number is None or kind == "float":
+        return number
+    # As Python has it: a text with a point is no whole number.
+    is_whole = not isinstance(value, str) or value.strip().lstrip("+-").isdecimal()
+    return int(number) if is_whole and math.isfinite(number) else None
 
 
 def _read_word(text: str) -> bool | str | int | float:

@@ -33,8 +33,11 @@ class LaunchFiles:
 
     def __init__(self, paths: Sequence[Path]) -> None:
         self.roots = list(dict.fromkeys(_find_root(path) for path in paths))
+        self._own_folders = [folder for path in paths if (folder := _find_package_folder(path.resolve())) is not None]
         self._packages: dict[str, Path] | None = None
         self._walked: dict[Path, list[tuple[Path, list[str]]]] = {}
+        self._by_name: dict[Path, dict[str, list[Path]]] = {}
+        self._folders: dict[Path, dict[Path, list[str]]] = {}
 
     def list_launch_files(self) -> list[Path]:
         """Return the launch files of all packages and folders, by path."""
@@ -74,6 +77,15 @@ class LaunchFiles:
             return None
         return self._check(Path(posixpath.normpath(text)))
 
+    def list_names(self, text: str) -> list[str]:
+        """Return the names of the files in a folder that a text means, if it lies below a root."""
+        match = _PACKAGE_FILE.match(text)
+        folder = self._find_package(match[1]) if match else None
+        inner = posixpath.normpath(match[2] or ".") if match else ".."
+        if folder is None or inner.startswith(("/", "..")):
+            return []
+        return self._list_folders(folder).get(folder / inner, [])
+
     def _find_in_package(self, folder: Path, inner_path: str) -> Path | None:
         inner = posixpath.normpath(inner_path)
         if inner.startswith(("/", "..")) or "$(" in inner or "\0" in inner:
@@ -83,13 +95,25 @@ class LaunchFiles:
             return found
         # What a package installs need not lie so in its sources: `launch/x.py` may come from `bringup/launch/x.py`.
         name = posixpath.basename(inner)
-        others = [
-            path / name
-            for path, names in self._walk(folder)
-            if name in names and not _TEST_FOLDERS & set(path.relative_to(folder).parts)
-        ]
+        others = self._index_names(folder).get(name, [])
         alike = [path for path in others if path.as_posix().endswith(f"/{inner}")] or others
         return self._check(alike[0]) if len(alike) == 1 else None
+
+    def _index_names(self, folder: Path) -> dict[str, list[Path]]:
+        """Return the files of a package by their names, without those of its tests."""
+        if folder not in self._by_name:
+            index: dict[str, list[Path]] = {}
+            self._by_name[folder] = index
+            for path, names in self._walk(folder):
+                if not _TEST_FOLDERS & set(path.relative_to(folder).parts):
+                    for name in names:
+                        index.setdefault(name, []).append(path / name)
+        return self._by_name[folder]
+
+    def _list_folders(self, folder: Path) -> dict[Path, list[str]]:
+        if folder not in self._folders:
+            self._folders[folder] = dict(self._walk(folder))
+        return self._folders[folder]
 
     def _check(self, path: Path) -> Path | None:
         """Return a path of a file below a root, to which no link leads outside."""
@@ -103,7 +127,8 @@ class LaunchFiles:
 
     def _find_package(self, name: str) -> Path | None:
         if self._packages is None:
-            self._packages = {}
+            # Of packages of one name that of a given file counts.
+            self._packages = {_read_package_name(folder): folder for folder in reversed(self._own_folders)}
             for root in self.roots:
                 for path, names in self._walk(root):
                     if "package.xml" in names:
@@ -129,11 +154,16 @@ def _find_root(path: Path) -> Path:
     resolved = path.resolve()
     if resolved.is_dir():
         return resolved
-    for parent in list(resolved.parents)[:_PARENTS_TRIED]:
-        if (parent / "package.xml").is_file():
-            # Packages of one repository stand beside one another; a folder of all packages of a workspace is too much.
-            return parent.parent if (parent.parent / ".git").exists() or _holds_packages(parent.parent) else parent
-    return resolved.parent
+    parent = _find_package_folder(resolved)
+    if parent is None:
+        return resolved.parent
+    # Packages of one repository stand beside one another; a folder of all packages of a workspace is too much.
+    return parent.parent if (parent.parent / ".git").exists() or _holds_packages(parent.parent) else parent
+
+
+def _find_package_folder(file: Path) -> Path | None:
+    parents = list(file.parents)[:_PARENTS_TRIED]
+    return next((parent for parent in parents if (parent / "package.xml").is_file()), None)
 
 
 def _holds_packages(folder: Path) -> bool:

@@ -161,7 +161,8 @@ class LaunchRun(ScopeRun):
         self._run_included(action, path)
 
     def _run_included(self, action: LaunchAction, path: Path) -> None:
-        given = self.resolve_pairs(action.get("arguments"))
+        arguments = action.get("arguments")
+        given = self.resolve_pairs(arguments if isinstance(arguments, dict) else self.choose_values(action, arguments))
         is_scoped = bool(action.get("scoped"))
         if is_scoped:
             self.context.push()

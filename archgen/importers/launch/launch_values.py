@@ -15,6 +15,8 @@ MAX_TEXT = 20_000
 MAX_PARTS = 20_000
 """How many values one value may be put together from."""
 OPEN = "$("
+OPEN_FILE = "open file"
+"""The substitution for a file that a launch file has opened: its path."""
 
 
 @dataclass(frozen=True, slots=True)

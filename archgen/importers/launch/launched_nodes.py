@@ -65,3 +65,8 @@ def join_names(outer: str, inner: str) -> str:
     if inner.startswith("/"):
         return inner
     return f"{outer.rstrip('/')}/{inner}" if inner else outer.rstrip("/")
+
+
+def clean_name(name: str) -> str:
+    """Return a name as ROS 1 cleans it: without empty parts."""
+    return ("/" if name.startswith("/") else "") + "/".join(part for part in name.split("/") if part)

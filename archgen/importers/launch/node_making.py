@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from archgen.importers.launch.command_words import split_words
+from archgen.importers.launch.file_changes import FileChanges
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
-from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
+from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
 from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
-from archgen.importers.launch.ros_arguments import read_nodelet, read_ros_arguments
+from archgen.importers.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
 
 if TYPE_CHECKING:
     from archgen.importers.launch.launch_run import LaunchRun
@@ -121,7 +122,7 @@ class NodeMaker:
 
     def _set_remaps(self, node: LaunchedNode, action: LaunchAction) -> None:
         # The first rule for a name counts. Those of the scope come first, in ROS 1 last.
-        around, own = list(self._run.context.scope.remaps), list_items(action.get("remaps"))
+        around, own = list(self._run.context.scope.remaps), self._run.choose_values(action, action.get("remaps"))
         pairs: list[Any] = [*reversed(own), *around] if self._run.context.is_ros_1 else [*around, *own]
         for pair in pairs:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
@@ -138,6 +139,8 @@ class NodeMaker:
             return
         assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
         assert isinstance(name, str)  # noqa: S101 - as above
+        if self._run.context.is_ros_1:
+            own_name, name = clean_name(own_name), clean_name(name)
         self._keep_written(node, f"remaps.{own_name}", pair[1])
         node.remaps.setdefault(own_name, name)
 
@@ -149,8 +152,9 @@ class NodeMaker:
         node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
         for name, value in context.scope.environment:
             node.environment[name] = value
-        pairs = action.get("environment")
-        for name, value in pairs.items() if isinstance(pairs, Mapping) else _list_pairs(pairs):
+        given = action.get("environment")
+        pairs = given.items() if isinstance(given, Mapping) else _list_pairs(self._run.choose_values(action, given))
+        for name, value in pairs:
             variable, setting = context.resolve(name), context.resolve(value)
             if isinstance(variable, str) and isinstance(setting, str):
                 node.environment[variable] = setting
@@ -163,7 +167,7 @@ class NodeMaker:
         else:
             node.directory = directory
         prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
-        rest = prefix.reason if isinstance(prefix, UnknownValue) else _read_prefix(node, prefix)
+        rest = prefix.reason if isinstance(prefix, UnknownValue) else read_prefix(node, prefix)
         if rest:
             self._run.add_note(action.word, f"what runs it is left out: `{rest}`", action.span)
         host = context.resolve(action.get("host")) if action.get("host") is not None else ""
@@ -183,12 +187,13 @@ class NodeMaker:
             words += ["--ros-args", *given] if key == "ros_arguments" and given else given
         node.arguments = words
         if not self._run.context.is_ros_1:
-            read_ros_arguments(node, lambda path: self._add_file(node, path, "", {}))
+            read_ros_arguments(node, lambda path: self._add_file(node, path, "", None))
         elif action.get("keeps_arguments") is not True:
             read_nodelet(node)
 
     def _set_parameters(self, node: LaunchedNode, action: LaunchAction) -> None:
-        for entry in [*self._run.context.scope.parameters, *list_items(action.get("parameters"))]:
+        own = self._run.choose_values(action, action.get("parameters"))
+        for entry in [*self._run.context.scope.parameters, *own]:
             if isinstance(entry, Mapping):
                 for raw_name, value in entry.items():
                     name = self._run.context.resolve(raw_name)
@@ -220,20 +225,19 @@ class NodeMaker:
         if isinstance(entry, Substitution) and entry.kind == "typed":
             entry = entry.parts[0]
         is_file = isinstance(entry, Substitution) and entry.kind == FILE_KIND
-        value, namespace, rewrites = entry.parts if is_file else (entry, "", {})
+        value, namespace, changes = entry.parts if is_file else (entry, "", None)
         text = self._run.context.resolve(value)
         if isinstance(text, UnknownValue):
             self._run.tell_computed(action.word, "a parameter file", text, action.span)
             return
         self._keep_written(node, "parameter_files", value)
-        changes = evaluate_parameter(rewrites, self._run.context) if isinstance(rewrites, Mapping) else {}
-        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, dict) else {})
+        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, FileChanges) else None)
 
     def _resolve_text(self, value: LaunchValue) -> str:
         text = self._run.context.resolve("" if value is None else value)
         return text if isinstance(text, str) else ""
 
-    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: dict[str, Any]) -> None:
+    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileChanges | None) -> None:
         """Add a parameter file: its name, and what it says to the node where it can be read."""
         if not text:
             return
@@ -252,10 +256,12 @@ class NodeMaker:
             words = "it is not read" if path is None else "it is no file of parameters of ROS 2"
             self._run.add_note(FILE_KIND, f"`{text}`: {words}", node.span, fate="noted")
             return
-        for name, value in values.items():
-            # What is written over a file by its last name, as Nav2's RewrittenYaml has it.
-            changed = changes.get(name, changes.get(name.rpartition(".")[2]))
-            node.parameters[name] = value if changed is None else changed
+        for name, value in (changes.change_values(values, self._run.context) if changes else values).items():
+            if isinstance(value, UnknownValue):
+                node.parameters.pop(name, None)
+                self._run.tell_computed(node.word, f"the parameter `{name}`", value, node.span)
+            else:
+                node.parameters[name] = value
 
     def _add_ros_1_file(self, node: LaunchedNode, text: str, path: Path | None, inner_name: str) -> None:
         """Add a file that ROS 1 loads below a node's name, or deeper."""
@@ -279,16 +285,3 @@ def list_items(value: LaunchValue) -> list[LaunchValue]:
 
 def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
     return [(each[0], each[1]) for each in list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004
-
-
-def _read_prefix(node: LaunchedNode, prefix: str) -> str:
-    """Set the user and the folder that a prefix such as `sudo -u robot -- env -C /opt` says; return what is left of it."""
-    words = split_words(prefix)
-    if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
-        place = words.index("-u")
-        node.user = words[place + 1]
-        words = words[place + 2 :]
-        words = words[1:] if words[:1] == ["--"] else words
-    if words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
-        node.directory, words = words[2], []
-    return " ".join(words)

@@ -16,8 +16,10 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_
 _YAML_1_1_WORDS = {"yes": True, "on": True, "no": False, "off": False}
 """What ROS 1 reads as booleans besides `true` and `false`."""
 _MAX_BYTES = 4_000_000
+MAX_OPENED_BYTES = 32_000_000
+"""How much YAML launch files in Python may open altogether."""
 FILE_KIND = "parameter file"
-"""The substitution for a file among parameters: its path, the namespace of its values, and values written over it."""
+"""The substitution for a file among parameters: its path, the namespace of its values, and its FileChanges."""
 
 
 class ParameterFileReader:
@@ -25,6 +27,8 @@ class ParameterFileReader:
 
     def __init__(self) -> None:
         self._texts: dict[Path, ParameterText | None] = {}
+        self._sizes: dict[Path, int] = {}
+        self._opened = 0
 
     def read_for_node(self, path: Path, full_name: str) -> dict[str, Any] | None:
         """Return the values that a file of ROS 2 gives to a node, by their dotted names; None where it cannot be read."""
@@ -45,6 +49,14 @@ class ParameterFileReader:
         text = self._read(path)
         return _read_tree(text.root) if text is not None and text.root is not None else None
 
+    def read_mapping(self, path: Path) -> dict[str, Any] | None:
+        """Return what a file in YAML says, with its keys as they are; None where it cannot be read."""
+        text = self._read(path)
+        # A launch file may open the same file in a loop.
+        self._opened += self._sizes.get(path, 0)
+        is_read = text is not None and text.root is not None and self._opened <= MAX_OPENED_BYTES
+        return _read_tree(text.root, "") if is_read and text is not None and text.root is not None else None
+
     def _read(self, path: Path) -> ParameterText | None:
         if path not in self._texts:
             try:
@@ -52,18 +64,20 @@ class ParameterFileReader:
             except ForeignFileError:
                 self._texts[path] = None
             else:
+                self._sizes[path] = len(data)
                 text = read_parameter_text(path.name, data)
                 self._texts[path] = None if text.problem else text
         return self._texts[path]
 
 
-def _read_tree(node: MappingNode) -> dict[str, Any]:
-    return {entry.key.strip("/"): _read_value(entry.value) for entry in node}
+def _read_tree(node: MappingNode, ends: str = "/") -> dict[str, Any]:
+    """Return a mapping as data, its keys without some characters at their ends."""
+    return {entry.key.strip(ends) if ends else entry.key: _read_value(entry.value, ends) for entry in node}
 
 
-def _read_value(node: YamlNode) -> Any:  # noqa: ANN401
+def _read_value(node: YamlNode, ends: str) -> Any:  # noqa: ANN401
     if isinstance(node, MappingNode):
-        return _read_tree(node)
+        return _read_tree(node, ends)
     if isinstance(node, ScalarNode) and node.is_plain and node.text.lower() in _YAML_1_1_WORDS:
         return _YAML_1_1_WORDS[node.text.lower()]
     return node.text if isinstance(node, ScalarNode) and not node.is_plain else node_to_data(node)

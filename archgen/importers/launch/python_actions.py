@@ -246,6 +246,8 @@ def _make_call(reader: CallReader, name: str, arguments: CallArguments, node: as
 
 _MAKERS: dict[str, Callable[[CallReader, str, CallArguments, ast.Call], LaunchAction]] = {
     "DeclareLaunchArgument": _make_argument,
+    # MoveIt's own: one that is true or false.
+    "DeclareBooleanLaunchArg": _make_argument,
     "LoadComposableNodes": _make_load,
     "IncludeLaunchDescription": _make_include,
     "GroupAction": _make_group,

@@ -22,6 +22,8 @@ class BranchRecord:
     def __init__(self, scope: NameScope) -> None:
         self._containers = _list_containers(scope)
         self._before = [each.copy() for each in self._containers]
+        self.size = len(self._containers) + sum(map(len, self._containers))
+        """How much is remembered: containers, and what is in them."""
 
     def take_outcome(self) -> list[Container]:
         """Return what is in the containers, which are as they were in front of the condition from now on."""

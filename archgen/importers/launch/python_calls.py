@@ -6,11 +6,12 @@ import ast
 import posixpath
 from collections.abc import Callable, Mapping
 
-from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.file_changes import FileChanges
+from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
+from archgen.importers.launch.opened_files import OpenedFileReader
 from archgen.importers.launch.parameter_files import FILE_KIND
 from archgen.importers.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
-from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
 
 _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -56,10 +57,17 @@ _MODULES = {
     "dirname": "path",
     "process": "xacro",
     "process_file": "xacro",
+    "process_doc": "xacro",
+    "parse": "xacro",
+    "safe_load": "yaml",
+    "full_load": "yaml",
+    "load": "yaml",
+    "exists": "path",
+    "isfile": "path",
 }
 
 
-class CallReader(MethodReader):
+class CallReader(OpenedFileReader):
     """Reads calls. `own_folder` and `own_name` are the file's as launch files name them."""
 
     def __init__(self, file: str, own_name: str, lines: list[str]) -> None:
@@ -161,28 +169,26 @@ class CallReader(MethodReader):
         self.tell_noted(
             "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
         )
-        return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "" if root is None else root, changes))
+        source = arguments.get(0, "source_file")
+        if isinstance(source, Substitution) and source.kind == FILE_KIND and isinstance(source.parts[2], FileChanges):
+            source, _, earlier = source.parts
+            made = FileChanges(changes, earlier.texts, earlier.condition)
+        else:
+            made = FileChanges(changes)
+        return Substitution(FILE_KIND, (source, "" if root is None else root, made))
 
-    def _call_replacestring(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return arguments.get(0, "source_file")
+    def _call_replacestring(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        texts, condition = arguments.get(1, "replacements"), arguments.get(2, "condition")
+        if not isinstance(texts, Mapping):
+            return self.quote(node)
+        made = FileChanges({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
+        return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return Substitution("env", tuple(arguments.positional[:2]))
 
     def _call_get(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return Substitution("env", tuple(arguments.positional[:2]))
-
-    def _call_process_file(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        path, mappings = arguments.get(0), arguments.get(None, "mappings")
-        if isinstance(path, UnknownValue) or path is None or not (mappings is None or isinstance(mappings, Mapping)):
-            return self.quote(node)
-        words: list[LaunchValue] = ["xacro ", path]
-        for name, value in (mappings or {}).items():
-            words += [f" {name}:=", value]
-        return Substitution("command", (words,))
-
-    def _call_process(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._call_process_file(arguments, node)
 
     def _call_range(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         ends = [self.force(each) for each in arguments.positional]
@@ -198,10 +204,6 @@ class CallReader(MethodReader):
         if value is None:
             return []
         return list(value) if isinstance(value, list | tuple | Mapping) else self.quote(node)
-
-    def _call_open(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        path = arguments.get(0, "file")
-        return Substitution("open file", (path,)) if isinstance(path, str | Substitution) else self.quote(node)
 
     def _call_str(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         value = arguments.get(0)

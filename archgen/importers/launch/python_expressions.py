@@ -17,12 +17,14 @@ from archgen.importers.launch.python_values import (
     ImportedName,
     ModuleValue,
     NameScope,
+    RecordValue,
 )
 
 MAX_STEPS = 300_000
 MAX_DEPTH = 60
 _MAX_QUOTED = 80
 _NUMBERS = (int, float)
+_KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
 
 
 class ExpressionReader:
@@ -54,6 +56,10 @@ class ExpressionReader:
     def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
         """Note what is left out because only running it would tell; by the reader of the whole file."""
         raise NotImplementedError
+
+    def count_steps(self, number: int) -> None:
+        """Count what takes the time of several steps."""
+        self._steps += number
 
     def count_step(self) -> bool:
         """Whether one more step may be taken."""
@@ -97,12 +103,15 @@ class ExpressionReader:
     def _read_attribute(self, node: ast.Attribute, scope: NameScope) -> LaunchValue:
         owner = self.evaluate(node.value, scope)
         if isinstance(owner, ImportedName):
-            return ImportedName(f"{owner.name}.{node.attr}")
+            name = f"{owner.name}.{node.attr}"
+            return _KNOWN_TEXTS.get(name) or ImportedName(name)
         if isinstance(owner, ModuleValue):
             is_known, value = owner.scope.find(node.attr)
             return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
         if isinstance(owner, UnknownValue):
             return self.quote(node)
+        if isinstance(owner, RecordValue) and node.attr != "to_dict":
+            return owner.values.get(node.attr, self.quote(node))
         if node.attr in {"parent", "name"} and isinstance(owner, str | Substitution):
             return self._read_path_part(node, owner)
         return BoundMethod(owner, node.attr)

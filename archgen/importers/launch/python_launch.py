@@ -87,6 +87,32 @@ class _FileReader(CallReader):
                 _FileReader(path, text, self._run, self._modules).run_block(tree.body, scope)
         return ModuleValue(name, self._modules[path])
 
+    def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
+        """Return what a file says, as a mapping; an UnknownValue where it cannot be read."""
+        text = self._run.context.resolve(path)
+        if isinstance(text, UnknownValue):
+            return self.quote(node)
+        file = self._run.files.find_file(text)
+        values = None if file is None else self._run.parameter_reader.read_mapping(file)
+        if values is None:
+            is_far = file is None
+            near_words = "it is no mapping in YAML, or more is opened than archgen reads"
+            words = "it does not lie in the folders that were given" if is_far else near_words
+            help_line = "give the folder of its package, too" if is_far else ""
+            self._run.add_note("open", f"`{text}` is not read: {words}", self.place(node), help_line)
+            return UnknownValue(text, getattr(node, "lineno", 0), self.file)
+        return values
+
+    def has_file(self, path: LaunchValue) -> bool:
+        """Whether a file lies in the folders that were given."""
+        text = self._run.context.resolve(path)
+        return isinstance(text, str) and self._run.files.find_file(text) is not None
+
+    def list_names(self, folder: LaunchValue) -> list[str]:
+        """Return the names of the files in a folder."""
+        text = self._run.context.resolve(folder)
+        return self._run.files.list_names(text) if isinstance(text, str) else []
+
     def place(self, node: ast.AST) -> Span:
         """Return where a part of the file stands."""
         line, byte_offset = getattr(node, "lineno", 1), getattr(node, "col_offset", 0)

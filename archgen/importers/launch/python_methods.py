@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, join_values
+from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue, join_values
 from archgen.importers.launch.python_operators import fill_text
 from archgen.importers.launch.python_statements import StatementReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments
@@ -42,7 +42,7 @@ class MethodReader(StatementReader):
             reason = f"what it gives is computed: `{value.reason}`"
             action.children.append(LaunchAction("unread", _name_call(value.reason), span, {"reason": reason}))
 
-    def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:  # noqa: C901, PLR0911
+    def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:  # noqa: C901, PLR0911, PLR0912
         """Return what a method gives; what it changes is changed."""
         owner, name = method.owner, method.name
         if name == "perform_substitution":
@@ -54,9 +54,11 @@ class MethodReader(StatementReader):
             if owner.children and self.conditions and not owner.children[-1].conditions:
                 owner.children[-1].conditions += self.conditions
             return None
-        if name == "read" and isinstance(owner, Substitution) and owner.kind == "open file":
+        if name == "read" and isinstance(owner, Substitution) and owner.kind == OPEN_FILE:
             # What a file holds is what printing it gives.
             return Substitution("command", (["cat ", owner.parts[0]],))
+        if name == "find" and isinstance(owner, Substitution) and owner.kind in {"share", "prefix"}:
+            return Substitution(owner.kind, (arguments.get(0, "package_name"),))
         if name in _SAME_METHODS and isinstance(owner, str | Substitution):
             return owner
         if isinstance(owner, list):

@@ -17,6 +17,7 @@ from archgen.importers.launch.python_values import CallArguments, FunctionValue,
 Ending = Literal["", "return", "break", "continue", "raise"]
 """How a block ended."""
 _MAX_FUNCTIONS = 20
+_REMEMBERED_IN_A_STEP = 10
 
 
 class StatementReader(ComprehensionReader):
@@ -146,6 +147,7 @@ class StatementReader(ComprehensionReader):
         test, depth = self.quote(statement.test), len(self.conditions)
         before = dict(scope.values)
         record = BranchRecord(scope)
+        self.count_steps(record.size // _REMEMBERED_IN_A_STEP)
         endings: list[Ending] = []
         names: list[dict[LaunchValue, LaunchValue]] = []
         contents: list[list[Container]] = []

@@ -58,6 +58,13 @@ class ModuleValue:
 
 
 @dataclass(slots=True, eq=False)
+class RecordValue:
+    """An object that holds values by its attributes' names; what a method without arguments gives stands there, too."""
+
+    values: dict[str, LaunchValue]
+
+
+@dataclass(slots=True, eq=False)
 class BoundMethod:
     """A method of a value."""
 

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
-from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_value
 from archgen.importers.launch.parameter_files import FILE_KIND, read_inline_value, read_inline_values
@@ -22,11 +22,15 @@ _NODE_KEYS = {
     "prefix": "launch-prefix",
     "host": "machine",
 }
+_TAGS = frozenset({"arg", "env", "group", "include", "machine", "node", "param", "remap", "rosparam", "test"})
 _WORKING_FOLDERS = frozenset({"node", "ROS_HOME"})
 
 
 def is_ros_1_launch(root: LaunchEntity, name: str) -> bool:
     """Whether a launch file in XML is one of ROS 1: its nodes have a `type`, those of ROS 2 an `exec`."""
+    if root.find_all("param"):
+        # In ROS 2 each parameter stands in a node.
+        return True
     pending = list(root.children)
     marks = 0
     while pending:
@@ -42,7 +46,12 @@ def is_ros_1_launch(root: LaunchEntity, name: str) -> bool:
             "executable",
         }:
             return False
-        if entity.tag in {"rosparam", "machine", "test"} or (entity.tag == "node" and "type" in attributes):
+        holds_parameters = entity.tag == "group" and entity.find_all("param")
+        if (
+            holds_parameters
+            or entity.tag in {"rosparam", "machine", "test"}
+            or (entity.tag == "node" and "type" in attributes)
+        ):
             return True
         if (entity.tag == "node" and "exec" in attributes) or any(
             "$(var " in text or "$(find-pkg" in text for text in texts
@@ -68,12 +77,24 @@ class Ros1EntityReader:
         return None if text is None else read_text(text, self._folder, is_ros_1=True)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
-        reader: Callable[[LaunchEntity], LaunchAction] = getattr(self, f"_read_{entity.tag}", self._read_unknown)
+        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
+        if entity.tag in _TAGS:
+            reader = getattr(self, f"_read_{entity.tag}")
         action = reader(entity)
-        for word, is_negated in (("if", False), ("unless", True)):
-            if word in entity.attributes:
-                action.conditions.append(LaunchCondition(self._attribute(entity, word), is_negated))
+        action.conditions += self._read_conditions(entity)
         return action
+
+    def _read_conditions(self, entity: LaunchEntity) -> list[LaunchCondition]:
+        return [
+            LaunchCondition(self._attribute(entity, word), is_negated)
+            for word, is_negated in (("if", False), ("unless", True))
+            if word in entity.attributes
+        ]
+
+    def _condition(self, entity: LaunchEntity, value: LaunchValue) -> LaunchValue:
+        """Return what an element inside of another one gives, with its own conditions."""
+        conditions = self._read_conditions(entity)
+        return ConditionalValue(value, conditions) if conditions else value
 
     def _read_unknown(self, entity: LaunchEntity) -> LaunchAction:
         return LaunchAction("unread", entity.tag, entity.span, {"reason": "archgen does not know it"})
@@ -96,13 +117,17 @@ class Ros1EntityReader:
         if entity.attributes.get("cwd", "node") not in _WORKING_FOLDERS:
             values["directory"] = self._attribute(entity, "cwd")
         values["remaps"] = [
-            (self._attribute(each, "from"), self._attribute(each, "to")) for each in entity.find_all("remap")
+            self._condition(each, (self._attribute(each, "from"), self._attribute(each, "to")))
+            for each in entity.find_all("remap")
         ]
         values["environment"] = [
-            (self._attribute(each, "name"), self._attribute(each, "value")) for each in entity.find_all("env")
+            self._condition(each, (self._attribute(each, "name"), self._attribute(each, "value")))
+            for each in entity.find_all("env")
         ]
         values["parameters"] = [
-            entry for each in entity.find_all("param", "rosparam") for entry in self._read_entries(each)
+            self._condition(each, entry)
+            for each in entity.find_all("param", "rosparam")
+            for entry in self._read_entries(each)
         ]
         return LaunchAction("node", entity.tag, entity.span, values)
 
@@ -112,9 +137,12 @@ class Ros1EntityReader:
 
     def _read_include(self, entity: LaunchEntity) -> LaunchAction:
         arguments = [
-            (
-                each.attributes.get("name", ""),
-                self._attribute(each, "value" if "value" in each.attributes else "default"),
+            self._condition(
+                each,
+                (
+                    each.attributes.get("name", ""),
+                    self._attribute(each, "value" if "value" in each.attributes else "default"),
+                ),
             )
             for each in entity.find_all("arg")
         ]

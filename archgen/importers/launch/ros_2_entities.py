@@ -18,6 +18,21 @@ _UNREAD = {
     "shutdown": "it ends the launch",
     "append_env": ADDS_TO_ENVIRONMENT,
 }
+_TAGS = frozenset(
+    {
+        *("arg", "composable_node", "executable", "group", "include", "let", "lifecycle_node", "load_composable_node"),
+        *(
+            "log",
+            "node",
+            "node_container",
+            "push_ros_namespace",
+            "set_env",
+            "set_parameter",
+            "set_parameters_from_file",
+        ),
+        *("set_remap", "timer"),
+    }
+)
 _NODE_KEYS = {
     "package": ("pkg",),
     "executable": ("exec",),
@@ -51,7 +66,9 @@ class Ros2EntityReader:
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
         tag = entity.tag.replace("-", "_")
-        reader: Callable[[LaunchEntity], LaunchAction] = getattr(self, f"_read_{tag}", self._read_unknown)
+        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
+        if tag in _TAGS:
+            reader = getattr(self, f"_read_{tag}")
         action = reader(entity)
         for word, is_negated in (("if", False), ("unless", True)):
             if word in entity.attributes:

@@ -1,9 +1,11 @@
-"""Read what stands behind `--ros-args`: names, remaps, parameters and files, taken out of a program's arguments."""
+"""Read what stands behind `--ros-args` (names, remaps, parameters and files), and in front of a program: `sudo`, `env`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from archgen.importers.launch.command_words import split_words
+from archgen.importers.launch.launch_values import OPEN
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
 from archgen.importers.launch.parameter_values import read_value_text
 
@@ -62,3 +64,16 @@ def read_nodelet(node: LaunchedNode) -> None:
     if is_loaded:
         node.container_name = join_names(node.namespace, rest[1])
     node.arguments = rest[2:] if is_loaded else rest[1:]
+
+
+def read_prefix(node: LaunchedNode, prefix: str) -> str:
+    """Set the user and the folder that a prefix such as `sudo -u robot -- env -C /opt` says; return what is left of it."""
+    words = split_words(prefix)
+    if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
+        place = words.index("-u")
+        node.user = words[place + 1]
+        words = words[place + 2 :]
+        words = words[1:] if words[:1] == ["--"] else words
+    if words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
+        node.directory, words = words[2], []
+    return " ".join(words)

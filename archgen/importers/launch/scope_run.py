@@ -7,11 +7,11 @@ from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ImportNote
-from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
-from archgen.importers.launch.launched_nodes import join_names
+from archgen.importers.launch.launched_nodes import clean_name, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND
 
 
@@ -102,6 +102,8 @@ class ScopeRun:
             self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
         else:
             scope = self.context.scope
+            if self.context.is_ros_1:
+                own_name, name = clean_name(own_name), clean_name(name)
             # In ROS 1 a later rule for a name takes the place of an earlier one, in ROS 2 the first one counts.
             kept = [pair for pair in scope.remaps if not (self.context.is_ros_1 and pair[0] == own_name)]
             scope.remaps = (*kept, (own_name, name))
@@ -131,6 +133,25 @@ class ScopeRun:
                 if isinstance(name, str):
                     resolved.append((name, value))
         return resolved
+
+    def choose_values(self, action: LaunchAction, values: LaunchValue) -> list[LaunchValue]:
+        """Return what is given, as a list, without what does not count by its own conditions."""
+        items = list(values) if isinstance(values, list | tuple) else [] if values is None else [values]
+        chosen: list[LaunchValue] = []
+        for item in items:
+            verdicts = (
+                [self.context.judge_condition(each) for each in item.conditions]
+                if isinstance(item, ConditionalValue)
+                else []
+            )
+            unsure = next((words for words, verdict in verdicts if verdict is None), None)
+            if any(verdict is False for _, verdict in verdicts):
+                continue
+            if unsure is not None:
+                self.add_note(action.word, f"what counts only {unsure} is left out", action.span)
+                continue
+            chosen.append(item.value if isinstance(item, ConditionalValue) else item)
+        return chosen
 
     def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
         """Add a note, once for each place."""

@@ -27,7 +27,7 @@ _WORD = re.compile(r"[^\s.]+\Z")
 
 def read_orca(files: Sequence[Path]) -> ForeignImport:
     """Read definition files, or all files `*.def` below folders. Raise ForeignFileError."""
-    paths = [path for given in files for path in (sorted(given.rglob("*.def")) if given.is_dir() else [given])]
+    paths = [path for given in files for path in (_list_definitions(given) if given.is_dir() else [given])]
     if not paths:
         words = "there is no definition file in it"
         raise ForeignFileError(
@@ -42,6 +42,11 @@ def read_orca(files: Sequence[Path]) -> ForeignImport:
         component_types[component_id] = reader.read_component(component_id)
     slices = {"orca_types.yaml": {"component_types": component_types}}
     return ForeignImport(slices, dict(sorted(taken.items())), tuple(notes), "Orca components")
+
+
+def _list_definitions(folder: Path) -> list[Path]:
+    """Return the definition files below a folder; no link is followed."""
+    return [path for path in sorted(folder.rglob("*.def")) if path.is_file() and not path.is_symlink()]
 
 
 class _DefinitionReader:

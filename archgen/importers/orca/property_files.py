@@ -36,8 +36,8 @@ def read_properties(path: Path) -> list[Property]:
             words, Span.of_file(path.name), "give a definition file: lines such as `Config.Rate.Default=5`"
         )
     found: list[Property] = []
-    for number, line in enumerate(text.splitlines(), 1):
-        code = _take_comment(line)
+    for number, line in enumerate(text.replace("\r\n", "\n").split("\n"), 1):
+        code = _take_comment(line.rstrip("\r"))
         if code.strip():
             key, value = _split_pair(code)
             found.append(Property(key, value, Span(path.name, number, 1, number, len(line) + 1)))

@@ -62,7 +62,11 @@ def walk_files(folder: Path) -> Iterator[PackageFile]:
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in _SKIPPED)
         if len(inner.parts) >= _MAX_DEPTH:
             folders.clear()
-        for name in sorted(names):
+        is_other = bool(inner.parts) and MANIFEST in names
+        if is_other:
+            # What is in another package is its own.
+            folders.clear()
+        for name in [MANIFEST] if is_other else sorted(names):
             path = Path(top) / name
             if not path.is_symlink() and count < _MAX_FILES:
                 count += 1
@@ -78,9 +82,8 @@ def read_manifest(path: Path) -> PackageManifest:
         words = "it is no package.xml: there is no `name` in a `package`"
         raise ForeignFileError(words, root.span(shown), "give the package.xml of a package of ROS, or its folder")
     export = root.find("export")
-    build_type = export.find("build_type") if export is not None else None
-    kinds = [build_type.text.strip()] if build_type is not None else []
-    tools = [each.text.strip() for each in root.find_all("buildtool_depend")]
+    build_types = [each.text.strip() for each in export.find_all("build_type")] if export is not None else []
+    tools = [*build_types, *(each.text.strip() for each in root.find_all("buildtool_depend"))]
     return PackageManifest(
         folder=path.resolve().parent,
         name=name.text.strip(),
@@ -88,7 +91,8 @@ def read_manifest(path: Path) -> PackageManifest:
         description=" ".join(_text(root, "description").split()),
         licenses=tuple(text for each in root.find_all("license") if (text := each.text.strip())),
         website=next((each.text.strip() for each in root.find_all("url") if _is_website(each)), ""),
-        is_ros_1="catkin" in [*kinds, *tools],
+        # What is built by either is a package of both: then its messages are written as ROS 2 has them.
+        is_ros_1="catkin" in tools and not any(tool.startswith("ament") for tool in tools),
         span=root.span(shown),
         dependency_count=sum(child.tag.endswith("depend") for child in root.children),
     )

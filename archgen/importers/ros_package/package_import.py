@@ -95,7 +95,9 @@ class _PackageReader:
     def _tell_manifest(self) -> None:
         manifest = self._manifest
         if manifest.dependency_count:
-            words = f"{manifest.dependency_count} dependencies on other packages have no counterpart"
+            count = manifest.dependency_count
+            what = "dependency on another package has" if count == 1 else "dependencies on other packages have"
+            words = f"{count} {what} no counterpart"
             self._account.add_note("depend", words, manifest.span)
 
     def _finish_component(self, data: dict[str, Any]) -> dict[str, Any]:

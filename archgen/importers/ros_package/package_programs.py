@@ -1,4 +1,4 @@
-"""The programs that a package installs: entry points of setup.py and setup.cfg, and what CMake makes."""
+"""The programs that a package installs: entry points of setup.py, and what CMake makes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from archgen.importers.launch.python_parsing import PythonRefusedError, parse_python
@@ -15,7 +16,7 @@ from archgen.importers.ros_package.package_files import PackageFile, PackageMani
 
 _MAX_BYTES = 1_000_000
 _MAX_NODES = 100_000
-_ENTRY_POINT = re.compile(r"\s*([A-Za-z0-9_.\-]+)\s*=\s*[A-Za-z_][\w.]*:[A-Za-z_]\w*\s*")
+_ENTRY_POINT = re.compile(r"\s*([A-Za-z0-9_.\-]+)\s*=\s*[A-Za-z_][\w.]*:[A-Za-z_][\w.]*\s*")
 _COMMENT = re.compile(r"#[^\n]*")
 _CMAKE_CALL = re.compile(
     r"\b((?:ament_auto_)?add_executable|rclcpp_components_register_nodes?)\s*\(([^()]{1,2000})\)", re.IGNORECASE
@@ -25,7 +26,8 @@ _CMAKE_USE = re.compile(r"\$\{(\w+)\}")
 _PROGRAM_NAME = re.compile(r"[A-Za-z0-9_.\-]+\Z")
 _CLASS_NAME = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)+\Z")
 _NO_NODES = frozenset({"IMPORTED", "ALIAS"})
-_TEST_WORDS = ("test", "benchmark", "example")
+_TEST_WORDS = frozenset({"test", "tests", "gtest", "benchmark", "benchmarks", "example", "examples"})
+_WORD_ENDS = re.compile(r"[_.\-]+|(?<=[a-z])(?=[A-Z])")
 
 
 def find_programs(
@@ -40,7 +42,11 @@ def find_programs(
             text = read_bounded(file.path, _MAX_BYTES).decode("utf-8", "replace")
         except ForeignFileError:
             continue
-        found = _read_setup(text) if file.path.name == "setup.py" else _read_cmake(text, manifest.name)
+        place = Span.of_file(file.shown)
+        if file.path.name == "setup.py":
+            found = _read_setup(text, place, account)
+        else:
+            found = _read_cmake(text, manifest.name, place, account)
         for name, more in found:
             if name not in programs:
                 account.count("plug-in" if "plugin" in more else "program")
@@ -48,11 +54,13 @@ def find_programs(
     return programs
 
 
-def _read_setup(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
+def _read_setup(text: str, place: Span, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the console scripts of a setup.py, read by its syntax tree and never run."""
     try:
         tree = parse_python(text)
-    except PythonRefusedError:
+    except PythonRefusedError as error:
+        span = Span(place.file, error.line, error.column, error.line, error.column + 1)
+        account.add_note("setup.py", f"it cannot be read: {error.message}", span)
         return
     nodes = [tree]
     seen = 0
@@ -64,26 +72,36 @@ def _read_setup(text: str) -> Iterator[tuple[str, dict[str, Any]]]:
         if isinstance(node, ast.Dict):
             for key, value in zip(node.keys, node.values, strict=True):
                 if isinstance(key, ast.Constant) and key.value == "console_scripts":
-                    yield from _read_scripts(value)
+                    yield from _read_scripts(value, place, account)
 
 
-def _read_scripts(value: ast.expr) -> Iterator[tuple[str, dict[str, Any]]]:
-    items = value.elts if isinstance(value, ast.List | ast.Tuple) else ()
-    for item in items:
+def _read_scripts(value: ast.expr, place: Span, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
+    for item in value.elts if isinstance(value, ast.List | ast.Tuple) else [value]:
         text = item.value if isinstance(item, ast.Constant) and isinstance(item.value, str) else ""
         match = _ENTRY_POINT.fullmatch(text)
         if match:
             yield match[1], {"executable": match[1], "language": "python"}
+        else:
+            words = f"`{text}` is no entry point" if text else "which programs there are is computed"
+            span = Span(place.file, item.lineno, 1, item.lineno, 2)
+            account.add_note("console_scripts", words, span)
 
 
-def _read_cmake(text: str, package: str) -> Iterator[tuple[str, dict[str, Any]]]:
+def _read_cmake(text: str, package: str, place: Span, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
     plain_text = _COMMENT.sub("", text)
-    variables = {"PROJECT_NAME": package, **dict(_CMAKE_VARIABLE.findall(plain_text))}
+    pairs = _CMAKE_VARIABLE.findall(plain_text)
+    values = {name: {value for other, value in pairs if other == name} for name in dict(pairs)}
+    variables = {"PROJECT_NAME": package, **{name: min(found) for name, found in values.items() if len(found) == 1}}
     for match in _CMAKE_CALL.finditer(plain_text):
         words = [_fill_variables(word.strip('"'), variables) for word in match[2].split()]
         if match[1].lower().endswith("add_executable"):
-            is_program = bool(words) and _PROGRAM_NAME.match(words[0]) and not _NO_NODES & set(words)
-            if is_program and not any(word in words[0].lower() for word in _TEST_WORDS):
+            if not words or _NO_NODES & set(words):
+                continue
+            if not _PROGRAM_NAME.match(words[0]):
+                line = plain_text.count("\n", 0, match.start()) + 1
+                span = Span(place.file, line, 1, line, 2)
+                account.add_note(match[1].lower(), f"the name of a program is computed: `{words[0]}`", span)
+            elif not _TEST_WORDS & {word.lower() for word in _WORD_ENDS.split(words[0])}:
                 yield words[0], {"executable": words[0], "language": "cpp"}
         else:
             yield from _read_registration(words)

@@ -27,6 +27,11 @@ class DumpLine(NamedTuple):
     command: str
 
 
+def _split_lines(text: str) -> list[str]:
+    # Not `splitlines`: a form feed or a line separator in a value ends no line of the file.
+    return text.removeprefix("\ufeff").removesuffix("\n").replace("\r\n", "\n").split("\n")
+
+
 def read_dump_lines(files: Sequence[Path]) -> Iterator[DumpLine]:
     """Yield the lines of dumps. Raise ForeignFileError for a file that cannot be read, or is no text."""
     for path in files:
@@ -35,7 +40,7 @@ def read_dump_lines(files: Sequence[Path]) -> Iterator[DumpLine]:
             words = "it is no text"
             raise ForeignFileError(words, Span.of_file(path.name), "give what the commands print, as text")
         command = ""
-        for number, raw_line in enumerate(data.decode("utf-8", "replace").removeprefix("\ufeff").splitlines(), 1):
+        for number, raw_line in enumerate(_split_lines(data.decode("utf-8", "replace")), 1):
             line = _COLOURS.sub("", raw_line[:_MAX_LINE]).rstrip()
             match = _PROMPT.fullmatch(line)
             if match:

@@ -14,7 +14,6 @@ _STATE_SERVICE = "/change_state"
 _LOADING_SERVICE = "/_container/load_node"
 _HIDDEN = ("/_", "/parameter_events", "/rosout", "/rosout_agg")
 _NO_NODES = frozenset({"/rosout"})
-_HIDDEN_NODES = ("/_ros2cli", "/_")
 
 
 def write_graph(graph: RunningGraph) -> dict[str, dict[str, Any]]:
@@ -24,7 +23,7 @@ def write_graph(graph: RunningGraph) -> dict[str, dict[str, Any]]:
         if node.full_name not in _NO_NODES and not node.full_name.rpartition("/")[2].startswith("_"):
             maker.add_node(node)
     slices = maker.finish()
-    if not slices and graph.messages:
+    if not slices and any(graph.messages.values()):
         types = {make_type_name(message): {"message": message} for message in graph.messages.values() if message}
         return {"recorded_types.yaml": {"types": types}}
     return slices

@@ -13,6 +13,7 @@ from archgen.syntax.yaml_tree import MappingNode, node_to_data
 
 _OWN_PARAMETERS = ("qos_overrides", "start_type_description_service")
 """What every node of ROS 2 has, and nobody sets."""
+_USUAL_TIME = ("use_sim_time", False)
 
 
 def take_node_parameters(graph: RunningGraph, lines: Sequence[DumpLine]) -> None:
@@ -24,7 +25,8 @@ def take_node_parameters(graph: RunningGraph, lines: Sequence[DumpLine]) -> None
             continue
         node = graph.get_node(f"/{entry.key.strip('/')}", lines[0].span)
         for value in flatten_parameters(values):
-            if value.name.partition(".")[0] not in _OWN_PARAMETERS and value.value is not None:
+            is_own = value.name.partition(".")[0] in _OWN_PARAMETERS or (value.name, value.value) == _USUAL_TIME
+            if not is_own and value.value is not None:
                 node.parameters[value.name] = value.value
                 graph.taken["parameter"] += 1
 

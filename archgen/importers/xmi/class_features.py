@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.import_ledger import ImportLedger, call
-from archgen.importers.xmi.made_names import choose_id, name_parameter, name_type
+from archgen.importers.xmi.made_names import choose_id, name_parameter
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
 
@@ -147,7 +147,7 @@ def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, 
     answers: dict[str, object] = {}
     for parameter in list_children(element, "Parameter"):
         direction = parameter.attributes.get("direction", "in")
-        type_name = name_type(uml_values.find_type_name(index, parameter))
+        type_name = uml_values.find_type_name(index, parameter)
         type_name = uml_values.find_field_type(type_name) or type_name
         type_name += uml_values.write_array(parameter) if type_name else ""
         ledger.take(parameter)

@@ -14,6 +14,7 @@ _UNSEEN = frozenset({"style", "script", "head", "title"})
 
 def make_plain(text: str) -> str:
     """Return the text of a comment without HTML: paragraphs, lines and items of lists stay apart."""
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
     if not _HTML_BEGINNING.match(text):
         return text.strip()
     reader = _TextReader()

@@ -54,7 +54,7 @@ class ComponentAssembly:
     def _place_types(self) -> None:
         for facts in self._sorting.facts.values():
             if facts.sort == "component_type":
-                facts.id = choose_id(facts.element, "type", self.types)
+                facts.id = choose_id(facts.element, "type", self.types, known_ids=self._index.known_ids)
                 facts.path = (facts.id,)
                 self.types[facts.id] = facts
 
@@ -80,17 +80,14 @@ class ComponentAssembly:
             if owner.sort == "data":
                 continue
             for part in list_children(owner.element, "Property"):
-                reference = self._index.find_reference(part, "type")
-                part_type = self._sorting.facts.get(reference.element) if reference and reference.element else None
+                part_type, arguments = self._sorting.find_part_type(part)
                 if part_type is None or part_type.sort != "component_type":
-                    continue
-                if part_type.element not in self._sorting.with_ports or not self._sorting.is_place(part):
                     continue
                 if is_true(part_type.element, "isAbstract"):
                     words = f"{call(part)} is not taken: `{get_name(part_type.element)}` is abstract"
                     self._ledger.leave(part, words)
                     continue
-                facts = ClassFacts(part, "component", owner=owner, base=part_type)
+                facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
                 owner.inside.append(facts)
                 self._sorting.parts[part] = facts
 
@@ -137,7 +134,7 @@ class ComponentAssembly:
         outermost = [each for each in self._sorting.facts.values() if each.sort == "component" and each.owner is None]
         for facts in outermost:
             group_id = self._find_group(facts.element)
-            facts.id = choose_id(facts.element, "component", self._taken_ids[group_id])
+            facts.id = choose_id(facts.element, "component", self._taken_ids[group_id], known_ids=self._index.known_ids)
             self._taken_ids[group_id].add(facts.id)
             facts.path = (group_id, facts.id)
         stack = [*reversed(self.types.values()), *reversed(outermost)]
@@ -149,7 +146,7 @@ class ComponentAssembly:
             outer = (facts, *facts.list_bases()) if facts.inside else ()
             taken = {make_id(get_name(port), "port") for each in outer for port in list_children(each.element, "Port")}
             for inner in facts.inside:
-                inner.id = choose_id(inner.element, "component", taken)
+                inner.id = choose_id(inner.element, "component", taken, known_ids=self._index.known_ids)
                 taken.add(inner.id)
                 inner.path = (*facts.path, inner.id)
             stack += reversed(facts.inside)
@@ -158,7 +155,7 @@ class ComponentAssembly:
         package = self._catalogue.packages[element]
         group_id = self._group_of.get(package)
         if group_id is None:
-            group_id = choose_id(package, "group", self.groups)
+            group_id = choose_id(package, "group", self.groups, known_ids=self._index.known_ids)
             self.groups[group_id] = package
             self._group_of[package] = group_id
             self._ledger.take(package)

@@ -6,16 +6,17 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 
 from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xmi.general_classes import MAX_GENERALS, find_top, list_beyond
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
+from archgen.importers.xmi.template_classes import TemplateClasses, TypeArguments
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_children
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
+_LIBRARY_ID = f"{OWN_PREFIX}package.classes"
 _COMPONENT_PREFIX = f"{OWN_PREFIX}component."
 _DATA_PREFIX = f"{OWN_PREFIX}type."
-_MAX_GENERALS = 50
-"""So many classes may stand one above another: the language reads 60 types, and a component is realized by one more."""
 
 
 @dataclass(slots=True, eq=False)
@@ -30,6 +31,9 @@ class ClassFacts:
     """What it stands in, as a component inside."""
     base: ClassFacts | None = None
     """The component type that it is made from."""
+    base_arguments: TypeArguments = ()
+    """What the generic names of that type stand for."""
+    generic_names: tuple[str, ...] = ()
     ports: list[PortFacts] = field(default_factory=list)
     port_ids: dict[str, str] = field(default_factory=dict)
     """The names of its own ports by their ids."""
@@ -43,6 +47,11 @@ class ClassFacts:
     def root(self) -> ClassFacts:
         """The outermost one around it: a component of a group, or a component type."""
         return self.owner.root if self.owner else self
+
+    def say_base(self) -> str:
+        """Return the type that it is made from, as `is` says it: `filter<Pose>`."""
+        name = self.base.id if self.base is not None else ""
+        return f"{name}<{', '.join(self.base_arguments)}>" if self.base_arguments else name
 
     def list_bases(self) -> list[ClassFacts]:
         """Return the types that it is made from, the nearest first."""
@@ -60,9 +69,12 @@ class ClassSorting:
     def __init__(self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, uses: InterfaceUses) -> None:
         self._index, self._ledger, self._uses = index, ledger, uses
         self._catalogue = catalogue
+        self._templates = TemplateClasses(index, ledger, catalogue)
+        self._arguments: dict[XmlElement, TypeArguments] = {}
+        """What the generic names of the class stand for that each class or component is made from."""
         self._generals = self._find_generals()
         self._realizers = self._find_realizers()
-        self.with_ports = {each for each in catalogue.classes if self._has_ports(each)}
+        self.with_ports = {each for each in self._templates.classes if self._has_ports(each)}
         """Components, and classes with ports."""
         self._joined_parts = self._find_joined_parts()
         self.facts: dict[XmlElement, ClassFacts] = {}
@@ -77,12 +89,20 @@ class ClassSorting:
         written: dict[XmlElement, XmlElement] = {}
         generals: dict[XmlElement, XmlElement] = {}
         tops: dict[XmlElement, XmlElement] = {}
-        known = frozenset(self._catalogue.classes)
-        for element in self._catalogue.classes:
+        known = frozenset(self._templates.classes)
+        for element in self._templates.classes:
+            if element in self._templates.bindings:
+                generals[element], self._arguments[element] = self._templates.bindings[element]
+                tops[element] = generals[element]
             for generalization in list_children(element, "Generalization"):
                 reference = self._index.find_reference(generalization, "general")
-                general = reference.element if reference else None
-                if general is None or general not in known:
+                unbound = self._templates.describe_unbound(reference.element) if reference and reference.element else ""
+                general, arguments = (
+                    self._templates.resolve(reference.element) if reference and reference.element else (None, ())
+                )
+                if unbound:
+                    self._ledger.leave(generalization, f"{call(element)} is made from a template: {unbound}")
+                elif general is None or general not in known:
                     words = f"{call(element)} is made from a class that is not among the classes of these files"
                     self._ledger.leave(generalization, words)
                 elif element in generals:
@@ -90,24 +110,25 @@ class ClassSorting:
                         f"{call(element)} is made from `{get_name(general)}`, too: a component type is made from one"
                     )
                     self._ledger.leave(generalization, words)
-                elif _find_top(tops, general) is element:
+                elif find_top(tops, general) is element:
                     words = f"{call(element)} would be made from itself: the generalizations go round in a circle"
                     self._ledger.leave(generalization, words, "take out one of them")
                 else:
                     generals[element], written[element] = general, generalization
+                    self._arguments[element] = arguments
                     tops[element] = general
-        for element in _list_beyond(generals):
-            words = f"{call(element)} is made from a class that is made from a class, more than {_MAX_GENERALS} times"
-            self._ledger.leave(written[element], words, "name a class further up")
+        for element in list_beyond(generals):
+            words = f"{call(element)} is made from a class that is made from a class, more than {MAX_GENERALS} times"
+            self._ledger.leave(written.get(element, element), words, "name a class further up")
             del generals[element]
-        for element in generals:
-            self._ledger.take(written[element])
+        for generalization in (written[each] for each in generals if each in written):
+            self._ledger.take(generalization)
         return generals
 
     def _find_realizers(self) -> dict[XmlElement, XmlElement]:
         """Return the class that realizes each component; the first of several."""
         realizers: dict[XmlElement, XmlElement] = {}
-        classes = frozenset(self._catalogue.classes)
+        classes = frozenset(self._catalogue.classes)  # with those that stand for bound templates
         for realization in self._catalogue.realizations:
             if realization in self._uses.used_elements:
                 continue
@@ -118,13 +139,16 @@ class ClassSorting:
             realizing = self._index.list_named(realization, "realizingClassifier", "client")
             realizing = [each for each in realizing if each in classes and each not in components]
             components = [each for each in components if get_kind(each) == "Component"]
+            if realizing and (unbound := self._templates.describe_unbound(realizing[0])):
+                self._ledger.leave(realization, f"{call(realization)} is not taken: {unbound}")
+                continue
             for component in components:
                 for each in realizing[:1]:
                     if component in realizers:
                         words = f"{call(component)} is realized by `{get_name(each)}`, too: a component is made from one type"
                         self._ledger.leave(realization, words)
                     else:
-                        realizers[component] = each
+                        realizers[component], self._arguments[component] = self._templates.resolve(each)
                         self._ledger.take(realization)
             if len(realizing) > 1 and components:
                 names = ", ".join(get_name(each) for each in realizing[1:3])
@@ -136,7 +160,7 @@ class ClassSorting:
         return realizers
 
     def _sort_classes(self) -> None:
-        classes = self._catalogue.classes
+        classes = self._templates.classes
         assemblies, part_types = self._find_parts()
         realizing = set(self._realizers.values())
         generals = set(self._generals.values())
@@ -147,8 +171,10 @@ class ClassSorting:
             if element in self.with_ports:
                 is_type = (
                     own_id.startswith(_TYPE_PREFIX)
+                    or self._is_in_library(element)
                     or is_true(element, "isAbstract")
                     or element in part_types
+                    or element in self._templates.generic_names
                     or element in generals
                     or element in realizing
                 )
@@ -156,18 +182,29 @@ class ClassSorting:
             elif own_id.startswith(_DATA_PREFIX):
                 sort = "data"
             else:
-                is_data = data_uses[element] and element not in component_family and not own_id.startswith(OWN_PREFIX)
+                is_data = (
+                    data_uses[element]
+                    and not self._is_template(element)
+                    and element not in component_family
+                    and not own_id.startswith(OWN_PREFIX)
+                )
                 has_methods = bool(list_children(element, "Operation"))
                 sort = "data" if is_data and not has_methods else "component_type"
-                is_free = not (is_true(element, "isAbstract") or data_uses[element] or element in generals | realizing)
+                is_free = not (
+                    is_true(element, "isAbstract")
+                    or self._is_template(element)
+                    or data_uses[element]
+                    or element in generals | realizing
+                )
                 if is_free and element in assemblies and not own_id.startswith(OWN_PREFIX):
                     # What only puts parts together, and is no part itself, is there once: the system.
                     sort = "component"
-            self.facts[element] = ClassFacts(element, sort)
+            names = self._templates.generic_names.get(element, ())
+            self.facts[element] = ClassFacts(element, sort, generic_names=names)
         for element, facts in self.facts.items():
             base = self._realizers.get(element) or self._generals.get(element)
             if base is not None and self.facts[base].sort == "component_type":
-                facts.base = self.facts[base]
+                facts.base, facts.base_arguments = self.facts[base], self._arguments.get(element, ())
         self._cut_circles()
 
     def _cut_circles(self) -> None:
@@ -178,6 +215,27 @@ class ClassSorting:
                 words = f"{call(facts.element)} would be made from itself"
                 self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
+
+    def _is_in_library(self, element: XmlElement) -> bool:
+        """Whether archgen wrote a class as a component type that has its id from another tool."""
+        package = self._index.get_parent(element)
+        return package is not None and get_id(package) == _LIBRARY_ID
+
+    def _is_template(self, element: XmlElement) -> bool:
+        return element in self._templates.generic_names or element in self._templates.bindings
+
+    def find_part_type(self, part: XmlElement) -> tuple[ClassFacts | None, TypeArguments]:
+        """Return the class of a property that is a place for a component; None where it is none, and a note why."""
+        reference = self._index.find_reference(part, "type")
+        if reference is None or reference.element is None or not self.is_place(part):
+            return None, ()
+        element, arguments = self._templates.resolve(reference.element)
+        if element not in self.with_ports:
+            return None, ()
+        if unbound := self._templates.describe_unbound(reference.element):
+            self._ledger.leave(part, f"{call(part)} is not taken: {unbound}")
+            return None, ()
+        return self.facts.get(element), arguments
 
     def is_place(self, element: XmlElement) -> bool:
         """Whether a property is a place for a component inside: others only refer to one that stands elsewhere."""
@@ -195,14 +253,15 @@ class ClassSorting:
     def _find_parts(self) -> tuple[set[XmlElement], set[XmlElement]]:
         """Return the classes that have parts with ports, and the classes of these parts."""
         pairs = [
-            (owner, reference.element)
-            for owner in self._catalogue.classes
+            (owner, self._templates.resolve(reference.element)[0])
+            for owner in self._templates.classes
             for part in list_children(owner, "Property")
             if self.is_place(part)
             and (reference := self._index.find_reference(part, "type"))
-            and reference.element in self.with_ports
+            and reference.element is not None
+            and self._templates.resolve(reference.element)[0] in self.with_ports
         ]
-        return {owner for owner, _ in pairs}, {part for _, part in pairs if part is not None}
+        return {owner for owner, _ in pairs}, {part for _, part in pairs}
 
     def _find_family(self, members: set[XmlElement]) -> set[XmlElement]:
         """Return classes with all that they are made from and all that is made from them."""
@@ -232,34 +291,3 @@ class ClassSorting:
                 typed = list_children(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
                 uses.update(each for element in typed for each in self._index.list_named(element, "type"))
         return uses
-
-
-def _find_top(tops: dict[XmlElement, XmlElement], element: XmlElement) -> XmlElement:
-    """Return the class at the end of the way from each class to what it is made from; ways that were gone get shorter."""
-    passed = []
-    while element in tops:
-        passed.append(element)
-        element = tops[element]
-    for each in passed:
-        tops[each] = element
-    return element
-
-
-def _list_beyond(generals: dict[XmlElement, XmlElement]) -> list[XmlElement]:
-    """Return the classes whose way up is to be cut, so that none is longer than `_MAX_GENERALS`."""
-    beyond = []
-    lengths: dict[XmlElement, int] = {}
-    for start in generals:
-        way = []
-        current: XmlElement | None = start
-        while current is not None and current not in lengths:
-            way.append(current)
-            current = generals.get(current)
-        length = lengths[current] if current is not None else -1
-        for each in reversed(way):
-            length = length + 1
-            if length > _MAX_GENERALS:
-                beyond.append(each)
-                length = 0
-            lengths[each] = length
-    return beyond

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import ChainMap, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
-from archgen.importers.xmi.made_names import choose_id, name_type, say_title
+from archgen.importers.xmi.made_names import choose_id, say_title
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts, name_interface
 from archgen.importers.xmi.port_wiring import PortWiring, list_inner_references, name_port
 from archgen.importers.xmi.uml_catalogue import read_description
@@ -24,17 +24,17 @@ PortKey = tuple[str, str]
 """`inputs` or `outputs`, and the id of a port."""
 
 
-def assign_port_ids(assembly: ComponentAssembly) -> None:
+def assign_port_ids(assembly: ComponentAssembly, known_ids: Mapping[str, str]) -> None:
     """Give each port its ids. What a type made from another, or an instance, has again is the same port."""
     done: set[int] = set()
     for facts in (*assembly.types.values(), *assembly.components):
         for each in (*reversed(facts.list_bases()), facts):
             if id(each) not in done:
                 done.add(id(each))
-                _assign_own_ids(each)
+                _assign_own_ids(each, known_ids)
 
 
-def _assign_own_ids(facts: ClassFacts) -> None:
+def _assign_own_ids(facts: ClassFacts, known_ids: Mapping[str, str]) -> None:
     bases = facts.list_bases()
     # Not one set of all ids: a hundred types made from one of a hundred ports would make a hundred of them.
     taken = ChainMap(facts.port_ids, *(base.port_ids for base in bases))
@@ -43,7 +43,7 @@ def _assign_own_ids(facts: ClassFacts) -> None:
         port_id = next((each for each in inherited if each is not None), None)
         if port_id is None or port_id in facts.port_ids:
             # Two ports of one name in one class are two: the second one is not the inherited one again.
-            port_id = choose_id(port.element, "port", taken, name_port(port) or "port")
+            port_id = choose_id(port.element, "port", taken, name_port(port) or "port", known_ids)
         facts.port_ids[port_id] = port.name
         facts.ids_by_port_name.setdefault(port.name, port_id)
         port.input_id = port.output_id = port_id
@@ -90,7 +90,7 @@ class ComponentSections:
                 ):
                     self._make_type(user, ports)
                 else:
-                    self._type_of[user] = base.id
+                    self._type_of[user] = user.say_base()
                     if user is users[0]:
                         self._given_ports[base] = ports
 
@@ -110,7 +110,7 @@ class ComponentSections:
     def _make_type(self, facts: ClassFacts, ports: list[PortFacts]) -> None:
         used = {*self._assembly.types, *self._made_types}
         type_id = make_unique_id(facts.id, used)
-        body: dict[str, object] = {"is": facts.base.id} if facts.base else {}
+        body: dict[str, object] = {"is": facts.say_base()} if facts.base else {}
         body |= self._write_ports(ports, facts, is_type=True)
         features = self._assembly.features[facts.element]
         body |= features.list_sections()
@@ -129,8 +129,10 @@ class ComponentSections:
             body |= read_description(self._index, self._ledger, element)
             if is_true(element, "isAbstract"):
                 body["abstract"] = True
+            if facts.generic_names:
+                body["generic"] = list(facts.generic_names)
             if facts.base is not None:
-                body["is"] = facts.base.id
+                body["is"] = facts.say_base()
             body |= self._write_ports([*facts.ports, *self._given_ports[facts]], facts, is_type=True)
             body |= self._assembly.features[element].list_sections()
             body |= self._write_inside(facts)
@@ -223,7 +225,7 @@ class ComponentSections:
         if not name and not (is_fed and not port.is_output):
             # What an input reads says its type; the interface does where nobody provides it.
             name = self._uses.find_data_type(port)
-        return {"type": find_field_type(name) or name_type(name)} if name else {}
+        return {"type": find_field_type(name) or name} if name else {}
 
     @staticmethod
     def _make_hints(port: PortFacts, *, is_fed: bool = False) -> dict[str, object]:

@@ -9,11 +9,12 @@ from collections.abc import Collection, Iterable, Mapping
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
-from archgen.importers.xmi.made_names import name_type
+from archgen.importers.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
 from archgen.importers.xmi.uml_catalogue import read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_children
 from archgen.link.data_types.message_names import spell_message_name
 from archgen.model.element_ids import make_id
+from archgen.model.generic_names import read_generic_name
 
 _UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
 """Ids of types that archgen wrote because something names them: nobody declares them."""
@@ -26,8 +27,9 @@ class DataTypes:
     def __init__(self, index: UmlIndex, ledger: ImportLedger, elements: Iterable[XmlElement]) -> None:
         self._index, self._ledger = index, ledger
         self._elements: dict[str, XmlElement] = {}
+        self._generic_names: dict[str, tuple[str, ...]] = {}
         for element in elements:
-            name = name_type(get_name(element))
+            name = uml_values.name_referenced(Reference(element, get_name(element)))
             if uml_values.find_field_type(name) or get_id(element).startswith(_UNDECLARED):
                 # It is a type of the language itself.
                 ledger.take(element)
@@ -37,12 +39,23 @@ class DataTypes:
                 ledger.leave(element, f"{call(element)} is not taken: {why}")
                 continue
             self._elements[name] = element
+            for signature in list_children(element, *SIGNATURE_KINDS):
+                self._read_signature(name, signature)
         self._valueless: set[str] = set()
-        self._fields = {name: self._read_fields(each) for name, each in self._elements.items()}
+        self._fields = {name: self._read_fields(name, each) for name, each in self._elements.items()}
         self._drop_nameless_fields()
         self._drop_unknown_fields()
 
-    def _read_fields(self, element: XmlElement) -> dict[str, dict[str, object]] | None:
+    def _read_signature(self, name: str, signature: XmlElement) -> None:
+        names = read_generic_names(self._index, signature)
+        if names and name not in self._generic_names:
+            self._generic_names[name] = names
+            self._ledger.take(signature)
+        else:
+            words = f"`{name[:80]}` is no generic type: its template's parameters need a name each, as `T`"
+            self._ledger.leave(signature, words)
+
+    def _read_fields(self, type_name: str, element: XmlElement) -> dict[str, dict[str, object]] | None:
         """Return the fields of a type; None where it has none, or one whose type is not known."""
         fields: dict[str, dict[str, object]] = {}
         children = list_children(element, "Property")
@@ -50,8 +63,8 @@ class DataTypes:
             name = make_id(get_name(child), "field") if get_name(child) else ""
             written = uml_values.find_type_name(self._index, child)
             primitive = uml_values.find_field_type(written)
-            known = primitive or (name_type(written) if written else "")
-            is_known = primitive is not None or known in self._elements or _MESSAGE.match(known) is not None
+            known = primitive or written
+            is_known = primitive is not None or self._is_known(type_name, known) or _MESSAGE.match(known) is not None
             problem = "it has no name" if not name else "there is another one" if name in fields else ""
             if problem or not is_known:
                 why = problem or "its type is not known"
@@ -63,6 +76,17 @@ class DataTypes:
             comment = texts.get("comment") or texts.get("description")
             fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
         return fields or None
+
+    def _is_known(self, type_name: str, written: str) -> bool:
+        """Whether a type of a field is one of these files, a generic name of the type, or bound: `Envelope<Pose>`."""
+        base, arguments = read_generic_name(written)
+        if len(arguments) != len(self._generic_names.get(base, ())):
+            return False
+        if arguments:
+            return all(
+                self._is_known(type_name, each) or uml_values.find_field_type(each) is not None for each in arguments
+            )
+        return written in self._elements or written in self._generic_names.get(type_name, ())
 
     def _drop_nameless_fields(self) -> None:
         """Leave out fields and values of types after which no message can be called, or whose message another one has."""
@@ -129,6 +153,8 @@ class DataTypes:
         section: dict[str, object] = {}
         for name, element in self._elements.items():
             body: dict[str, object] = {}
+            if name in self._generic_names:
+                body["generic"] = list(self._generic_names[name])
             if _is_enumeration(element) and name not in self._valueless:
                 body |= self._write_values(element)
             elif fields := self._fields[name]:

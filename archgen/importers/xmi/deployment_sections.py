@@ -33,7 +33,7 @@ class DeploymentSections:
         taken: set[str] = set()
         for element in catalogue.hardware:
             if get_kind(element) == "Node":
-                self._hosts[element] = choose_id(element, "host", taken)
+                self._hosts[element] = choose_id(element, "host", taken, known_ids=index.known_ids)
                 taken.add(self._hosts[element])
                 ledger.take(element)
         self._middlewares = self._find_middlewares()
@@ -216,7 +216,7 @@ class DeploymentSections:
                 words = f"{call(element)} is not taken: {why}"
                 self._ledger.leave(element, words)
                 continue
-            link_id = choose_id(element, "link", section.keys(), get_name(element) or "link")
+            link_id = choose_id(element, "link", section.keys(), get_name(element) or "link", self._index.known_ids)
             section[link_id] = {"connects": ends} | say_title(get_name(element), link_id) | make_hints(element)
             self._ledger.take(element)
         return section

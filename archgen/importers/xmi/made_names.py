@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from collections.abc import Set as AbstractSet
+from types import MappingProxyType
 from typing import cast
 
 from archgen.importers.foreign.xml_tree import XmlElement
@@ -16,11 +17,17 @@ from archgen.model.path_resolver import title_from_id
 _PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 MAX_TYPE_LENGTH = 200
 _MANY_NUMBERS = 50
+_NO_IDS: Mapping[str, str] = MappingProxyType({})
 
 
-def choose_id(element: XmlElement, kind: str, taken: Collection[str], name: str = "") -> str:
-    """Return a free id for an element: the one that archgen exported it from, else one made from its name."""
+def choose_id(
+    element: XmlElement, kind: str, taken: Collection[str], name: str = "", known_ids: Mapping[str, str] = _NO_IDS
+) -> str:
+    """Return a free id for an element: the known one, or that which archgen exported it from, else one of its name."""
     own_id = get_id(element)
+    known_id = known_ids.get(own_id, "")
+    if is_id(known_id) and known_id not in taken:
+        return known_id
     if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken:
         return last_word
     wanted = make_id(name or get_name(element) or get_kind(element), kind)

@@ -120,7 +120,7 @@ class InterfaceUses:
         port_type, is_conjugated = reference.element, is_true(element, "isConjugated")
         own, other = (facts.required, facts.provided) if is_conjugated else (facts.provided, facts.required)
         if port_type is None:
-            facts.type_name = reference.name
+            facts.type_name = uml_values.name_referenced(reference)
         elif port_type in self._interfaces:
             own.append(port_type)
         elif get_kind(port_type) in _DATA_KINDS:
@@ -128,7 +128,7 @@ class InterfaceUses:
             own += provided
             other += required
             if not provided and not required:
-                facts.type_name = get_name(port_type)
+                facts.type_name = uml_values.name_referenced(reference)
 
     def list_bare_ports(self, owner: XmlElement, ports: Iterable[PortFacts]) -> list[PortFacts]:
         """Return what a component provides and requires itself, where none of its ports does."""

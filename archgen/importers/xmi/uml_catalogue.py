@@ -36,6 +36,7 @@ _SILENT_TAGS = frozenset(
 )
 """Parts of elements that are read with them, or say again what stands elsewhere."""
 _OWNING_TAGS = frozenset({"packagedElement", "ownedMember", "nestedPackage", "nestedClassifier"})
+_TEMPLATE_KINDS = frozenset({"TemplateSignature", "RedefinableTemplateSignature", "TemplateBinding"})
 _TOOL_TAGS = frozenset({"Extension", "eAnnotations", "Documentation"})
 _WHY = {
     "UseCase": "use cases of the language have actors and steps in words",
@@ -134,6 +135,11 @@ class _CatalogueWalk:
                 self._visit_feature(child, package)
             elif kind == "Comment":
                 self._visit_comment(child, element)
+            elif kind in _TEMPLATE_KINDS and (
+                get_kind(element) in _CLASSES or (get_kind(element) in _DATA and kind != "TemplateBinding")
+            ):
+                # Read with its class, as a template or what is bound to one.
+                continue
             elif child.tag not in _SILENT_TAGS and (kind or "xmi:id" in child.attributes):
                 self._leave(child, kind)
 

@@ -6,7 +6,9 @@ import re
 from decimal import Decimal, InvalidOperation
 
 from archgen.importers.foreign.xml_tree import XmlElement
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind
+from archgen.importers.xmi.import_ledger import OWN_PREFIX
+from archgen.importers.xmi.made_names import name_type
+from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind
 
 _PARAMETER_TYPES = {
     **dict.fromkeys(("boolean", "bool", "eboolean"), "boolean"),
@@ -39,8 +41,15 @@ _MAX_DIGITS = 15
 def find_type_name(index: UmlIndex, element: XmlElement) -> str:
     """Return the name of the type of a property, port or parameter; empty where it says none."""
     reference = index.find_reference(element, "type")
-    name = reference.name if reference else ""
+    name = name_referenced(reference) if reference else ""
     return "" if name.lower() in _NOTHING else name
+
+
+def name_referenced(reference: Reference) -> str:
+    """Return the name of a type that something refers to, as the language writes it."""
+    is_own = reference.element is not None and get_id(reference.element).startswith(OWN_PREFIX)
+    # What archgen wrote is a name of the language: its brackets are generics.
+    return reference.name if is_own else name_type(reference.name)
 
 
 def find_parameter_type(type_name: str) -> str | None:

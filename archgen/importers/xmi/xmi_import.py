@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from archgen.importers.foreign.foreign_import import ForeignImport
@@ -29,10 +29,13 @@ _FILES = {
 """The slices, and the sections that go to each."""
 
 
-def read_xmi(files: Sequence[Path]) -> ForeignImport:
-    """Read UML models that belong together. Raise ForeignFileError for a file that is none."""
+def read_xmi(files: Sequence[Path], known_ids: Mapping[str, str] | None = None) -> ForeignImport:
+    """Read UML models that belong together. Raise ForeignFileError for a file that is none.
+
+    `known_ids` are ids that elements have since an earlier import, by their `xmi:id`: a new name is a new title.
+    """
     documents = read_documents(files)
-    index = UmlIndex(documents)
+    index = UmlIndex(documents, known_ids or {})
     return convert_documents(documents, index, ImportLedger(index))
 
 
@@ -45,7 +48,7 @@ def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger:
     uses = InterfaceUses(index, catalogue)
     sorting = ClassSorting(index, ledger, catalogue, uses)
     assembly = ComponentAssembly(index, ledger, catalogue, uses, sorting)
-    assign_port_ids(assembly)
+    assign_port_ids(assembly, index.known_ids)
     wiring = PortWiring(index, ledger, catalogue, sorting, assembly)
     components = ComponentSections(index, ledger, uses, assembly, wiring)
     deployment = DeploymentSections(index, ledger, catalogue, assembly)

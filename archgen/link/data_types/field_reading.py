@@ -45,7 +45,7 @@ class TypeContent(TypedDict):
 _CONTENT_KEYS = frozenset({"fields", "constants", "values", "generic", *PART_KEYS})
 
 
-def read_content(body: MappingNode, reading: TypeReading) -> TypeContent:
+def read_type_content(body: MappingNode, reading: TypeReading) -> TypeContent:
     """Return what a type says of its message. What ROS would refuse is reported and left out."""
     # Nearly every type is only mapped to a message.
     if _CONTENT_KEYS.isdisjoint(body.entries):

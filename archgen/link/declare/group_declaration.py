@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import NamedTuple, TypeVar, get_args
 
-from archgen.compose.project_expansion import ComponentShell
+from archgen.compose.expanded_project import ComponentShell
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports

@@ -10,7 +10,7 @@ from archgen.diagnostics.source_span import first_written_span
 from archgen.frozen import dataclass
 from archgen.link import mapping_values
 from archgen.link.data_types.circular_fields import drop_circular_fields
-from archgen.link.data_types.field_reading import TypeReading, read_content
+from archgen.link.data_types.field_reading import TypeReading, read_type_content
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
 from archgen.link.data_types.generic_types import TypeMention, find_unbound_names, list_held_names
 from archgen.link.data_types.message_definitions import DefinitionMaker, TypeDefinition
@@ -149,7 +149,7 @@ def _sort_types(types: dict[str, ConceptualType]) -> dict[str, ConceptualType]:
 
 def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading, library: str | None) -> ConceptualType:
     status = mapping_values.get_text(body, "status")
-    content = read_content(body, reading)
+    content = read_type_content(body, reading)
     return ConceptualType(
         name=reading.name,
         message=mapping_values.get_message(body) or full_message_name(reading.name),

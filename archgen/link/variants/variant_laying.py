@@ -15,7 +15,7 @@ from archgen.link.link_memory import LinkMemory
 from archgen.link.missing_keys import find_incomplete
 from archgen.link.variants.change_targets import ChangeTargets, list_declared_anew
 from archgen.link.variants.element_removal import ElementRemover
-from archgen.link.variants.variant_selectors import prune_selectors, select_elements
+from archgen.link.variants.variant_selectors import prune_selectors, select_left_out
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
@@ -115,7 +115,7 @@ class VariantLayer:
     ) -> MappingNode:
         """Take out what a selector selects; `is_described` is whether the architecture is that of the root as it is."""
         evaluator = SelectorEvaluator(architecture)
-        selected = select_elements(selector, evaluator, variant_id)
+        selected = select_left_out(selector, evaluator, variant_id)
         if not architecture.partial:
             diagnostics += selected.diagnostics
         anew = frozenset(list_declared_anew(changes))

@@ -8,7 +8,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.link.variants.removed_elements import RemovedElements
 from archgen.model.selector_evaluation import SelectorEvaluator
-from archgen.model.selector_parser import parse_selector, split_words
+from archgen.model.selector_parser import parse_selector, split_selector
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 _SELECTOR_SECTIONS = ("views", "policies")
@@ -23,7 +23,7 @@ class SelectedElements(NamedTuple):
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
-def select_elements(selector: ScalarNode, evaluator: SelectorEvaluator, variant_id: str) -> SelectedElements:
+def select_left_out(selector: ScalarNode, evaluator: SelectorEvaluator, variant_id: str) -> SelectedElements:
     """Return what a variant is without, and what is wrong with its selector."""
     selection, problems = evaluator.evaluate(selector.text)
     errors = [problem for problem in problems if problem.severity == "error"]
@@ -112,7 +112,7 @@ def _prune_holder(entry: MappingEntry, removed: RemovedElements, evaluator: Sele
 
 def _prune_text(text: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> str | None:
     """Return a selector without the words that select only what is gone; None where no word is left of some."""
-    words = list(split_words(text))
+    words = list(split_selector(text))
     gone_words = {word for word in words if _means_removed(word, removed, evaluator)}
     if not gone_words:
         return text

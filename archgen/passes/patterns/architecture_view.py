@@ -11,7 +11,7 @@ from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.matching import IndexToken
 from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ViewValue
 from archgen.passes.patterns.type_layers import Layer, TypeLayers
-from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_elements
+from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_view_elements
 from archgen.passes.patterns.view_index import ComponentIndex
 from archgen.passes.patterns.view_references import ViewReferences
 from archgen.passes.patterns.view_types import ConceptualTypes
@@ -40,7 +40,7 @@ class ArchitectureView:
         self.references = ViewReferences(self.elements, self._list_outputs)
         type_entries = self._component_types.list_used(tree.root)
         inherited_ids = {name: self._component_types.list_inherited(name) for name in type_entries}
-        for element in list_elements(tree.root, type_entries, inherited_ids):
+        for element in list_view_elements(tree.root, type_entries, inherited_ids):
             self._add(element)
         self.type_keys = {each.type_name: key for key, each in self.elements.items() if each.kind == "type"}
         for key in self.elements:

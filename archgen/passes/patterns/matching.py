@@ -103,6 +103,8 @@ class _Search(NamedTuple):
         if not todo:
             yield bindings
             return
+        # Chosen anew at each level: what is bound by then may leave another entry the fewest candidates, and each candidate
+        # multiplies the rest of the search.
         chosen, token = self._choose_entry(todo, bindings)
         kind, entry = todo[chosen]
         rest = todo[:chosen] + todo[chosen + 1 :]

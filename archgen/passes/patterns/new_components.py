@@ -22,7 +22,7 @@ from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, GROU
 _FORMS = {"component": COMPONENT_FORM, "group": GROUP_FORM, "type": COMPONENT_TYPE_FORM}
 
 
-def add_component(
+def write_new_component(
     view: ArchitectureView, key: str, value: Mapping[str, ViewValue], origin: TreePath
 ) -> list[tuple[DataPath, ViewValue]]:
     """Write a component that there is not yet; return what its ports take data from, which is still to be written.

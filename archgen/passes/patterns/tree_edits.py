@@ -14,7 +14,7 @@ from archgen.passes.patterns.architecture_view import ArchitectureView, find_ins
 from archgen.passes.patterns.data_edits import drop_data, make_data_node, merge_data
 from archgen.passes.patterns.edit_values import EditError, expand_value, fill_key, fill_pattern
 from archgen.passes.patterns.layer_choice import TYPE_NAME_KEYS, DataPath, WrittenPlace, choose_layer, find_source
-from archgen.passes.patterns.new_components import add_component
+from archgen.passes.patterns.new_components import write_new_component
 from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
@@ -95,7 +95,7 @@ class TreeEditor:
             self.has_new_names = True
 
     def _add_component(self, key: str, value: Mapping[str, ViewValue], origin: TreePath) -> None:
-        sources = add_component(self._view, key, value, origin)
+        sources = write_new_component(self._view, key, value, origin)
         self.has_new_names = True
         for path, each in sources:
             self._write("set", key, path, each)

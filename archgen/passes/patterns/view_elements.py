@@ -30,7 +30,7 @@ class ViewElement(NamedTuple):
     """Its way from the type down, where it stands in one."""
 
 
-def list_elements(
+def list_view_elements(
     root: MappingNode, type_entries: Mapping[str, MappingEntry], inherited_ids: Mapping[str, frozenset[str]]
 ) -> Iterator[ViewElement]:
     """Yield component types, then groups, each before what stands in it.

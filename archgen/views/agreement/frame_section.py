@@ -11,7 +11,7 @@ from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.term_changes import write_signed_kind
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
-from archgen.views.tables.frame_table import frame_link, link_writer
+from archgen.views.tables.frame_table import link_declared_frame, link_writer
 
 _LEAD = "These frames are written by one of the two, and used by the other one: its data is given or expected in them, or its own frames are placed in them."
 
@@ -44,12 +44,12 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
     architecture, frame = content.lookup.architecture, shared.frame
     rate = inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
     ports = (_link_port(architecture, name) for name in shared.ports)
-    frames = (frame_link(architecture, name) for name in shared.frames)
+    frames = (link_declared_frame(architecture, name) for name in shared.frames)
     return (
         (Text(frame.id, code=True),),
         inline_text.to_inlines(partner_titles(content.lookup, [shared.giver])),
         link_writer(architecture, frame),
-        frame_link(architecture, frame.parent or ""),
+        link_declared_frame(architecture, frame.parent or ""),
         rate,
         inline_text.join_inlines((*ports, *frames)),
         (mark,) if mark else (),

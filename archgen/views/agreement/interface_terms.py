@@ -327,8 +327,7 @@ def _requirement_runs(lookup: Lookup, interface: PartnerInterface, chains: Itera
             if declared
             else [Text(text)]
         )
-        links = (replace(link, muted=True) for link in named_links.values())
-        names = inline_text.join_inlines(((link,) for link in links), ", ")
+        names = inline_text.join_inlines(((link,) for link in named_links.values()), ", ")
         # All of it is muted: that tells the titles, which may change, from the requirement.
         yield (
             *requirement_runs,

@@ -17,15 +17,12 @@ class PartnerExchange:
 
     pair: PartnerPair
     interfaces: tuple[InterfaceTerms, ...]
+    open_count: int
+    """How many points the two have still to settle."""
 
     def list_given(self, giver: str) -> tuple[InterfaceTerms, ...]:
         """Return what one of the two gives the other."""
         return tuple(terms for terms in self.interfaces if terms.interface.pair[0] == giver)
-
-    @property
-    def open_count(self) -> int:
-        """Return how many points the two have still to settle."""
-        return sum(len(terms.open_points) for terms in self.interfaces)
 
 
 def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
@@ -41,7 +38,12 @@ def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
     pairs = sorted(
         interfaces_by_pair, key=lambda pair: tuple(positions.get(partner, len(positions)) for partner in pair)
     )
-    return tuple(PartnerExchange(pair, tuple(interfaces_by_pair[pair])) for pair in pairs)
+    return tuple(
+        # Counted once: each page on a partner and each page on a pair shows it.
+        PartnerExchange(pair, tuple(all_terms), sum(len(terms.open_points) for terms in all_terms))
+        for pair in pairs
+        for all_terms in (interfaces_by_pair[pair],)
+    )
 
 
 def _is_shown(lookup: Lookup, interface: PartnerInterface) -> bool:

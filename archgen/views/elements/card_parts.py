@@ -38,7 +38,7 @@ def drop_empty_lists(*lists: tuple[str, tuple[str, ...]]) -> Iterator[tuple[str,
     return (each for each in lists if each[1])
 
 
-def format_findings(lookup: Lookup, element_id: str) -> Iterator[str]:
+def list_finding_lines(lookup: Lookup, element_id: str) -> Iterator[str]:
     """Format the findings about an element."""
     for finding in lookup.findings_of.get(element_id, ()):
         yield f"{finding.severity}[{finding.rule}]: {finding.message}"

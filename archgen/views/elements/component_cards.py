@@ -6,9 +6,15 @@ from collections.abc import Iterator
 
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.port_media import uses_ros, word_of_medium
-from archgen.views import inline_text
+from archgen.views import timing_words
 from archgen.views.elements import promise_words
-from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, format_findings, known_facts
+from archgen.views.elements.card_parts import (
+    ElementCard,
+    drop_empty_lists,
+    format_fact,
+    known_facts,
+    list_finding_lines,
+)
 from archgen.views.elements.parameter_blocks import list_operation_lines, list_parameter_lines
 from archgen.views.lookup import Lookup
 from archgen.views.timing.element_timing import make_whole_fact
@@ -34,7 +40,7 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
         ("role", component.role or "?"),
         ("functionality", " ".join((component.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in component.requirements)),
-        ("timing", inline_text.format_short_timing(component.timing)),
+        ("timing", timing_words.format_short_timing(component.timing)),
         ("tags", ", ".join(component.tags)),
     ]
     architecture = lookup.architecture
@@ -57,7 +63,7 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
             ("operations", tuple(list_operation_lines(component))),
         ),
         ("nodes", nodes),
-        ("findings", tuple(format_findings(lookup, component.id))),
+        ("findings", tuple(list_finding_lines(lookup, component.id))),
     )
     return ElementCard("component", component.id, component.title, component.at, known_facts(facts), lists)
 
@@ -77,7 +83,7 @@ def make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         ("owner", ", ".join(shell.owners) or "?"),
         ("functionality", " ".join((shell.functionality or "?").split())),
         ("requirements", "; ".join(use.text for use in shell.requirements)),
-        ("timing", inline_text.format_timing_sentence(shell.timing)),
+        ("timing", timing_words.format_timing_sentence(shell.timing)),
         ("worst way", "".join(run.text for run in make_whole_fact(lookup, shell.id))),
         ("tags", ", ".join(shell.tags)),
     ]
@@ -98,7 +104,7 @@ def make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         *drop_empty_lists(
             ("parameters", tuple(list_parameter_lines(shell))), ("operations", tuple(list_operation_lines(shell)))
         ),
-        ("findings", tuple(format_findings(lookup, shell.id))),
+        ("findings", tuple(list_finding_lines(lookup, shell.id))),
     )
     return ElementCard("composed", shell.id, shell.title, shell.at, known_facts(facts), lists)
 
@@ -129,7 +135,7 @@ def make_component_type_card(lookup: Lookup, component_type: ComponentType) -> E
             ("frames", tuple(f"{frame.id} in {frame.parent or 'nothing'}" for frame in component_type.frames)),
         ),
         ("instances", tuple(dict.fromkeys(instances))),
-        ("findings", tuple(format_findings(lookup, component_type.id))),
+        ("findings", tuple(list_finding_lines(lookup, component_type.id))),
     )
     return ElementCard(
         "component type", component_type.id, component_type.title, component_type.at, known_facts(facts), lists

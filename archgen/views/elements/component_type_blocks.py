@@ -21,7 +21,7 @@ _MAX_VALUE = 80
 """Letters of a value that the table of instances shows; the instance's own page has all of it."""
 
 
-def make_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Table | None:
+def make_component_type_table(lookup: Lookup, anchor: str = "table:component_types") -> Table | None:
     """List the component types; None where there are none."""
     architecture = lookup.architecture
     rows = tuple(

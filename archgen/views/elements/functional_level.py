@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
-from archgen.views import inline_text
+from archgen.views import inline_text, timing_words
 from archgen.views.elements import port_tables
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
@@ -170,7 +170,7 @@ def list_component_facts(lookup: Lookup, component: Component) -> list[tuple[str
     ]
     if component.role or not component.children:
         rows.append(("Role", inline_text.value_or_unknown(component.role)))
-    timing = inline_text.format_timing_sentence(component.timing)
+    timing = timing_words.format_timing_sentence(component.timing)
     if timing:
         rows.append(("Timing", inline_text.to_inlines(timing)))
     if worst_way := element_timing.make_whole_fact(lookup, component.id):

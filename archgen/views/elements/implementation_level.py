@@ -7,7 +7,7 @@ import shlex
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS
-from archgen.views import element_references, inline_text
+from archgen.views import element_references, inline_text, timing_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
@@ -87,7 +87,7 @@ def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
     for component, timing in node.timing.items():
         # One timing for each activity; the key is "" for a node that implements no component.
         name = f"Timing of {component.rsplit('.', 1)[-1]}" if len(node.timing) > 1 and component else "Timing"
-        sentence = inline_text.format_timing_sentence(timing)
+        sentence = timing_words.format_timing_sentence(timing)
         rows.append((name, inline_text.to_inlines(sentence) if sentence else ()))
     rows += element_timing.make_node_facts(lookup, node)
     return [(name, value) for name, value in rows if value]
@@ -126,7 +126,7 @@ def _location_cell(lookup: Lookup, node: Node) -> Inlines:
 
 def _describe_callbacks(node: Node) -> str:
     """Describe how the callbacks of a node run, as far as it says so itself."""
-    groups = inline_text.format_callback_groups(node)
+    groups = timing_words.format_callback_groups(node)
     parts = (
         f"{node.threads} thread{'s' if node.threads > 1 else ''}" if node.threads else "",
         f"in the order {node.scheduling}" if node.scheduling else "",

@@ -7,8 +7,14 @@ import shlex
 from archgen.diagnostics.source_span import Span
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, name_medium, name_on_medium
-from archgen.views import inline_text
-from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, format_findings, known_facts
+from archgen.views import inline_text, timing_words
+from archgen.views.elements.card_parts import (
+    ElementCard,
+    drop_empty_lists,
+    format_fact,
+    known_facts,
+    list_finding_lines,
+)
 from archgen.views.elements.parameter_blocks import list_effective_lines
 from archgen.views.lookup import Lookup
 from archgen.views.start_phrases import describe_start
@@ -30,11 +36,11 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
         ("container", node.container or ""),
         ("threads", format_fact(node.threads)),
         ("scheduling", node.scheduling or ""),
-        ("callback_groups", inline_text.format_callback_groups(node)),
+        ("callback_groups", timing_words.format_callback_groups(node)),
         ("reentrant", "yes" if node.reentrant else ""),
         (
             "timing",
-            "; ".join(filter(None, (inline_text.format_short_timing(timing) for timing in node.timing.values()))),
+            "; ".join(filter(None, (timing_words.format_short_timing(timing) for timing in node.timing.values()))),
         ),
     ]
     lines = tuple(
@@ -44,7 +50,7 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
     lists = (
         ("topics, services and actions", lines),
         *drop_empty_lists(("parameters", tuple(list_effective_lines(lookup, node)))),
-        ("findings", tuple(format_findings(lookup, node.id))),
+        ("findings", tuple(list_finding_lines(lookup, node.id))),
     )
     return ElementCard("node", node.id, node.title, node.at, known_facts(facts), lists)
 

@@ -38,7 +38,9 @@ def _make_parameter_table(component: Component | ComponentType) -> Table | None:
         (
             _to_code(each.name),
             _to_code(each.type),
-            _to_code(format_parameter(each.value)) if each.value is not None else _to_text(describe_missing(each)),
+            _to_code(format_parameter(each.value))
+            if each.value is not None
+            else _to_text(describe_missing_value(each)),
             _to_text(each.unit),
             _to_text(describe_limits(each)),
             _to_text(_describe_remarks(each)),
@@ -91,7 +93,7 @@ def describe_types(types: str | Mapping[str, str]) -> str:
     return types if isinstance(types, str) else ", ".join(f"{name}: {type_name}" for name, type_name in types.items())
 
 
-def describe_missing(parameter: Parameter) -> str:
+def describe_missing_value(parameter: Parameter) -> str:
     """Say where the value of a parameter without one comes from."""
     return f"from {parameter.handed_from}" if parameter.handed_from else "still to be given"
 
@@ -150,7 +152,7 @@ def _value_run(lookup: Lookup, node: Node, parameter: EffectiveParameter) -> Tex
 def describe_value_text(node: Node, parameter: EffectiveParameter) -> str:
     """Return the value that counts as text, a command by its words; where nobody gives one, where it is to come from."""
     if parameter.origin == "none":
-        return describe_missing(parameter.declaration) if parameter.declaration else ""
+        return describe_missing_value(parameter.declaration) if parameter.declaration else ""
     if parameter.origin == "command":
         return " ".join(node.parameter_commands.get(parameter.name, ()))
     return format_parameter(parameter.value)
@@ -165,7 +167,7 @@ def name_origin(parameter: EffectiveParameter) -> str:
 def list_parameter_lines(component: Component | ComponentType) -> Iterator[str]:
     """Yield what a component declares, one line a parameter, for its card."""
     for each in component.parameters.values():
-        value = format_parameter(each.value) if each.value is not None else f"? ({describe_missing(each)})"
+        value = format_parameter(each.value) if each.value is not None else f"? ({describe_missing_value(each)})"
         details = ", ".join(filter(None, (each.type, describe_limits(each), "read-only" if each.read_only else "")))
         yield " ".join(filter(None, (f"{each.name} = {value}", each.unit, f"({details})" if details else "")))
     yield from (f"{_format_open_set(name)}: anything" for name in component.open)
@@ -190,6 +192,6 @@ def list_effective_lines(lookup: Lookup, node: Node) -> Iterator[str]:
     """Yield the values that count at a node, each with its place, for its card."""
     for each in find_effective_parameters(lookup.architecture, node).values():
         if each.origin == "none":
-            yield f"{each.name} = ? ({describe_missing(each.declaration) if each.declaration else '?'})"
+            yield f"{each.name} = ? ({describe_missing_value(each.declaration) if each.declaration else '?'})"
         else:
             yield f"{each.name} = {describe_value_text(node, each)} <- {describe_origin(each)}"

@@ -9,9 +9,15 @@ from archgen.model.component import Component, Group
 from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.parameter import format_parameter
-from archgen.views import inline_text
+from archgen.views import timing_words
 from archgen.views.elements import promise_words
-from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, format_findings, known_facts
+from archgen.views.elements.card_parts import (
+    ElementCard,
+    drop_empty_lists,
+    format_fact,
+    known_facts,
+    list_finding_lines,
+)
 from archgen.views.elements.element_names import elements_by_kind
 from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.requirement_facts import list_requirement_facts, list_requirement_parts
@@ -32,7 +38,7 @@ def make_use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
     lists = (
         *drop_empty_lists(("steps", tuple(list_step_lines(lookup, use_case)))),
         ("requirements", requirement_ids),
-        *drop_empty_lists(("findings", tuple(format_findings(lookup, use_case.id)))),
+        *drop_empty_lists(("findings", tuple(list_finding_lines(lookup, use_case.id)))),
     )
     return ElementCard("use case", use_case.id, use_case.title, use_case.at, known_facts(facts), lists)
 
@@ -99,7 +105,7 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
         ]
     elif kind in {"host", "container"}:
         if kind == "host":
-            facts.append(("scheduling", inline_text.format_core_orders(element)))
+            facts.append(("scheduling", timing_words.format_core_orders(element)))
         else:
             facts += _list_process_facts(element)
         # `kind` names the node's field here: `Node.host` or `Node.container`.

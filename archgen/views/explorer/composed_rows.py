@@ -10,7 +10,7 @@ from archgen.views.explorer.column_layout import Place
 from archgen.views.explorer.element_keys import Key, list_composed_keys
 from archgen.views.explorer.map_places import Path
 from archgen.views.explorer.map_shapes import Row
-from archgen.views.explorer.row_values import list_path, list_places, shorten_text
+from archgen.views.explorer.row_values import list_path, list_places, shorten_description
 from archgen.views.graphs.element_boxes import type_lines, worst_severity
 from archgen.views.lookup import Lookup
 
@@ -40,7 +40,7 @@ def make_composed_rows(
             shell_numbers.get(shell.parent or "", -1),
             tuple(leaves[shell.id]),
             "".join(type_lines(lookup, shell)),
-            shorten_text(shell.functionality, shell.description),
+            shorten_description(shell.functionality, shell.description),
             tuple(key_numbers[key] for key in list_composed_keys(architecture, shell)),
             worst_severity(lookup, shell.id) or "",
             places[shell.group, *list_surrounding(architecture, shell.id), shell.id],

@@ -20,12 +20,12 @@ from archgen.views.explorer.row_values import (
     list_passed_leaves,
     list_path,
     list_places,
-    shorten_text,
+    shorten_description,
 )
 from archgen.views.graphs.element_boxes import join_owner_titles, worst_severity
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.search.search_entry import join_words
+from archgen.views.search.search_entry import join_entry_parts
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 from archgen.views.timing import chain_status, rate_phrases
 
@@ -170,7 +170,7 @@ class _MapMaker:
             group.id,
             group.title,
             join_owner_titles(self.lookup, group.owners),
-            shorten_text(group.description),
+            shorten_description(group.description),
             self.map_places.components.get((group.id,), ()),
             self.map_places.nodes_by_group.get((group.id,), ()),
             list_places(self.lookup, group.at),
@@ -178,13 +178,13 @@ class _MapMaker:
 
     def host_row(self, host: Host) -> Row:
         """Return the row of a host."""
-        line = join_words(count_noun(host.cores, "core") if host.cores else "", host.scheduling)
+        line = join_entry_parts(count_noun(host.cores, "core") if host.cores else "", host.scheduling)
         return (
             f"host:{host.id}",
             host.id,
             host.title,
             line,
-            shorten_text(host.description),
+            shorten_description(host.description),
             self.map_places.nodes_by_host.get((host.id,), ()),
             list_places(self.lookup, host.at),
         )
@@ -198,7 +198,7 @@ class _MapMaker:
             component.title,
             self.group_numbers[component.group],
             describe_paces(paces),
-            shorten_text(component.functionality, component.description),
+            shorten_description(component.functionality, component.description),
             tuple(self.key_numbers[key] for key in self.component_keys[component.id]),
             find_shortest_step(paces),
             self.progress_bits[component.id],
@@ -225,7 +225,7 @@ class _MapMaker:
             self.group_numbers.get(self.node_groups.get(node.id, ""), -1),
             self.host_numbers.get(node.host or "", -1),
             describe_paces(paces),
-            shorten_text(node.description),
+            shorten_description(node.description),
             tuple(self.key_numbers[key] for key in self.node_keys[node.id]),
             find_shortest_step(paces),
             worst_severity(self.lookup, node.id) or "",

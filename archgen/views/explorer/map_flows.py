@@ -12,7 +12,7 @@ from archgen.views.explorer.map_shapes import Row
 from archgen.views.graphs.component_flows import flow_style, list_flows
 from archgen.views.lookup import Lookup
 from archgen.views.port_warnings import warn_of_outputs
-from archgen.views.search.search_entry import join_words
+from archgen.views.search.search_entry import join_entry_parts
 
 _OPTIONAL, _MADE = 1, 2
 _STYLES = ("data", "physical", "service", "action")
@@ -46,7 +46,7 @@ def make_flow_tables(
 
 
 def _port_row(port: Input | Output, components: Numbers, types: Numbers) -> Row:
-    note = join_words(port.external, label_of_medium(port))
+    note = join_entry_parts(port.external, label_of_medium(port))
     return (components[port.component], port.name, types.get(port.type or "", -1), note)
 
 

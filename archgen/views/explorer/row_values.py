@@ -43,7 +43,7 @@ def list_places(lookup: Lookup, span: Span) -> Row:
     return tuple(filter(None, (place.text, place.url))) if place else ()
 
 
-def shorten_text(*texts: str | None) -> str:
+def shorten_description(*texts: str | None) -> str:
     """Return the begin of a description, on one line."""
     text = to_plain_text(*texts)
     return text if len(text) <= _MAX_SUMMARY else f"{text[:_MAX_SUMMARY].rsplit(' ', 1)[0]} …"

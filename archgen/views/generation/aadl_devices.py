@@ -11,9 +11,11 @@ from archgen.model.node import Node
 from archgen.model.port_media import is_physical
 from archgen.views.generation.aadl_behaviours import Behaviour
 from archgen.views.generation.aadl_hints import list_own_sources
-from archgen.views.generation.aadl_processes import Process, list_component_words
+from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_words import (
+    AadlProperty,
     NameSpace,
+    list_component_words,
     make_classifier,
     make_item,
     make_named_properties,
@@ -59,9 +61,9 @@ class Device(Process):
             # AADL has a jitter for threads alone.
             properties = [each for each in properties if each["name"] != "Dispatch_Jitter"]
             properties += make_text_properties(jitter=str(jitter))
-        self._properties += properties
+        self.properties += properties
         features = {behaviour.port_names[part.key]: self.features[part.key] for part in behaviour.parts}
-        self._properties += [
+        self.properties += [
             {**each, "applies_to": features[each["applies_to"]]} for each in self._list_queue_sizes(behaviour)
         ]
 
@@ -71,11 +73,14 @@ class Device(Process):
         self.feature_items.append(make_item(name, f"requires {bus}"))
         return name
 
-    def make_classifiers(self) -> list[dict[str, Any]]:
-        """Return its type; what it consists of is not said."""
+    def list_words(self) -> list[AadlProperty]:
+        """Return what it says of itself beside its ports and its timing."""
         component = self.component
         properties = make_named_properties(component.id, component.id, component.title)
-        properties += list_component_words(component, component.role, self.find_own_owner(component))
-        properties += [*list_own_sources(self._hints), *self._properties]
-        device = make_classifier("device", self.name, properties=properties, place=write_place(component.at))
+        return properties + list_component_words(component, component.role, self.find_own_owner(component))
+
+    def make_classifiers(self) -> list[dict[str, Any]]:
+        """Return its type; what it consists of is not said."""
+        properties = [*self.list_words(), *list_own_sources(self._hints), *self.properties]
+        device = make_classifier("device", self.name, properties=properties, place=write_place(self.component.at))
         return [{**device, "features": self.feature_items, "flows": self.flows}]

@@ -38,7 +38,6 @@ class FlowWriter:
         self._analysis = analysis
         self._processes = processes
         self._routes = routes
-        self._known: dict[tuple[Process, str, str], str] = {}
         self._known_systems: dict[tuple[SystemPart, str, str], str] = {}
 
     def write_chain(self, chain: Chain, result: ChainResult) -> tuple[SystemPart, str] | str:
@@ -122,11 +121,8 @@ class FlowWriter:
         latency = self._find_latency(segment.terms)
         properties = [make_property("Latency", write_range(*latency))] if latency else []
         text = f"flow {kind} {' -> '.join(ends)}"
-        key = (process, text, str(properties))
-        if key not in self._known:
-            self._known[key] = process.names.take_name("_to_".join(ends) + ("_flow" if len(ends) == 1 else ""))
-            process.flows.append(make_item(self._known[key], text, properties))
-        return self._known[key], latency
+        wanted = "_to_".join(ends) + ("_flow" if len(ends) == 1 else "")
+        return process.add_flow(wanted, text, properties), latency
 
     def _name_end(self, process: Process, arc: Arc, *, is_output: bool) -> str:
         """Return the feature by which a chain comes to a process or leaves it."""

@@ -22,8 +22,9 @@ from archgen.views.generation.aadl_ports import PortPart, find_outer_port
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
+    FlowBook,
     NameSpace,
-    list_tags,
+    list_component_words,
     make_classifier,
     make_item,
     make_named_properties,
@@ -78,6 +79,8 @@ class Process:
         self.node = node
         self.name = package_names.take_name(node.id)
         self.name_in_system = self.name
+        self.item: dict[str, Any] = {}
+        """Its subcomponent in the system that it stands in."""
         self.home: SystemPart
         """The system that it stands in; known when it is placed."""
         self.names = NameSpace(self.reserved_names)
@@ -87,11 +90,13 @@ class Process:
         """The names of its threads by the complete ids of the components."""
         self.connections: list[dict[str, Any]] = []
         self.flows: list[dict[str, Any]] = []
+        self.flow_book = FlowBook()
+        """Instances of one component type have it in common, for the type has the flows of all."""
         self.thread_classifiers: list[dict[str, Any]] = []
         self._architecture = architecture
         self._endpoints = endpoints
-        self._subcomponents: list[dict[str, Any]] = []
-        self._properties: list[AadlProperty] = []
+        self.subcomponents: list[dict[str, Any]] = []
+        self.properties: list[AadlProperty] = []
         components = [found for each in node.implements if (found := architecture.find_component(each)) is not None]
         self.whole = find_whole(architecture, node)
         """The composed component that it is the only process of."""
@@ -117,7 +122,7 @@ class Process:
         ]
         for behaviour in self.behaviours.values():
             self._add_thread(behaviour, package_names, is_only=len(self.behaviours) == 1)
-        self._properties += list_source_properties(self._hints)
+        self.properties += list_source_properties(self._hints)
 
     @property
     def classifier(self) -> str:
@@ -185,9 +190,11 @@ class Process:
         own_words = self.node.id if is_only else f"{self.node.id}_{component.name}"
         classifier = package_names.take_name(f"{kind}_{own_words}")
         self.thread_classifiers += behaviour.make_classifiers(classifier)
-        name = self.threads[component.id] = self.names.take_name(find_thread_name(hints) or component.name)
+        name = self.threads[component.id] = self.names.take_name(
+            find_thread_name(hints) or component.type_name or component.name
+        )
         properties = make_text_properties(component=None if is_only else component.id)
-        self._subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
+        self.subcomponents.append(make_item(name, f"thread {classifier}.impl", properties))
         for part in behaviour.parts:
             if part.key not in self.features:
                 continue
@@ -199,7 +206,7 @@ class Process:
             self._connect(f"{name}_tf", f"data access tf -> {name}.tf")
         own = behaviour.list_properties() + self._list_queue_sizes(behaviour)
         own += list_function_properties(hints, component.name)
-        self._properties += [
+        self.properties += [
             {**each, "applies_to": f"{name}.{each['applies_to']}" if each["applies_to"] else name} for each in own
         ]
 
@@ -226,6 +233,17 @@ class Process:
             name = self.features[part.key] = self.names.take_name(part.name)
             self.feature_items.append(make_item(name, part.text, [make_property("archgen::Is_Call", "true")]))
 
+    def add_flow(self, wanted_name: str, text: str, properties: list[AadlProperty]) -> str:
+        """Add a flow, if it is not there yet; return its name. One with other properties is another flow."""
+        key = (text, str(properties))
+        if key not in self.flow_book.names:
+            name = self.flow_book.space.take_name(wanted_name)
+            self.flow_book.names[key] = self.names.take_name(name)
+        name = self.flow_book.names[key]
+        if not any(each["name"] == name for each in self.flows):
+            self.flows.append(make_item(name, text, properties))
+        return name
+
     def join_inside(self, output: PortPart, reader: PortPart, properties: Iterable[AadlProperty]) -> None:
         """Join the ports of two components that this node implements."""
         ends = []
@@ -241,8 +259,8 @@ class Process:
         group = self._architecture.groups.get(component.group) if component else None
         return owner if group is None or group.owner != owner else None
 
-    def make_classifiers(self) -> list[dict[str, Any]]:
-        """Return its threads, its type and its implementation."""
+    def list_words(self) -> list[AadlProperty]:
+        """Return what it says of itself beside its ports and its threads."""
         node = self.node
         behaviours = tuple(self.behaviours.values())
         component = behaviours[0].component if len(behaviours) == 1 else self.whole
@@ -252,26 +270,19 @@ class Process:
             properties += make_text_properties(node_title=node.title)
         role = behaviours[0].further_role if len(behaviours) == 1 else None
         properties += list_component_words(component or node, role, self.find_own_owner(component))
-        properties += make_text_properties(
+        return properties + make_text_properties(
             package_name=node.package,
             executable_name=node.executable,
             node_kind=", ".join(node.kinds) if node.kinds != ("node",) else None,
         )
+
+    def make_classifiers(self) -> list[dict[str, Any]]:
+        """Return its threads, its type and its implementation."""
+        properties = self.list_words()
         own_type = make_classifier("process", self.name, extends="ros::node", properties=properties)
         implementation = make_classifier("process", f"{self.name}.impl", extends="ros::node.impl")
-        own_type.update(features=self.feature_items, flows=self.flows, place=write_place(node.at))
+        own_type.update(features=self.feature_items, flows=self.flows, place=write_place(self.node.at))
         implementation.update(
-            subcomponents=self._subcomponents, connections=self.connections, properties=self._properties
+            subcomponents=self.subcomponents, connections=self.connections, properties=self.properties
         )
         return [*self.thread_classifiers, own_type, implementation]
-
-
-def list_component_words(element: Component | Node, role: str | None, owner: str | None) -> list[AadlProperty]:
-    """Return what a component says of itself beside its ports and timing."""
-    texts = make_text_properties(
-        description=element.description,
-        functionality=element.functionality if isinstance(element, Component) else None,
-        role=role,
-        owner=owner,
-    )
-    return [*texts, *(list_tags(element) if isinstance(element, Component) else [])]

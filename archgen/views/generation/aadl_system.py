@@ -80,9 +80,9 @@ class SystemWriter:
         if own_id != process.node.id and process.category == "process":
             properties += make_text_properties(node=process.node.id)
         properties += list_own_sources(read_aadl_hints(process.node))
-        process.home.subcomponents.append(
-            make_item(process.name_in_system, f"{process.category} {package}::{process.classifier}", properties)
-        )
+        text = f"{process.category} {package}::{process.classifier}"
+        process.item = make_item(process.name_in_system, text, properties)
+        process.home.subcomponents.append(process.item)
 
     def _join_device(self, device: Device, link_id: str) -> None:
         """Lead the access to a bus from the outermost system to a device."""

@@ -8,10 +8,10 @@ from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
-from archgen.model.node import Endpoint
 from archgen.model.port_media import flow_of_port
-from archgen.views.generation.aadl_devices import Device, is_device
+from archgen.views.generation.aadl_devices import Device
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_programs import ProgramBook
 from archgen.views.generation.aadl_system import LAUNCH, SystemWriter
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import NameSpace, make_aadl_name
@@ -37,31 +37,18 @@ def make_view(context: GenerationContext) -> GeneratedView:
         for key in ("types", "nodes", "devices", "hosts", "system")
     }
     types = TypeBook(architecture, names["types"], units)
-    endpoints: dict[str, list[Endpoint]] = {}
-    for endpoint in architecture.list_endpoints():
-        endpoints.setdefault(endpoint.node, []).append(endpoint)
-    linked_devices = {device for link in architecture.links.values() for device in link.devices}
-    package_names = {Process.category: NameSpace(), Device.category: NameSpace()}
-    processes: dict[str, Process] = {}
-    for node in context.wanted_nodes.values():
-        kind = Device if is_device(architecture, node, linked_devices) else Process
-        own_endpoints = endpoints.get(node.id, ())
-        processes[node.id] = kind(architecture, types, node, own_endpoints, package_names[kind.category])
+    programs = ProgramBook(context, types)
     if context.is_whole:
         for declared in architecture.types.values():
             if declared.origin == "project" and not declared.generic:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
-    system = SystemWriter(context, processes, types, names)
+    system = SystemWriter(context, programs.processes, types, names)
     system.write()
+    program_packages = {Process.category: names["nodes"], Device.category: names["devices"]}
+    programs.write_types(program_packages)
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),
-        *(
-            _make_package(
-                names[key],
-                [each for one in processes.values() if one.category == category for each in one.make_classifiers()],
-            )
-            for key, category in (("nodes", Process.category), ("devices", Device.category))
-        ),
+        *(_make_package(name, programs.list_classifiers(category)) for category, name in program_packages.items()),
         _make_package(names["hosts"], system.platform.classifiers),
         _make_package(names["system"], system.classifiers, system.comments),
     ]

@@ -12,6 +12,7 @@ from typing import Any
 from archgen.model.component import Component, Group
 from archgen.model.element_ids import spell_in_ascii
 from archgen.model.language_keywords import AADL_KEYWORDS
+from archgen.model.node import Node
 from archgen.model.path_resolver import title_from_id
 from archgen.model.quantity import Quantity
 
@@ -57,6 +58,14 @@ class NameSpace:
             found, number = f"{wanted}_{number}", number + 1
         self._taken.add(found.lower())
         return found
+
+
+class FlowBook:
+    """What flows of a process are called, by their texts and properties."""
+
+    def __init__(self) -> None:
+        self.names: dict[tuple[str, str], str] = {}
+        self.space = NameSpace()
 
 
 def write_text(text: str) -> str:
@@ -123,6 +132,17 @@ def make_named_properties(name: str, element_id: str, title: str | None = None) 
 def list_tags(element: Component | Group) -> list[AadlProperty]:
     """Return the tags of an element."""
     return [make_property("archgen::Tags", write_texts(element.tags))] if element.tags else []
+
+
+def list_component_words(element: Component | Node, role: str | None, owner: str | None) -> list[AadlProperty]:
+    """Return what a component says of itself beside its ports and timing."""
+    texts = make_text_properties(
+        description=element.description,
+        functionality=element.functionality if isinstance(element, Component) else None,
+        role=role,
+        owner=owner,
+    )
+    return [*texts, *(list_tags(element) if isinstance(element, Component) else [])]
 
 
 def make_item(name: str, text: str, properties: Iterable[AadlProperty] = ()) -> dict[str, Any]:

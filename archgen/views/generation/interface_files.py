@@ -33,7 +33,7 @@ _KNOWN_WORDS = _FIELD_TYPES | {"string", "wstring"} | set(_ROS_2_TIMES)
 _QUOTES = ('"', "'")
 
 
-def record_interface(definition: Interface, definer: ConceptualType | None, ros: int) -> dict[str, object]:
+def record_definition(definition: Interface, definer: ConceptualType | None, ros: int) -> dict[str, object]:
     """Return an interface as a file has it; `ros` is the generation of ROS, `definer` the type that says its fields."""
     package, kind, name = definition.name.split("/")
     constants = definition.constants or ((),) * len(definition.parts)

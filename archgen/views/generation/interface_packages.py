@@ -14,7 +14,7 @@ from archgen.model.known_interfaces import Interface
 from archgen.model.language_keywords import CPP_KEYWORDS, PYTHON_KEYWORDS
 from archgen.model.message_types import ConceptualType
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, tell_left_out
-from archgen.views.generation.interface_files import list_missing_words, list_used_packages, record_interface
+from archgen.views.generation.interface_files import list_missing_words, list_used_packages, record_definition
 from archgen.views.generation.package_facts import record_package_facts
 from archgen.views.used_messages import collect_messages
 
@@ -42,7 +42,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         packages = {name: files for name, files in packages.items() if name in wanted_packages}
         findings = [each for each in findings if _is_wanted(each, architecture, wanted_packages)]
     files = {
-        name: record_interface(architecture.interfaces.definitions[name], definers.get(name), ros)
+        name: record_definition(architecture.interfaces.definitions[name], definers.get(name), ros)
         for names in packages.values()
         for name in names
     }

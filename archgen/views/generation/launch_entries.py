@@ -147,7 +147,7 @@ def _list_remarks(step: StartStep, form: str) -> list[str]:
     up_when = start_phrases.describe_ready(step)
     if up_when:
         remarks.append(f"up when {up_when}")
-    state = start_phrases.describe_state(step)
+    state = start_phrases.describe_lifecycle(step)
     if state:
         remarks.append(f"brought into the state {state}")
     remarks += [f"needs rights {each}" for each in step.needs_rights]

@@ -218,6 +218,10 @@ def record_hosts(
                 "instances": by_host[host],
                 "connections": ends,
                 "remote": sorted(remote.values(), key=lambda each: places[each["id"]]),
+                "remote_sources": sorted(
+                    (remote[each] for each in dict.fromkeys(each["source_id"] for each in ends) if each in remote),
+                    key=lambda each: places[each["id"]],
+                ),
                 "ports": _list_joined_ports(each for each in ends if each["target_host"] == host),
                 "place": write_place(spans[host]) if host in known else "",
             }

@@ -32,7 +32,9 @@ _TASK_NAMES = frozenset(
     """.split()  # noqa: SIM905
 )
 """What every component of Orocos has already, in small letters."""
-_FILE_NAMES = frozenset(("encoding", "library", "main", "plugin", "transport", "typekit", "types", "values"))
+_FILE_NAMES = frozenset(
+    ("encoding", "library", "main", "plugin", "transport", "typekit", "serialization", "types", "values")
+)
 """What the generators call files of their own, beside those of components."""
 _HELPER_WORDS = ("behaviour", "servant")
 """How the classes end that stand beside those of components."""

@@ -147,7 +147,7 @@ class MiddlewareTypes:
         if not is_list:
             return item
         name = f"list_of_{word}"
-        self._lists.setdefault(name, {"name": name, "idl": idl, "record": cpp if kind == "record" else ""})
+        self._lists.setdefault(name, {"name": name, "idl": idl, "cpp": cpp, "record": cpp if kind == "record" else ""})
         listed = f"{self.space}::{name}"
         return {
             **item,

@@ -62,7 +62,7 @@ def list_node_values(architecture: Architecture, node: Node) -> list[dict[str, o
         if ros_type is None or not parameter.is_known or (ros_1 and _is_too_big(parameter.value)):
             continue
         if _fits_type(parameter.value, ros_type):
-            listed.append({"name": name, "value": convert_value(parameter.value, ros_type)})
+            listed.append({"name": name, "value": convert_ros_value(parameter.value, ros_type)})
     return listed
 
 
@@ -77,9 +77,9 @@ def _record_parameter(
     name: str, ros_type: str, parameters: Sequence[EffectiveParameter], *, is_common: bool
 ) -> dict[str, object]:
     declaration = parameters[0].declaration or Parameter(name)
-    defaults = [convert_value(each.value, ros_type) if each.is_known else None for each in parameters]
+    defaults = [convert_ros_value(each.value, ros_type) if each.is_known else None for each in parameters]
     is_same = is_common and all(each == defaults[0] for each in defaults)
-    limits = [convert_value(each, ros_type) for each in declaration.range or ()]
+    limits = [convert_ros_value(each, ros_type) for each in declaration.range or ()]
     has_limits = ros_type in {"integer", "double"} and len(limits) == 2  # noqa: PLR2004 - the lowest and the highest
     has_limits = has_limits and all(_fits_type(each, ros_type) for each in limits)
     return {
@@ -92,7 +92,7 @@ def _record_parameter(
         "description": declaration.description or "",
         "lowest": limits[0] if has_limits else None,
         "highest": limits[1] if has_limits else None,
-        "choices": [convert_value(each, ros_type.removesuffix("_array")) for each in declaration.choices or ()],
+        "choices": [convert_ros_value(each, ros_type.removesuffix("_array")) for each in declaration.choices or ()],
         "read_only": declaration.read_only,
         "place": write_place(declaration.at if parameters[0].declaration else parameters[0].at),
     }
@@ -141,13 +141,13 @@ def _fits_type(value: object, ros_type: str) -> bool:
     """Whether a value can be given to a parameter of a type; an empty list fits all lists."""
     if isinstance(value, list | tuple) and not value:
         return ros_type.endswith("_array")
-    return infer_ros_type(convert_value(value, ros_type)) == ros_type
+    return infer_ros_type(convert_ros_value(value, ros_type)) == ros_type
 
 
-def convert_value(value: object, ros_type: str) -> object:
+def convert_ros_value(value: object, ros_type: str) -> object:
     """Return a value as ROS wants it: a whole number is a float where the parameter is one."""
     if isinstance(value, list | tuple):
-        return [convert_value(each, ros_type.removesuffix("_array")) for each in value]
+        return [convert_ros_value(each, ros_type.removesuffix("_array")) for each in value]
     if isinstance(value, int | float) and not isinstance(value, bool):
         if ros_type == "double":
             return float(value)

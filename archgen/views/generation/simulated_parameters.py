@@ -11,7 +11,7 @@ from archgen.model.component import Component
 from archgen.views.generation.component_records import SetParameter, list_set_parameters
 from archgen.views.generation.generation_context import GenerationContext, tell_left_out, write_place
 from archgen.views.generation.name_clashes import find_name_clashes
-from archgen.views.generation.program_parameters import convert_value, infer_ros_type
+from archgen.views.generation.program_parameters import convert_ros_value, infer_ros_type
 from archgen.views.generation.simulated_types import name_java_field
 from archgen.views.records.record_values import to_plain
 
@@ -80,9 +80,9 @@ def _record_parameter(
     if ros_type is None:
         return None
     base = ros_type.removesuffix("_array")
-    converted = {component: convert_value(value, ros_type) for component, value in values.items()}
+    converted = {component: convert_ros_value(value, ros_type) for component, value in values.items()}
     limits = [float(each) for each in (declaration.range if declaration else None) or ()]
-    choices = [convert_value(to_plain(each), base) for each in (declaration.choices if declaration else None) or ()]
+    choices = [convert_ros_value(to_plain(each), base) for each in (declaration.choices if declaration else None) or ()]
     java, boxed = _KINDS[base]
     is_list = ros_type != base
     is_optional = len(values) < len(components)

@@ -38,7 +38,7 @@ class ComponentFlow:
     @property
     def label(self) -> str:
         """The label beside the arrow: the types, each on a line."""
-        return list_type_names(self.types)
+        return join_type_names(self.types)
 
     @property
     def is_made(self) -> bool:
@@ -133,12 +133,12 @@ def _bundle_label(bundle: list[ComponentFlow]) -> str:
     """Return the types of a bundle, each on a line with what is to be known of what it comes from."""
     names = list(dict.fromkeys(name for flow in bundle for name in flow.types))
     if len(names) > _MAX_TYPE_LINES or not all(flow.types for flow in bundle):
-        return add_notes(list_type_names(names), *dict.fromkeys(flow.warning for flow in bundle))
+        return add_notes(join_type_names(names), *dict.fromkeys(flow.warning for flow in bundle))
     warnings = {name: dict.fromkeys(flow.warning for flow in bundle if name in flow.types) for name in names}
     return "\n".join(add_notes(name, *warnings[name]) for name in names)
 
 
-def list_type_names(names: Sequence[str]) -> str:
+def join_type_names(names: Sequence[str]) -> str:
     """Return names of types, each on a line; of more than three the rest is counted."""
     return (
         "\n".join(names)

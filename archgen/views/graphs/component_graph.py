@@ -17,11 +17,12 @@ from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import add_notes, flow_style, list_type_names, name_media, port_style
+from archgen.views.graphs.component_flows import add_notes, flow_style, join_type_names, name_media, port_style
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.inline_text import count_noun, format_short_timing
+from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.port_warnings import warn_of_outputs
+from archgen.views.timing_words import format_short_timing
 
 DrawnNeighbour = tuple[Box, Arrow]
 _CALLS = {"service", "action"}
@@ -129,7 +130,7 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
     else:
         producer = find_component(architecture, _component_of_target(lookup, connection))
         box = element_boxes.neighbour_box(lookup, producer, side)
-        label = list_type_names(types)
+        label = join_type_names(types)
     box = replace(box, id=f"{_SIGNS[side]}{box.id}")
     arrow = Arrow(
         f"{connection.target}>{port.id}",

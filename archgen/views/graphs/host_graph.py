@@ -11,8 +11,9 @@ from archgen.model.port_media import name_medium
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.inline_text import count_noun, format_short_timing
+from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.timing_words import format_short_timing
 
 _MAX_DEVICES = 4
 """How many devices a link's box names; more are counted, and the tooltip has them all."""

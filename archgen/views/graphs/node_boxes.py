@@ -11,8 +11,8 @@ from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.port_media import ROS, key_of_channel, label_of_carrier, name_medium, name_on_medium
 from archgen.views.graph_shapes import Box
 from archgen.views.graphs import element_boxes
-from archgen.views.inline_text import format_short_timing
 from archgen.views.lookup import Lookup
+from archgen.views.timing_words import format_short_timing
 
 BoxSide = Literal["left", "right"]
 

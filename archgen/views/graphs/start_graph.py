@@ -58,7 +58,7 @@ def _make_box(step: StartStep) -> Box:
     kind = start_phrases.KIND_WORDS[step.kind] if step.kind in {"program", "container"} else ""
     place = f"{kind} on {step.host}" if kind and step.host else step.host or kind
     lines = [line for line in (place, "runs to its end" if step.once else "") if line]
-    lines += [start_phrases.describe_state(step)] if step.state else []
+    lines += [start_phrases.describe_lifecycle(step)] if step.state else []
     return Box(
         _box_id(step.id),
         name,

@@ -9,7 +9,11 @@ from functools import cached_property
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.component_nesting import find_component, list_surrounding
 from archgen.views import inline_text
-from archgen.views.elements.component_type_blocks import make_own_value_fact, make_type_blocks, make_type_table
+from archgen.views.elements.component_type_blocks import (
+    make_component_type_table,
+    make_own_value_fact,
+    make_type_blocks,
+)
 from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks
@@ -118,7 +122,7 @@ class ComponentPages:
 
     def list_type_pages(self) -> Iterator[Page]:
         """Yield the page that lists the component types, and one for each; nothing where there are none."""
-        table = make_type_table(self.lookup)
+        table = make_component_type_table(self.lookup)
         if table is None:
             return
         section = Section(TYPES_CRUMB[1], TYPES_CRUMB[0], (table,))

@@ -9,7 +9,11 @@ from functools import cached_property
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
 from archgen.views import inline_text
-from archgen.views.elements.component_type_blocks import make_own_value_fact, make_type_blocks, make_type_table
+from archgen.views.elements.component_type_blocks import (
+    make_component_type_table,
+    make_own_value_fact,
+    make_type_blocks,
+)
 from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
@@ -124,7 +128,7 @@ class ReportSections:
 
     def _make_type_sections(self) -> list[Section]:
         """Make the section of the component types, which says once what their instances share."""
-        table = make_type_table(self.lookup)
+        table = make_component_type_table(self.lookup)
         if table is None:
             return []
         sections = tuple(

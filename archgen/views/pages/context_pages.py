@@ -9,7 +9,7 @@ from archgen.model.component import Component
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, describe_way, key_of_channel, name_medium, name_on_medium
-from archgen.views import inline_text
+from archgen.views import inline_text, timing_words
 from archgen.views.element_references import message_link
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.promise_words import list_topic_facts, write_deprecation
@@ -209,7 +209,7 @@ def make_node_table(
 def _timing_cell(node: Node) -> Inlines:
     """Return the timing of all components that a node implements, in short."""
     summary = "; ".join(
-        short_timing for timing in node.timing.values() if (short_timing := inline_text.format_short_timing(timing))
+        short_timing for timing in node.timing.values() if (short_timing := timing_words.format_short_timing(timing))
     )
     return (Text(summary, sort_number=_shortest_period(node)),) if summary else ()
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from archgen.model.deployment import Container, Host
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import name_medium
-from archgen.views import inline_text
+from archgen.views import inline_text, timing_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
@@ -31,7 +31,7 @@ def make_host_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
 
 def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     architecture = lookup.architecture
-    order = host.scheduling or inline_text.format_core_orders(host)
+    order = host.scheduling or timing_words.format_core_orders(host)
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),

@@ -77,14 +77,14 @@ def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     return Outline(
         title=architecture.project.title,
         subtitle="Software architecture",
-        facts=tuple(make_title_facts(lookup, edition)),
+        facts=tuple(make_document_facts(lookup, edition)),
         notices=make_notices(lookup, edition),
         sections=tuple(section for section in sections if not section.appendix)
         + tuple(section for section in sections if section.appendix),
     )
 
 
-def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple[str, Inlines]]:
+def make_document_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple[str, Inlines]]:
     """Yield the lines of the title page: version, revision, ROS distribution, partners."""
     project = lookup.architecture.project
     if project.version:

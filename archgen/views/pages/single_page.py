@@ -21,7 +21,7 @@ from archgen.views.pages.site_pages import PageMaker
 from archgen.views.shapes import Page
 
 
-def make_page(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page | None:
+def make_page_at(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page | None:
     """Make the page of an anchor as `make_pages` does, but for its path, which takes all pages to know; None where there
     is none.
     """

@@ -31,7 +31,7 @@ from archgen.views.pages.component_pages import ComponentPages, drop_facts
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
-from archgen.views.pages.report_outline import DocumentEdition, make_title_facts, split_title
+from archgen.views.pages.report_outline import DocumentEdition, make_document_facts, split_title
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import (
     deployment_tables,
@@ -133,7 +133,7 @@ class PageMaker:
         project = self.architecture.project
         blocks: list[Block] = list(self.make_figures("overview"))
         blocks += [Markdown(project.description)] if project.description else []
-        blocks.append(Facts(tuple(make_title_facts(self.lookup, self.edition))))
+        blocks.append(Facts(tuple(make_document_facts(self.lookup, self.edition))))
         blocks += [table] if (table := functional_tables.make_group_table(self.lookup)) else []
         section = Section("page:index", project.title, tuple(blocks))
         return Page(

@@ -42,7 +42,7 @@ def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> tuple[tuple[st
         ("Date", settings.date or edition.date),
         ("Authors", ", ".join(settings.authors)),
         ("Dissemination", settings.dissemination),
-        ("State", describe_state(lookup)),
+        ("State", describe_progress(lookup)),
         ("Level", describe_level(edition)),
         ("Revision", edition.revision),
         ("ROS distribution", architecture.distro or ""),
@@ -55,7 +55,7 @@ def describe_level(edition: DocumentEdition) -> str:
     return _LEVEL_WORDS["functional" if edition.level == "functional" else edition.ros_place]
 
 
-def describe_state(lookup: Lookup) -> str:
+def describe_progress(lookup: Lookup) -> str:
     """Say in a line how large the architecture is, and what is not yet proven of it."""
     architecture = lookup.architecture
     parts = [inline_text.count_noun(len(architecture.components), "component")]
@@ -156,7 +156,7 @@ def list_properties(lookup: Lookup, edition: DocumentEdition) -> dict[str, str]:
         "partners": ", ".join(partner.title for partner in architecture.partners.values()),
         "revision": edition.revision,
         "level": describe_level(edition),
-        "status": describe_state(lookup),
+        "status": describe_progress(lookup),
         "history": "; ".join(
             " ".join(filter(None, (entry.version, entry.date, entry.author, entry.change)))
             for entry in settings.history

@@ -103,7 +103,7 @@ def _fit_drawing(lookup: Lookup, drawing: Drawing) -> Drawing:
         return leave_neighbours(drawing)
     if drawing.kind == "group":
         inside = sum(box.emphasis != "neighbour" for box in drawing.boxes)
-        return leave_neighbours(drawing) if inside > _MAX_INSIDE_BOXES else fold_neighbours(lookup, drawing)
+        return leave_neighbours(drawing) if inside > _MAX_INSIDE_BOXES else fold_neighbouring_groups(lookup, drawing)
     return drawing
 
 
@@ -179,7 +179,7 @@ def leave_neighbours(graph: Graph) -> Graph:
     return _rename(graph, boxes=boxes, arrows=arrows, notes=notes)
 
 
-def fold_neighbours(lookup: Lookup, graph: Graph) -> Graph:
+def fold_neighbouring_groups(lookup: Lookup, graph: Graph) -> Graph:
     """Return a group's picture with a box for each neighbouring group; arrows from and to them have counts for names."""
     folded: dict[str, Box] = {}
     members: dict[str, list[str]] = {}

@@ -11,7 +11,7 @@ from archgen.views import inline_text
 from archgen.views.elements import promise_words
 from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
-from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
 
 
 def list_owner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
@@ -32,7 +32,7 @@ def make_property_keys(element: Annotated) -> tuple[str, ...]:
 def make_vocabulary_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the declared properties, and the terms of the glossary."""
     for each in lookup.architecture.properties.values():
-        line = join_words("property", ", ".join(kind.replace("_", " ") for kind in each.of), each.unit)
+        line = join_entry_parts("property", ", ".join(kind.replace("_", " ") for kind in each.of), each.unit)
         keys = (each.id, f"property:{each.id}")
         text = to_plain_text(each.description)
         yield SearchEntry("property", each.title, line, (f"property:{each.id}", "page:properties"), keys, text)
@@ -49,7 +49,7 @@ def make_group_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "group",
             group.title,
-            join_words(size, list_owner_titles(lookup, group.owners)),
+            join_entry_parts(size, list_owner_titles(lookup, group.owners)),
             (f"group:{group.id}",),
             (group.id, *make_owner_keys(group.owners, group.tags), *make_property_keys(group)),
             to_plain_text(group.description),
@@ -65,7 +65,7 @@ def make_component_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "component",
             component.title,
-            join_words(_join_place(lookup, component), list_owner_titles(lookup, component.owners)),
+            join_entry_parts(_join_place(lookup, component), list_owner_titles(lookup, component.owners)),
             (f"component:{component.id}",),
             (component.id, *make_owner_keys(component.owners, tags), *make_property_keys(component)),
             to_plain_text(
@@ -86,7 +86,7 @@ def make_composed_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             yield SearchEntry(
                 "component",
                 shell.title,
-                join_words(
+                join_entry_parts(
                     f"composed of {inline_text.count_noun(len(leaves), 'component')}",
                     _join_place(lookup, shell),
                     list_owner_titles(lookup, shell.owners),
@@ -103,7 +103,7 @@ def make_component_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "component type",
             component_type.title,
-            join_words("type of components", *promise_words.list_text_remarks(component_type)),
+            join_entry_parts("type of components", *promise_words.list_text_remarks(component_type)),
             (f"component_type:{component_type.id}",),
             (component_type.id, f"is:{component_type.id}", *make_property_keys(component_type)),
             to_plain_text(component_type.functionality, component_type.description),
@@ -112,13 +112,15 @@ def make_component_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 
 def _join_place(lookup: Lookup, component: Component) -> str:
     """Return the titles of a component's group and of what it is inside of."""
-    return join_words(lookup.architecture.groups[component.group].title, join_surrounding_titles(lookup, component))
+    return join_entry_parts(
+        lookup.architecture.groups[component.group].title, join_surrounding_titles(lookup, component)
+    )
 
 
 def make_port_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the inputs and outputs of the shown components."""
     for group, component in _shown_components(lookup):
-        suffix = join_words(group.title, list_owner_titles(lookup, component.owners))
+        suffix = join_entry_parts(group.title, list_owner_titles(lookup, component.owners))
         ports: tuple[tuple[str, Input | Output], ...] = (
             *(("input", port) for port in component.inputs.values()),
             *(("output", port) for port in component.outputs.values()),
@@ -127,7 +129,7 @@ def make_port_entries(lookup: Lookup) -> Iterator[SearchEntry]:
             yield SearchEntry(
                 "port",
                 _port_title(component, port.name),
-                join_words(
+                join_entry_parts(
                     f"{direction} of {suffix}",
                     port.type,
                     *(promise_words.list_text_remarks(port) if isinstance(port, Output) else ()),
@@ -149,7 +151,7 @@ def make_connection_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "connection",
             f"{_source_title(lookup, connection)} → {_port_title(component, reader.name)}",
-            join_words("connection", *types),
+            join_entry_parts("connection", *types),
             (f"table:inputs/{component.id}", *(f"table:outputs/{source}" for source in sources)),
         )
 
@@ -178,7 +180,7 @@ def make_requirement_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "requirement",
             f"{requirement.id} {requirement.title}",
-            join_words(
+            join_entry_parts(
                 ", ".join(requirement.use_cases),
                 *(each for each in (requirement.kind, requirement.priority) if each),
                 served_by or "served by no component",
@@ -198,7 +200,7 @@ def make_requirement_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 def make_partner_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the partners."""
     for partner in lookup.architecture.partners.values():
-        line = join_words("partner", partner.contact)
+        line = join_entry_parts("partner", partner.contact)
         keys = (partner.id, *make_owner_keys((partner.id,)))
         text = to_plain_text(partner.description)
         yield SearchEntry("partner", partner.title, line, (f"partner:{partner.id}",), keys, text)
@@ -209,14 +211,14 @@ def make_chain_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     architecture = lookup.architecture
     for chain in architecture.chains.values():
         deadline = f"deadline {chain.deadline}" if chain.deadline else ""
-        line = join_words("chain of effect", deadline, ", ".join(chain.requirements))
+        line = join_entry_parts("chain of effect", deadline, ", ".join(chain.requirements))
         yield SearchEntry("chain", chain.title, line, (f"chain:{chain.id}", "page:chains"), (chain.id,))
     for variant in architecture.variants.values():
-        line = join_words("variant", f"without {variant.without}" if variant.without else "")
+        line = join_entry_parts("variant", f"without {variant.without}" if variant.without else "")
         text = to_plain_text(variant.description)
         yield SearchEntry("variant", variant.title, line, (f"variant:{variant.id}",), (variant.id,), text)
     for view in architecture.views.values():
-        line = join_words("view", view.show)
+        line = join_entry_parts("view", view.show)
         yield SearchEntry("view", view.title, line, (f"figure:views/{view.id}", "page:views"), (view.id,))
 
 

@@ -11,7 +11,7 @@ from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.elements.promise_words import list_text_remarks
 from archgen.views.lookup import Lookup
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys, make_property_keys
-from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
 from archgen.views.start_phrases import describe_start
 from archgen.views.used_messages import collect_messages
 
@@ -26,7 +26,7 @@ def make_node_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "node",
             node.full_name,
-            join_words(
+            join_entry_parts(
                 host.title if host else None,
                 f"implements {implemented}" if implemented else None,
                 list_owner_titles(lookup, node.owners),
@@ -48,7 +48,7 @@ def make_topic_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             topic.flow,
             topic.name,
-            join_words(", ".join(topic.messages), source, inline_text.count_noun(readers, reader_word)),
+            join_entry_parts(", ".join(topic.messages), source, inline_text.count_noun(readers, reader_word)),
             (f"topic:{topic.name}",),
         )
 
@@ -57,7 +57,7 @@ def make_channel_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield what nodes exchange over other media than ROS."""
     for channel in lookup.architecture.channels.values():
         writers = ", ".join(dict.fromkeys(writer.node for writer in channel.writers))
-        line = join_words(name_medium(channel.medium), ", ".join(channel.types), f"from {writers}")
+        line = join_entry_parts(name_medium(channel.medium), ", ".join(channel.types), f"from {writers}")
         yield SearchEntry(
             channel.flow, name_on_medium(channel), line, (f"channel:{key_of_channel(channel)}",), (channel.medium,)
         )
@@ -70,15 +70,15 @@ def make_host_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         cores = inline_text.count_noun(host.cores, "core") if host.cores else None
         keys = (host.id, f"host:{host.id}", *make_owner_keys((), host.tags), *make_property_keys(host))
         text = to_plain_text(host.description)
-        yield SearchEntry("host", host.title, join_words("host", cores), (f"host:{host.id}",), keys, text)
+        yield SearchEntry("host", host.title, join_entry_parts("host", cores), (f"host:{host.id}",), keys, text)
     for container in architecture.containers.values():
-        line = join_words("container", f"on {container.host}" if container.host else None)
+        line = join_entry_parts("container", f"on {container.host}" if container.host else None)
         yield SearchEntry("container", container.title, line, (f"container:{container.id}",), (container.id,))
     for resource in architecture.resources.values():
-        line = join_words("resource", f"of {resource.host}" if resource.host else None)
+        line = join_entry_parts("resource", f"of {resource.host}" if resource.host else None)
         yield SearchEntry("resource", resource.title, line, (f"host:{resource.host}",), (resource.id,))
     for link in architecture.links.values():
-        line = join_words(
+        line = join_entry_parts(
             "link",
             name_medium(link.protocol) if link.protocol else None,
             ", ".join((*link.connects, *link.devices)),
@@ -90,7 +90,7 @@ def make_frame_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the shown coordinate frames."""
     for frame in list_shown_frames(lookup):
         writer = f"by {name_writer(lookup.architecture, frame)}" if frame.parent is not None else None
-        line = join_words("frame", f"in {frame.parent}" if frame.parent is not None else None, writer)
+        line = join_entry_parts("frame", f"in {frame.parent}" if frame.parent is not None else None, writer)
         text = frame.title if frame.title != frame.id else ""
         yield SearchEntry("frame", frame.id, line, (f"frame:{frame.id}", "page:frames"), text=text)
 
@@ -98,7 +98,9 @@ def make_frame_entries(lookup: Lookup) -> Iterator[SearchEntry]:
 def make_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield the conceptual types."""
     for conceptual_type in lookup.architecture.types.values():
-        line = join_words("type", conceptual_type.message, conceptual_type.status, *list_text_remarks(conceptual_type))
+        line = join_entry_parts(
+            "type", conceptual_type.message, conceptual_type.status, *list_text_remarks(conceptual_type)
+        )
         text = to_plain_text(conceptual_type.comment)
         yield SearchEntry("type", conceptual_type.name, line, (f"type:{conceptual_type.name}",), text=text)
 
@@ -113,7 +115,7 @@ def make_message_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         definition = architecture.interfaces.definitions.get(message)
         count = sum(map(len, definition.parts)) if definition else 0
         size = inline_text.count_noun(count, "field") if definition else "definition not at hand"
-        line = join_words(message.split("/")[1].replace("srv", "service").replace("msg", "message"), size)
+        line = join_entry_parts(message.split("/")[1].replace("srv", "service").replace("msg", "message"), size)
         yield SearchEntry(
             "message", message, line, refs, text=to_plain_text(definition.comment if definition else None)
         )
@@ -125,13 +127,15 @@ def _make_field_entries(definition: Interface, refs: tuple[str, ...]) -> Iterato
     short_name = definition.name.rsplit("/", 1)[1]
     line = f"of {definition.name}"
     for part, part_fields in zip(definition.part_names, definition.parts, strict=True):
-        prefix = join_words(short_name, part)
+        prefix = join_entry_parts(short_name, part)
         for field in part_fields:
             title = f"{prefix} · {field.name}"
             text = to_plain_text(field.comment)
-            yield SearchEntry("field", title, join_words(field.type + field.array, line), refs, text=text)
+            yield SearchEntry("field", title, join_entry_parts(field.type + field.array, line), refs, text=text)
     for part_constants in definition.constants:
         for constant in part_constants:
             title = f"{short_name} · {constant.name}"
             text = to_plain_text(constant.comment)
-            yield SearchEntry("field", title, join_words(f"{constant.type} = {constant.value}", line), refs, text=text)
+            yield SearchEntry(
+                "field", title, join_entry_parts(f"{constant.type} = {constant.value}", line), refs, text=text
+            )

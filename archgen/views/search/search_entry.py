@@ -26,7 +26,7 @@ class SearchEntry:
     text: str = ""
 
 
-def join_words(*parts: str | None) -> str:
+def join_entry_parts(*parts: str | None) -> str:
     """Join the parts that are not empty to the second line of an entry."""
     return " · ".join(part for part in parts if part)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.views.lookup import Lookup
-from archgen.views.search.search_entry import SearchEntry, join_words, to_plain_text
+from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
 from archgen.views.shapes import Markdown, Page
 
 _HEADING = re.compile(r"^ {0,3}#{1,6}[ \t]+(.*?)[ \t]*#*[ \t]*$", re.MULTILINE)
@@ -26,7 +26,7 @@ def _make_finding_entry(lookup: Lookup, finding: Diagnostic) -> SearchEntry:
     return SearchEntry(
         "finding",
         to_plain_text(finding.message),
-        join_words(finding.severity, place, finding.rule),
+        join_entry_parts(finding.severity, place, finding.rule),
         (f"findings:{port.component if port else element}", "page:findings"),
         (f"finding:{finding.rule}",),
         to_plain_text(finding.help),
@@ -48,7 +48,7 @@ def _make_chapter_entries(page: Page) -> Iterator[SearchEntry]:
     opening, *rest = _HEADING.split(_page_text(page, raw=True))
     yield SearchEntry("chapter", page.title, "chapter", (page.anchor,), text=to_plain_text(opening))
     for heading, text in zip(rest[::2], rest[1::2], strict=True):
-        line = join_words("chapter", page.title)
+        line = join_entry_parts("chapter", page.title)
         yield SearchEntry("chapter", to_plain_text(heading), line, (page.anchor,), text=to_plain_text(text))
 
 

@@ -17,7 +17,7 @@ def make_frame_table(lookup: Lookup) -> Table | None:
     rows = tuple(
         (
             _name_cell(frame),
-            frame_link(architecture, frame.parent) if frame.parent is not None else _muted("a root"),
+            link_declared_frame(architecture, frame.parent) if frame.parent is not None else _muted("a root"),
             link_writer(architecture, frame) if frame.parent is not None else (),
             _rate_cell(frame),
             inline_text.join_inlines(_link_port(architecture, port) for port in ports_by_frame.get(frame.id, ())),
@@ -36,7 +36,7 @@ def make_frame_table(lookup: Lookup) -> Table | None:
     return Table("table:frames", "Frames", columns, rows, row_anchors=anchors) if rows else None
 
 
-def frame_link(architecture: Architecture, name: str) -> Inlines:
+def link_declared_frame(architecture: Architecture, name: str) -> Inlines:
     """Link to a frame by its name; one that nobody declares is a plain text."""
     return (Text(name, ref=f"frame:{name}" if name in architecture.frames else None, code=True),)
 

@@ -146,7 +146,7 @@ def _step_cell(row: ProgressRow, step: str) -> Inlines:
     return (Text(format_step_share(row, step), sort_number=share),)
 
 
-def format_findings(findings: FindingCounts) -> str:
+def format_finding_counts(findings: FindingCounts) -> str:
     """Format findings by severity: `1 error, 2 notes`; `-` for none."""
     counts = ((findings.error, "error"), (findings.warning, "warning"), (findings.note, "note"))
     return ", ".join(count_noun(count, name) for count, name in counts if count) or "-"

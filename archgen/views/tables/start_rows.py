@@ -28,6 +28,6 @@ def list_start_rows(lookup: Lookup) -> Iterator[tuple[str, ...]]:
             shlex.join(step.command),
             ", ".join(dict.fromkeys(wait.awaited for wait in step.waits)),
             start_phrases.describe_ready(step),
-            start_phrases.describe_state(step),
+            start_phrases.describe_lifecycle(step),
             str(place) if place.file else "",
         )

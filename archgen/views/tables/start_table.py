@@ -128,7 +128,7 @@ def _list_signs(step: StartStep) -> Iterator[Inlines]:
     ready = start_phrases.describe_ready(step)
     if ready:
         yield (Text(ready),)
-    state = start_phrases.describe_state(step)
+    state = start_phrases.describe_lifecycle(step)
     if state:
         yield (Text(f"state {state}"),)
 

@@ -280,7 +280,7 @@ def _make_cards(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult
     steps = tuple(_list_steps(lookup, timing_lookup, result))
     assumptions = tuple(
         inline_text.message_to_inlines(word)
-        for word in dict.fromkeys(element_timing.list_assumptions(timing_lookup, result))
+        for word in dict.fromkeys(element_timing.describe_assumptions(timing_lookup, result))
     )
     if steps:
         yield DashboardCard("What to do", (Bullets(steps, ordered=True),), 8 if assumptions else 12, kind="to-do")

@@ -65,7 +65,7 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
         ),
         (
             "Assumptions",
-            _link_activities(timing_lookup, "; ".join(dict.fromkeys(list_assumptions(timing_lookup, result)))),
+            _link_activities(timing_lookup, "; ".join(dict.fromkeys(describe_assumptions(timing_lookup, result)))),
         ),
     ]
     name = f"chains/{result.id}"
@@ -98,7 +98,7 @@ def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[t
         yield "What to do", inline_text.message_to_inlines(advice.first_step)
 
 
-def list_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
+def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
     """Yield the assumptions of a bound in words.
 
     Tiers of responses name their activities, so the analysis' own words for the same assumption are left out.

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from archgen.timing.analysis import EventPace, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
-from archgen.views import element_references, inline_text
+from archgen.views import element_references, inline_text, timing_words
 from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
@@ -71,7 +71,7 @@ def share_cell(value: TimingValue) -> Inlines:
     return figure_cell(value_format.display_share(value), value)
 
 
-def size_cell(value: TimingValue) -> Inlines:
+def byte_cell(value: TimingValue) -> Inlines:
     """Return a table cell for a number of bytes."""
     return figure_cell(value_format.display_bytes(value), value)
 
@@ -140,7 +140,7 @@ def _activity_row(
     response = timing_lookup.analysis.responses.get(activity.id)
     return (
         activity_link(timing_lookup, activity.id),
-        inline_text.to_inlines(inline_text.BEHAVIOUR_WORDS[pace.behaviour]) if pace.behaviour else (_MUTED_UNKNOWN,),
+        inline_text.to_inlines(timing_words.BEHAVIOUR_WORDS[pace.behaviour]) if pace.behaviour else (_MUTED_UNKNOWN,),
         figure_cell(_format_shown_rate(pace), pace.rate),
         # What runs on demand or once has no longest gap: nothing promises a next activation.
         duration_cell(pace.gap) if pace.behaviour not in {"on_demand", "once"} else (),
@@ -231,7 +231,7 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
             inline_text.to_inlines(Text(lookup.architecture.links[name].title, ref=f"link:{name}")),
             traffic_cell(load.traffic),
             share_cell(load.share),
-            size_cell(load.burst),
+            byte_cell(load.burst),
             duration_cell(load.queueing),
             inline_text.to_inlines(value_format.describe_missing(load.traffic, timing_lookup.analysis, 3)),
         )
@@ -259,7 +259,7 @@ def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table |
     rows = tuple(
         (
             inline_text.to_inlines(inline_text.topic_link(name)),
-            size_cell(topic_loads[name].size),
+            byte_cell(topic_loads[name].size),
             traffic_cell(topic_loads[name].published),
             traffic_cell(topic_loads[name].delivered),
         )

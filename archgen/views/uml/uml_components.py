@@ -10,6 +10,7 @@ from archgen.model.code_names import make_camel_name
 from archgen.model.component import Component
 from archgen.model.path_resolver import title_from_id
 from archgen.views.uml.uml_features import UmlFeatures
+from archgen.views.uml.uml_templates import UmlTemplates
 from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_comments, make_tree, read_hints, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
@@ -36,11 +37,14 @@ class UmlComponents:
         self.outputs: dict[PortPath, object] = {}
         """The hints of each output."""
         self.inputs: dict[PortPath, object] = {}
+        self.written_sources: dict[PortPath, object] = {}
+        """What each input reads, as it is written."""
         self.class_ids: dict[str, str] = {}
         self.component_ids: dict[str, str] = {}
         for name, body in component_types.items():
-            if not read_mapping(body).get("generic"):
-                self.class_ids[name] = registry.claim(f"component_type.{name}", read_mapping(body).get("hints"))
+            self.class_ids[name] = registry.claim(f"component_type.{name}", read_mapping(body).get("hints"))
+        self.templates = UmlTemplates(registry, types, component_types)
+        self._samples = {each.type_name: each.id for each in reversed(list(architecture.shells.values()))}
 
     def write_type(self, name: str) -> UmlTree:
         """Return a component type as a class."""
@@ -50,23 +54,23 @@ class UmlComponents:
         is_abstract = "true" if body.get("abstract") in {True, "true"} else None
         tree = make_tree("packagedElement", "Class", element_id, title, isAbstract=is_abstract)
         tree["children"] += make_comments(element_id, body)
+        tree["children"] += self.templates.open_scope(name)
         base = str(body.get("is") or "")
-        if base in self.class_ids:
+        if general := self._find_class(base):
             general_id = self._registry.claim(f"generalization.{name}")
-            tree["children"].append(
-                make_tree("generalization", "Generalization", general_id, general=self.class_ids[base])
-            )
+            tree["children"].append(make_tree("generalization", "Generalization", general_id, general=general))
         declared = self._list_parameter_types(base)
         tree["children"] += self._write_ports(f"type.{name}", body, inherited={})
         tree["children"] += self._features.write_features(f"type.{name}", body, declared)
-        sample = self._find_sample(name)
+        # A composed component of the type shows what stands inside.
+        sample = self._samples.get(name, "")
         tree["children"] += self._write_inside(f"type.{name}", body, sample, "nestedClassifier")
+        self.templates.close_scope()
         return tree
 
-    def _find_sample(self, type_name: str) -> str:
-        """Return the complete id of a composed component of a type, so that its inside is known; empty without one."""
-        shells = self._architecture.shells.values()
-        return next((each.id for each in shells if each.component_type == type_name), "")
+    def _find_class(self, type_name: str) -> str | None:
+        """Return the id of the class for the name of a type, `filter<Pose>` too; None where there is none."""
+        return self.templates.find_bound_class(type_name) or self.class_ids.get(type_name)
 
     def _list_parameter_types(self, type_name: str) -> dict[str, str]:
         component_type = self._architecture.component_types.get(type_name.partition("<")[0])
@@ -94,17 +98,21 @@ class UmlComponents:
         tree = make_tree(tag, kind, element_id, title)
         type_name = str(body.get("is") or body.get("same_as") or "")
         component = self._find_component(place)
-        if type_name and type_name not in self.class_ids and component is not None:
-            # An instance of a generic type has no class: what it has from there is its own.
+        class_id = self._find_class(type_name)
+        if type_name and class_id is None and component is not None:
+            # What `same_as` names has no class: what the component has from there is its own.
             body = {**_write_out(component), **body}
         tree["children"] += make_comments(element_id, body)
-        known = _list_ports(component) if type_name and component else {}
+        known = _list_ports(component) if component else self._list_declared_ports(type_name)
+        known = known if type_name else {}
+        if self.templates.is_in_scope:
+            # An instance shows which ports there are, but its types are not those of the generic type.
+            known = dict.fromkeys(known, "")
         tree["children"] += self._write_ports(path, body, known)
         tree["children"] += self._features.write_features(path, body, self._list_parameter_types(type_name))
         if not type_name:
             tree["children"] += self._write_inside(path, body, place, "packagedElement")
-        if type_name in self.class_ids and kind == "Component":
-            class_id = self.class_ids[type_name]
+        if class_id is not None and kind == "Component":
             tree["children"].append(
                 make_tree(
                     *("realization", "ComponentRealization", self._registry.claim(f"realization.{path}")),
@@ -114,6 +122,18 @@ class UmlComponents:
                 )
             )
         return tree
+
+    def _list_declared_ports(self, type_name: str) -> dict[tuple[str, str], str]:
+        """Return the ports of a type and of all that it is made from: nothing shows them where it has no instance."""
+        ports: dict[tuple[str, str], str] = {}
+        seen: set[str] = set()
+        base = type_name.partition("<")[0]
+        while base in self._bodies and base not in seen:
+            seen.add(base)
+            body = read_mapping(self._bodies[base])
+            ports |= {(side, name): "" for side in ("inputs", "outputs") for name in read_mapping(body.get(side))}
+            base = str(body.get("is") or "").partition("<")[0]
+        return ports
 
     def _find_component(self, place: str) -> Component | None:
         return self._architecture.components.get(place) or self._architecture.shells.get(place)
@@ -137,6 +157,8 @@ class UmlComponents:
             for name in names:
                 port = read_mapping(written.get(name))
                 known[path, name] = port.get("hints")
+                if side == "inputs":
+                    self.written_sources[path, name] = port.get("from")
                 type_name = str(port.get("type") or inherited.get((side, name)) or "")
                 if side == "inputs" and self._reads_others(path, name, type_name):
                     type_name = ""

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from archgen.views.uml.uml_signatures import make_signature
 from archgen.views.uml.uml_tree import (
     IdRegistry,
     UmlTree,
@@ -36,11 +37,15 @@ class UmlTypes:
         self._named: dict[str, UmlTree] = {}
         self._enumerations: list[UmlTree] = []
         self._written: set[str] = set()
+        self.generic_ids: dict[str, str] = {}
+        """The ids of the names that stand for types in the component type that is being written."""
         for name, body in types.items():
             self._ids[name] = registry.claim(f"type.{make_slug(name)}", read_mapping(body).get("hints"))
 
     def refer(self, name: str) -> str:
         """Return the id of a type that something names."""
+        if name in self.generic_ids:
+            return self.generic_ids[name]
         self._written.add(name)
         if name not in self._ids:
             is_primitive = _PRIMITIVE.match(name) is not None
@@ -81,6 +86,11 @@ class UmlTypes:
         kind = "Enumeration" if body.get("values") else "DataType"
         tree = make_tree("packagedElement", kind, element_id, name)
         tree["children"] += make_comments(element_id, body)
+        if names := [str(each) for each in body.get("generic") or ()]:
+            formal_ids = [self._registry.claim(f"formal.type.{make_slug(name)}.{each}") for each in names]
+            signature_id = self._registry.claim(f"signature.type.{make_slug(name)}")
+            signature, self.generic_ids = make_signature(signature_id, names, formal_ids)
+            tree["children"].append(signature)
         for value in body.get("values") or ():
             literal_id = self._registry.claim(f"literal.{element_id}.{make_slug(str(value))}")
             tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, str(value)))
@@ -92,6 +102,7 @@ class UmlTypes:
             attribute["children"] += make_comments(field_id, read_mapping(field))
             attribute["children"] += self.write_bounds(field_id, written)
             tree["children"].append(attribute)
+        self.generic_ids = {}
         return tree
 
     def write_bounds(self, element_id: str, written: str) -> list[UmlTree]:

@@ -36,7 +36,7 @@ def make_uml_view(
     components = UmlComponents(architecture, registry, types, wants, bodies)
     groups = {} if types_only else read_mapping(packed.get("groups"))
     shown_types = _list_shown_types(architecture, bodies, selected if not types_only else None)
-    classes = {name: components.write_type(name) for name in shown_types if name in components.class_ids}
+    classes = {name: components.write_type(name) for name in shown_types}
     packages = [components.write_group(name, read_mapping(body)) for name, body in groups.items()]
     wiring = UmlWiring(architecture, registry, types, components)
     wiring.write_outputs()
@@ -52,7 +52,9 @@ def make_uml_view(
     model = make_tree("uml:Model", "", registry.claim("project"), title)
     model["children"] += [
         *_make_package(registry, "types", "Types", written_types),
-        *_make_package(registry, "classes", "Component types", list(classes.values())),
+        *_make_package(
+            registry, "classes", "Component types", [*classes.values(), *components.templates.bound_classes]
+        ),
         *(each for each in packages if any(child["tag"] == "packagedElement" for child in each["children"])),
         *_make_package(registry, "interfaces", "Interfaces", wiring.relations),
         *_make_package(registry, "deployment", "Deployment", deployment),
@@ -77,13 +79,21 @@ def _list_type_bodies(packed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the component types of the project, and those of its libraries with the library's id before them."""
     bodies = dict(read_mapping(packed.get("component_types")))
     for library, body in read_mapping(packed.get("libraries")).items():
-        for name, each in read_mapping(read_mapping(body).get("component_types")).items():
-            inner = dict(read_mapping(each))
-            # Types of a library name one another without its id.
-            if inner.get("is") and "." not in str(inner["is"]):
-                inner["is"] = f"{library}.{inner['is']}"
-            bodies[f"{library}.{name}"] = inner
+        own = read_mapping(read_mapping(body).get("component_types"))
+        for name, each in own.items():
+            bodies[f"{library}.{name}"] = _name_fully(read_mapping(each), library, own)
     return bodies
+
+
+def _name_fully(body: Mapping[str, Any], library: str, own: Collection[str]) -> dict[str, Any]:
+    """Return a body in which `is` names types as the project does: those of a library do without its id among themselves."""
+    named = dict(body)
+    base = str(named.get("is") or "")
+    if base.partition("<")[0] in own:
+        named["is"] = f"{library}.{base}"
+    if inside := read_mapping(named.get("components")):
+        named["components"] = {name: _name_fully(read_mapping(each), library, own) for name, each in inside.items()}
+    return named
 
 
 def _list_shown_types(
@@ -101,7 +111,8 @@ def _list_shown_types(
             shown.add(name)
             body = read_mapping(bodies[name])
             inner = read_mapping(body.get("components")).values()
-            waiting += [str(body.get("is") or ""), *(str(read_mapping(each).get("is") or "") for each in inner)]
+            made_from = (str(read_mapping(each).get("is") or "") for each in (body, *inner))
+            waiting += [each.partition("<")[0] for each in made_from]
     return [each for each in bodies if each in shown]
 
 

@@ -58,7 +58,7 @@ class UmlWiring:
 
     def write_inputs(self, bodies: Mapping[str, Any]) -> None:
         """Write what each input reads. `bodies` are the packed component types, for references inside of them."""
-        shells = {each.component_type: each.id for each in reversed(list(self._architecture.shells.values()))}
+        shells = {each.type_name: each.id for each in reversed(list(self._architecture.shells.values()))}
         for (path, name), hints in self._components.inputs.items():
             if (path, name) not in self._components.port_ids:
                 continue
@@ -93,6 +93,12 @@ class UmlWiring:
             elif not _is_type(path) and (interface := self._interfaces.get((component, output))):
                 self._use(port, interface)
                 is_joined = True
+        if _is_type(path) and not is_joined:
+            # No instance shows what is read there, or its own input reads nothing.
+            for written in _read_references(owner, self._components.written_sources.get(port), around=owner):
+                if written in self._components.port_ids:
+                    self._join(owner, written, port)
+                    is_joined = True
         if not is_joined:
             self._leave_open(port, hints)
 
@@ -125,7 +131,7 @@ class UmlWiring:
 
     def write_delegations(self, composed: Iterator[tuple[str, Mapping[str, Any]]]) -> None:
         """Write what outputs of composed components give on. `composed` are these with their paths."""
-        shells = {f"type.{each.component_type}": each.id for each in reversed(list(self._architecture.shells.values()))}
+        shells = {f"type.{each.type_name}": each.id for each in reversed(list(self._architecture.shells.values()))}
         for path, body in composed:
             place = shells.get(path, "" if _is_type(path) else path)
             for name, port in read_mapping(body.get("outputs")).items():
@@ -142,11 +148,13 @@ def _move(output: str, place: str, path: str) -> str:
     return f"{path}.{component.rpartition('.')[2]}" if component.rpartition(".")[0] == place else ""
 
 
-def _read_references(path: str, written: object) -> list[PortPath]:
-    """Return the ports inside that references of an output name by their last two words."""
+def _read_references(path: str, written: object, around: str = "") -> list[PortPath]:
+    """Return the ports inside of a component that references name by their last two words; `self.x` is one of `around`."""
     references = [written] if isinstance(written, str) else written if isinstance(written, list) else []
     words = [str(each).split(".") for each in references]
-    return [(f"{path}.{each[-2]}", each[-1]) for each in words if len(each) > 1]
+    return [
+        (around if each[-2] == "self" and around else f"{path}.{each[-2]}", each[-1]) for each in words if len(each) > 1
+    ]
 
 
 def _is_type(path: str) -> bool:

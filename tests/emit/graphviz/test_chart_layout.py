@@ -6,13 +6,13 @@ import re
 
 import pytest
 
-from archgen import pipeline, resources
 from archgen.emit import graphviz
 from archgen.emit.graphviz import chart_layout, palette
 from archgen.emit.graphviz.placed_scene import Scene, overlapping_parts
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 from archgen.views.lookup import make_lookup
 from archgen.views.timing import chain_charts
+from tests.judged_projects import judge_ramcip
 from tests.timings import timed
 
 TEXT_WIDTH = 160 / 25.4 * 72
@@ -64,7 +64,7 @@ def test_odd_charts_are_drawn_and_nothing_meets(item: Chart) -> None:
 
 
 def test_charts_of_the_example_fit_the_text_of_a_report_and_nothing_meets() -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     for item in chain_charts.make_timing_charts(make_lookup(architecture, timing_lookup=timed(architecture))):
         laid_out = scene(item)
         left, _, right, _ = laid_out.bounds()

@@ -111,6 +111,7 @@ def broken(what: str, when: str = "not task.simple") -> tuple[str, ...]:
     return (sys.executable, "-P", "-c", BROKEN.format(root=root, what=what, when=when))
 
 
+@pytest.mark.usefixtures("fresh_workers")
 @pytest.mark.parametrize(
     ("what", "said"),
     [
@@ -126,13 +127,13 @@ def broken(what: str, when: str = "not task.simple") -> tuple[str, ...]:
 def test_a_broken_worker_costs_one_picture(
     what: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    request_picture = DrawingWorker.request_picture
+    request_picture = worker_pool.DrawingWorker.request_picture
 
     def request_in_time(worker: DrawingWorker, task: DrawingTask, timeout: float) -> Picture | DrawingFailure:
         is_late = "sleep" in what and task.drawing.id == "tiny" and not task.simple
         return request_picture(worker, task, 1 if is_late else timeout)
 
-    monkeypatch.setattr(DrawingWorker, "request_picture", request_in_time)
+    monkeypatch.setattr(worker_pool.DrawingWorker, "request_picture", request_in_time)
     tasks = [DrawingTask(graph, {}, ("svg",)) for graph in (TINY, replace(TINY, id="other"))]
     tiny, other = worker_pool.draw_tasks(tasks, tmp_path, workers=1, timeout=600, command_line=broken(what))
     assert tiny.warning == f"the picture tiny is drawn in a simpler way: {said}"
@@ -140,6 +141,7 @@ def test_a_broken_worker_costs_one_picture(
     assert (other.warning, other.id) == (None, "other")
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_a_picture_that_cannot_be_drawn_at_all(tmp_path: Path) -> None:
     start = broken("os.abort()", "True")
     tiny, other = worker_pool.draw_tasks(
@@ -150,6 +152,7 @@ def test_a_picture_that_cannot_be_drawn_at_all(tmp_path: Path) -> None:
     assert other.svg
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_a_missing_library_is_named(tmp_path: Path) -> None:
     message = "libXrender.so.1: cannot open shared object file: No such file or directory"
     code = f"import sys; sys.modules['pygraphviz'] = None\nclass F:\n  def find_spec(s, n, *a):\n    if n == 'pygraphviz': raise ImportError({message!r})\ndel sys.modules['pygraphviz']; sys.meta_path.insert(0, F())\n"
@@ -319,6 +322,7 @@ def test_a_png_has_each_fill_as_it_is_in_the_svg() -> None:
         assert {bytes.fromhex(fill.decode()) for fill in fills} <= set(_unpack_png(picture.png or b""))
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -> None:
     with start_early_workers(tmp_path) as ready:
         processes = [each.start_process() for each in ready]
@@ -332,6 +336,7 @@ def test_workers_start_early_where_no_picture_is_kept_and_draw(tmp_path: Path) -
         assert list(ready) == []
 
 
+@pytest.mark.usefixtures("fresh_workers")
 def test_more_workers_than_pictures_are_ended(tmp_path: Path) -> None:
     with start_early_workers(tmp_path) as ready:
         processes = [each.start_process() for each in ready]

@@ -13,10 +13,10 @@ from archgen.emit.file_tree import FileTree
 from archgen.emit.site import build_site
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import full_message_name
-from archgen.pipeline import check_project
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.views.pages import context_pages, site_pages
+from tests.judged_projects import judge_ramcip
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -62,7 +62,7 @@ class CellReader(HTMLParser):
 @pytest.fixture(scope="module")
 def architecture_and_site() -> tuple[Architecture, FileTree]:
     """Make the case study's site without its pictures."""
-    checked = check_project(ROOT / "example_ramcip")
+    checked = judge_ramcip()
     views = project_views.make_views(checked, OutputOptions(revision="test", show_history=False))
     pages = site_pages.make_pages(views.lookup, views.edition)
     made = build_site(pages, {}, title="R", revision="", notices=(), chapter_files=lambda _: None)

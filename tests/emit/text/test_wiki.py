@@ -22,7 +22,7 @@ from archgen.emit.text.template_filters import (
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
 from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text, shape_to_plain
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
 HOME = ("Overview", "page:index")
@@ -260,7 +260,7 @@ def test_requirements_have_a_table_and_pages() -> None:
 
 
 def test_the_start_up_has_a_page_of_its_own(tmp_path: Path) -> None:
-    archgen("build", ROOT / "examples" / "bringup", "--only", "wiki", "-o", tmp_path, cwd=tmp_path)
+    archgen_here("build", ROOT / "examples" / "bringup", "--only", "wiki", "-o", tmp_path, cwd=tmp_path)
     page = (tmp_path / "wiki" / "start_up.md").read_text(encoding="utf-8")
     assert page.startswith("# Start-up\n")
     assert "```mermaid\nflowchart TB" in page

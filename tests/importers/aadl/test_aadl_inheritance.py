@@ -88,6 +88,34 @@ def test_a_system_hands_its_period_down(
     assert own_type.get("timing", {}) | component.get("timing", {}) == timing
 
 
+def test_what_a_type_says_of_its_parts_is_not_said_again_at_instances(tmp_path: Path) -> None:
+    sections = merge_slices(
+        import_package(
+            tmp_path,
+            """
+            thread quick features x: in event data port; properties Dispatch_Protocol => Sporadic; end quick;
+            thread slow features x: in event data port; properties Dispatch_Protocol => Periodic; end slow;
+            process p features x: in event data port; end p;
+            process implementation p.i
+              subcomponents a: thread quick; b: thread slow {Period => 9 ms;}; c: thread slow;
+              connections port x -> a.x; port x -> b.x; port x -> c.x;
+            end p.i;
+            system s end s;
+            system implementation s.i
+              subcomponents one: process p.i; two: process p.i;
+              properties Period => 5 ms; Priority => 3 applies to one.a;
+            end s.i;
+            """,
+        )
+    )
+    components = sections["groups"]["s"]["components"]
+    late = {"c": {"timing": {"period": "5 ms"}}}
+    assert components["one"]["components"] == {"a": {"timing": {"priority": 3}}, **late}
+    assert components["two"]["components"] == late
+    [own_type] = [each for each in sections["component_types"].values() if "components" in each]
+    assert own_type["components"]["b"]["timing"]["period"] == "9 ms"
+
+
 def test_a_program_is_bound_in_the_braces_of_its_subcomponent(tmp_path: Path) -> None:
     imported = import_package(
         tmp_path,

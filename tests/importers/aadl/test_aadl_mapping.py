@@ -217,6 +217,24 @@ def test_data_become_types_with_fields_values_and_generics(tmp_path: Path) -> No
     }
 
 
+def test_types_in_none_of_the_files_are_called_as_no_other_one(tmp_path: Path) -> None:
+    sections = map_package(
+        tmp_path,
+        """
+        data Pose end Pose;
+        data Stamp end Stamp;
+        data implementation Stamp.i
+          subcomponents at: data Pose; far: data away::Pose; clock: data away::Clock; same: data away::clock;
+        end Stamp.i;
+        process p features a: out data port Pose; b: out data port away::Pose; c: out data port away::Lamp; end p;
+        """,
+    )
+    fields = {"at": "Pose", "far": "Pose (away)", "clock": "Clock", "same": "Clock"}
+    assert sections["types"] == {"Pose": {}, "Stamp": {"fields": fields}, "Pose (away)": {}, "Clock": {}}
+    ports = sections["component_types"]["p"]["outputs"]
+    assert ports == {"a": {"type": "Pose"}, "b": {"type": "Pose (away)"}, "c": {"type": "Lamp"}}
+
+
 def test_threads_tell_timing_and_what_fires_them(tmp_path: Path) -> None:
     sections = map_package(
         tmp_path,

@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from tests.importers.aadl.aadl_texts import MODELS, import_text, merge_slices
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 PAGE = (ROOT / "docs" / "aadl.md").read_text(encoding="utf-8")
 
@@ -34,5 +34,5 @@ def test_the_commands_of_the_page(tmp_path: Path) -> None:
     commands = [line.strip() for line in PAGE.splitlines() if line.startswith("    archgen import aadl")]
     assert len(commands) == 2
     for command in commands:
-        archgen(*shlex.split(command.replace("model/*.aadl", "model/amcl.aadl"))[1:], cwd=tmp_path)
+        archgen_here(*shlex.split(command.replace("model/*.aadl", "model/amcl.aadl"))[1:], cwd=tmp_path)
     assert (tmp_path / "robot" / "groups.yaml").is_file()

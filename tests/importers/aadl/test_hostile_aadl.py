@@ -10,6 +10,7 @@ import pytest
 from archgen.importers.aadl import aadl_import, hardware_tree, system_walk
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.importers.aadl.hardware_tree import HardwareTree
+from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from tests.importers.aadl.aadl_texts import MODELS, import_package, import_text, list_faults, merge_slices, tell_notes
 
@@ -33,10 +34,23 @@ def test_what_is_no_aadl_is_refused(tmp_path: Path, data: bytes, words: str) -> 
 
 
 def test_a_large_file_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(aadl_import, "MAX_BYTES", 2_000_000)
+    monkeypatch.setattr(aadl_import, "read_bounded", lambda file: read_bounded(file, 2_000_000))
     (tmp_path / "m.aadl").write_bytes(b" " * 2_000_001)
     with pytest.raises(ForeignFileError, match="it is larger than 2 MB"):
         read_aadl([tmp_path / "m.aadl"])
+
+
+def test_what_a_model_holds_is_bounded_over_all_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(aadl_import, "MAX_TOKENS", 100)
+    files = [tmp_path / f"{name}.aadl" for name in "ab"]
+    for file in files:
+        data = " ".join(f"data d{index} end d{index};" for index in range(12))
+        long_texts = "annex note {** " + "x; " * 1000 + "**}; -- " + "; " * 1000
+        file.write_text(f"package {file.stem} public {long_texts}\n{data} end {file.stem};", encoding="utf-8")
+    assert read_aadl(files[:1]).taken == {"data": 12}
+    with pytest.raises(ForeignFileError, match="more than 100 words and signs") as told:
+        read_aadl(files)
+    assert (Path(told.value.span.file), told.value.span.line) == (files[1], 2)
 
 
 def test_other_encodings_are_read_and_told(tmp_path: Path) -> None:

@@ -203,6 +203,7 @@ def test_three_forms_say_the_same(form: str, tmp_path: Path) -> None:
     ("expression", "expected"),
     [
         ("'a' + 'b'", "ab"),
+        ("['a', os.sep, 'b'][1].replace(os.sep, 'n') + os.pathsep.replace(':', 'x')", "nx"),
         ("f'a{1 + 1}b'", "a2b"),
         ("'a{}b'.format(3)", "a3b"),
         ("'a%sb' % 4", "a4b"),
@@ -218,6 +219,7 @@ def test_three_forms_say_the_same(form: str, tmp_path: Path) -> None:
         ("[n for n in ['a', 'b', 'c'] if n != 'a'][0]", "b"),
         ("(lambda name: name + '_node')('x')", "x_node"),
         ("str(Path('a') / 'b').replace('/', '_')", "a_b"),
+        ("['n', PythonExpression([\"1 + int('\", LaunchConfiguration('x'), \"') + int(2.7)\"])]", "n8"),
         ("['n_', EqualsSubstitution(LaunchConfiguration('x'), '5')]", "n_true"),
     ],
 )

@@ -97,6 +97,7 @@ def test_names_of_ros_1_are_nearest_first(tmp_path: Path) -> None:
       <param name="~tint" value="3"/>
       <param name="/c/robot_description" command="xacro x.urdf"/>
       <remap from="a" to="outer"/>
+      <remap from="/d" to="//x//y/"/>
       <group ns="g">
         <remap from="a" to="inner"/>
         <node pkg="p" type="e" name="c" ns="/">
@@ -109,8 +110,8 @@ def test_names_of_ros_1_are_nearest_first(tmp_path: Path) -> None:
     </launch>"""
     imported = read_launch([write_files(tmp_path, a__launch=text)])
     nodes: dict[str, Any] = nodes_of(imported)
-    assert nodes["c"]["remaps"] == {"a": "own"}
-    assert nodes["d"]["remaps"] == {"a": "inner"}
+    assert nodes["c"]["remaps"] == {"a": "own", "/d": "/x/y"}
+    assert nodes["d"]["remaps"] == {"/d": "/x/y", "a": "inner"}
     assert nodes["c"]["parameters"] == {"tint": 3, "costmap": {"width": 5, "height": 3}}
     assert nodes["c"]["parameter_commands"] == {"robot_description": ["xacro", "x.urdf"]}
     assert messages_of(imported) == []
@@ -152,3 +153,47 @@ def test_places_are_counted_in_characters_of_the_right_file(tmp_path: Path) -> N
         tmp_path, 'return LaunchDescription([LogInfo(msg="äöü"), unset("x"), launch.actions.EmitEvent()])'
     )
     assert [note.span.column for note in imported.notes] == [1, 63]
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        ("'/', ns, 'arm'", "/arm"),
+        ("ns, 'arm'", "arm"),
+        ("'a/', ns, 'b', 'c'", "a/b/c"),
+        ("'a', '/b', 'c'", "/b/c"),
+        ("FindPackageShare('x').find('bot'), 'a'", "$(find-pkg-share bot)/a"),
+    ],
+)
+def test_paths_are_joined_as_python_joins_them(parts: str, expected: str, tmp_path: Path) -> None:
+    body = f"""
+    ns = LaunchConfiguration("ns")
+    return LaunchDescription([DeclareLaunchArgument("ns", default_value=""),
+        Node(package="p", executable="e", name="n", arguments=[PathJoinSubstitution([{parts}])])])
+    """
+    assert nodes_of(read_python(tmp_path, body))["n"]["arguments"] == [expected]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<launch><param name="a" value="1"/></launch>',
+        '<launch><group><param name="a" value="1"/></group></launch>',
+        "<launch><param_value/><entries/><conditions/><entity/><let/></launch>",
+        "<launch><node_values/><unknown/><node/><entity/><param exec='x'/></launch>",
+    ],
+)
+def test_any_element_is_read_or_noted(text: str, tmp_path: Path) -> None:
+    imported = read_launch([write_files(tmp_path, a__launch__xml=text)])
+    assert len(messages_of(imported)) >= 1
+
+
+def test_of_packages_of_one_name_the_own_one_counts(tmp_path: Path) -> None:
+    for folder in ("a", "b", "c"):
+        write_files(
+            tmp_path / folder,
+            package__xml="<package><name>bot</name></package>",
+            launch___a__launch__xml='<launch><include file="$(find-pkg-share bot)/launch/b.launch.xml"/></launch>',
+            launch___b__launch__xml=f'<launch><node pkg="p" exec="{folder}" name="n"/></launch>',
+        )
+    assert nodes_of(read_launch([tmp_path / "b" / "launch" / "a.launch.xml"]))["n"]["executable"] == "b"

@@ -131,3 +131,15 @@ def test_what_is_no_definition_is_told(text: str, message: str, tmp_path: Path) 
 def test_a_folder_without_definitions_is_told(tmp_path: Path) -> None:
     with pytest.raises(ForeignFileError):
         read_orca([tmp_path])
+
+
+def test_links_are_not_followed_and_lines_are_counted_by_their_ends(tmp_path: Path) -> None:
+    outside = tmp_path / "outside.def"
+    outside.write_text("DefaultComponentTag=Secret\n")
+    folder = tmp_path / "components"
+    folder.mkdir()
+    (folder / "link.def").symlink_to(outside)
+    (folder / "own.def").write_bytes(b"# a\x0cb\r\nDefaultComponentTag=Own\r\nStrange=1\r\n")
+    imported = read_orca([folder])
+    assert list(imported.slices["orca_types.yaml"]["component_types"]) == ["own"]
+    assert [note.span.line for note in imported.notes] == [3]

@@ -222,7 +222,7 @@ def test_python_packages_and_older_manifests_are_read(tmp_path: Path) -> None:
     assert sections["component_types"]["run"]["node"] == {"package": "old", "executable": "run", "language": "python"}
     assert sections["component_types"]["driver"]["parameters"] == {"rate": 5}
     assert sections["types"]["When"]["fields"] == {"stamp": "time", "header": "std_msgs/msg/Header"}
-    assert [note.fate for note in imported.notes] == ["noted", "not taken"]
+    assert [note.fate for note in imported.notes] == ["not taken", "noted", "not taken"]
     assert not Path("trace").exists()
 
 
@@ -246,3 +246,50 @@ def test_a_folder_without_packages_is_told(tmp_path: Path) -> None:
     with pytest.raises(ForeignFileError) as caught:
         read_packages([tmp_path])
     assert caught.value.message == "there is no package.xml in it"
+
+
+def test_packages_in_packages_and_names_that_look_like_tests(tmp_path: Path) -> None:
+    for folder in ("", "inner"):
+        (tmp_path / folder / "msg").mkdir(parents=True)
+        (tmp_path / folder / "msg" / f"Of{folder.title() or 'Outer'}.msg").write_text("bool flag\n")
+        (tmp_path / folder / "package.xml").write_text(MANIFEST.replace("lifter", folder or "outer"))
+    cmake = """set(name a)
+    set(name b)
+    add_executable(latest_map m.cpp)
+    add_executable(map_test m.cpp)
+    add_executable(gridTest m.cpp)
+    add_executable(${name} m.cpp)
+    """
+    (tmp_path / "CMakeLists.txt").write_text(cmake)
+    (tmp_path / "setup.py").write_text("setup(entry_points={'console_scripts': [\n'a = b.c:Main.run', name(), 'x']})\n")
+    imported = read_packages([tmp_path])
+    (sections,) = imported.slices.values()
+    assert list(sections["types"]) == ["Of outer"]
+    assert list(sections["component_types"]) == ["latest_map", "a"]
+    assert [f"{note.kind}:{note.span.line}: {note.message}" for note in imported.notes if note.kind != "depend"] == [
+        "add_executable:6: the name of a program is computed: `${name}`",
+        "console_scripts:2: which programs there are is computed",
+        "console_scripts:2: `x` is no entry point",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("tools", "is_read"),
+    [
+        (
+            '<buildtool_depend condition="$ROS_VERSION == 1">catkin</buildtool_depend><buildtool_depend condition="$ROS_VERSION == 2">ament_cmake</buildtool_depend>',
+            True,
+        ),
+        ("<buildtool_depend>catkin</buildtool_depend>", False),
+        ("<buildtool_depend>ament_cmake</buildtool_depend>", True),
+    ],
+)
+def test_messages_of_packages_for_both_are_those_of_ros_2(tools: str, is_read: bool, tmp_path: Path) -> None:  # noqa: FBT001 - a case
+    (tmp_path / "msg").mkdir()
+    # Defaults are of ROS 2 only.
+    (tmp_path / "msg" / "Rate.msg").write_text("float64 rate 5.0\n")
+    manifest = MANIFEST.replace("<buildtool_depend>ament_cmake</buildtool_depend>", tools)
+    manifest = manifest.replace("<build_type>ament_cmake</build_type>", "")
+    (tmp_path / "package.xml").write_text(manifest)
+    imported = read_packages([tmp_path])
+    assert ([note.kind for note in imported.notes if note.kind != "depend"] == []) == is_read

@@ -120,7 +120,7 @@ ROS_2_NODES = {
         },
         "subscribes": {"clock": {"topic": "/clock", "message": "rosgraph_msgs/msg/Clock"}},
         "serves": {"reset": {"name": "/front/driver/reset", "message": "std_srvs/srv/Empty"}},
-        "parameters": {"frame": "laser", "filter.angles": [1.0, 2.5], "use_sim_time": False},
+        "parameters": {"frame": "laser", "filter.angles": [1.0, 2.5]},
     },
     "planner": {
         "kind": "composable",
@@ -230,11 +230,11 @@ def test_a_graph_of_ros_2(tmp_path: Path) -> None:
         "QoS profile": 2,
         "calls": 1,
         "node": 3,
-        "parameter": 3,
+        "parameter": 2,
         "publishes": 3,
         "serves": 5,
         "subscribes": 3,
-        "topic or service": 3,
+        "topic or service": 4,
     }
     assert check_slices(imported, tmp_path / "project", "jazzy") == []
 
@@ -296,11 +296,132 @@ def test_a_bag_alone_gives_types(tmp_path: Path) -> None:
 
 
 def test_lines_that_are_not_understood_are_noted(tmp_path: Path) -> None:
-    imported = read_text("/a\nwhat is this\n/t [strange]\n", tmp_path, 2)
+    imported = read_text("$ ros2 node list\n/a\nwhat is this\n/t [strange]\n$ x\n/b\n", tmp_path, 2)
     assert [f"{note.span.line}: {note.message}" for note in imported.notes] == [
-        "2: it is not understood: `what is this`",
-        "3: `strange` of `/t` is no message of ROS 2",
+        "3: it is not understood: `what is this`",
+        "4: `strange` of `/t` is no message of ROS 2",
+        "6: what `/b` is cannot be told: it stands alone",
     ]
+
+
+PRINTED = """\
+$ ros2 topic list -v
+Published topics:
+ * /front/scan [sensor_msgs/msg/LaserScan] 1 publisher
+ * /plan [std_msgs/msg/String, std_msgs/msg/Int8] 2 publishers
+
+Subscribed topics:
+ * /front/scan [sensor_msgs/msg/LaserScan] 1 subscriber
+
+$ ros2 topic list
+/front/scan
+/plan
+$ ros2 service list
+/reset
+$ ros2 param list
+/planner:
+  rate (type: double)
+  use_sim_time
+$ ros2 lifecycle get
+/planner: unconfigured [1]
+$ ros2 service info /reset
+Type: std_srvs/srv/Empty
+Clients count: 1
+Services count: 1
+$ ros2 service type /enable
+std_srvs/srv/SetBool
+$ ros2 action info -t /drive
+Action: /drive
+Action clients: 1
+    /planner [nav2_msgs/action/NavigateToPose]
+Action servers: 1
+    /driver [nav2_msgs/action/NavigateToPose]
+$ ros2 node info /planner
+/planner
+  Subscribers:
+
+  Publishers:
+    /plan: std_msgs/msg/String
+  Service Servers:
+
+  Service Clients:
+    /reset: std_srvs/srv/Empty
+  Action Servers:
+
+  Action Clients:
+
+$ ros2 topic info -v /plan
+Type: std_msgs/msg/String
+
+Publisher count: 1
+
+Node name: planner
+Node namespace: /
+Topic type: std_msgs/msg/String
+Topic type hash: RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18
+Endpoint type: PUBLISHER
+GID: 01.0f.78.fd.f6.2c.07.64.00.00.00.00.00.00.27.03
+QoS profile:
+  Reliability: RELIABLE
+  History (Depth): UNKNOWN
+  Durability: TRANSIENT_LOCAL
+  Lifespan: Infinite
+  Deadline: Infinite
+  Liveliness: AUTOMATIC
+  Liveliness lease duration: Infinite
+
+Subscription count: 0
+
+$ ros2 param dump /planner
+/planner:
+  ros__parameters:
+    deep:
+      flag: true
+    empty: ''
+    frames:
+    - a
+    - b
+    start_type_description_service: true
+    text: 'a long text with words that go on and on so that yaml folds the line because
+      it is longer than eighty characters: yes'
+    use_sim_time: false
+
+"""
+"""As ros2cli prints it, beside nodes of ROS Jazzy that ran."""
+
+
+def test_what_the_tools_print_of_real_nodes_is_read(tmp_path: Path) -> None:
+    imported = read_text(PRINTED, tmp_path, 2)
+    assert [(note.fate, note.span.line, note.message[:40]) for note in imported.notes] == [
+        ("noted", 4, "`/plan` has several types: std_msgs/msg/")
+    ]
+    assert imported.slices["running_nodes.yaml"]["nodes"] == {
+        "planner": {
+            "status": "existing",
+            "publishes": {
+                "plan": {
+                    "topic": "/plan",
+                    "message": "std_msgs/msg/String",
+                    "qos": {"reliability": "reliable", "durability": "transient_local"},
+                }
+            },
+            "calls": {
+                "drive": {"name": "/drive", "message": "nav2_msgs/action/NavigateToPose"},
+                "reset": {"name": "/reset", "message": "std_srvs/srv/Empty"},
+            },
+            "parameters": {
+                "deep.flag": True,
+                "empty": "",
+                "frames": ["a", "b"],
+                "text": "a long text with words that go on and on so that yaml folds the line because it is longer than "
+                "eighty characters: yes",
+            },
+        },
+        "driver": {
+            "status": "existing",
+            "serves": {"drive": {"name": "/drive", "message": "nav2_msgs/action/NavigateToPose"}},
+        },
+    }
 
 
 @pytest.mark.parametrize("ros", [1, 2])

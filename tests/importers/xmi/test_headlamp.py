@@ -6,14 +6,14 @@ import shutil
 from pathlib import Path
 
 from archgen.pipeline import check_project
-from tests.running import ROOT, archgen
+from tests.running import ROOT, archgen_here
 
 HEADLAMP = ROOT / "examples" / "headlamp"
 
 
 def test_the_example_is_what_the_import_makes(tmp_path: Path) -> None:
     shutil.copy(HEADLAMP / "headlamp.xmi", tmp_path)
-    result = archgen("import", "xmi", "headlamp.xmi", "-o", ".", cwd=tmp_path)
+    result = archgen_here("import", "xmi", "headlamp.xmi", "-o", ".", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     made = {each.name: each.read_text(encoding="utf-8") for each in tmp_path.glob("*.yaml")}
     shipped = {each.name: each.read_text(encoding="utf-8") for each in HEADLAMP.glob("*.yaml")}

@@ -66,6 +66,7 @@ def test_samples_of_two_recordings_count_together() -> None:
 
 def test_a_step_is_at_its_upper_end() -> None:
     counter = _count(*range(1, 5000))
+    assert counter.summarise().percentiles["p50"] == 2512  # 2500, in steps of 2^11 / 2^7 = 16
     counter.add_sample(1_000_001)
     assert counter.summarise().largest == 1_000_001
 

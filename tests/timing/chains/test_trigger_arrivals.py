@@ -6,7 +6,9 @@ import pytest
 
 from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import show_ms
+from tests.timing.random_systems import architecture
 from tests.timing.sketches import analyse_sketch
 
 SOURCES = {
@@ -121,3 +123,32 @@ def test_what_is_missing_where_a_latency_is_unknown(places: tuple[str, str], lin
     a, r = (f"{name} {place}".strip() for name, place in zip("ar", places, strict=True))
     analysis = analyse_sketch({a: SOURCES["a"], r: "wcet: 1 ms"}, "a>r", hosts)
     assert TriggerArrivals(analysis).missing_link_names(analysis.system.arcs[0]) == names
+
+
+@pytest.mark.parametrize(
+    "wires",
+    [
+        "a>r",
+        "a>r slow>r",  # an input of its own
+        "a>r caller?r",  # a call is no message
+    ],
+)
+def test_one_source_has_its_input_to_itself(wires: str) -> None:
+    nodes = {**SOURCES, "r": "", "caller": "period: 70 ms, wcet: 1 ms"}
+    arrivals = TriggerArrivals(analyse_sketch(nodes, wires))
+    arc = next(arc for arc in arrivals.analysis.system.arcs if (arc.source, arc.target) == ("a", "r"))
+    assert not arrivals.shares_input(arc)
+
+
+def test_two_sources_of_one_input_share_it() -> None:
+    both = architecture(
+        "groups: {g: {components: {a: {outputs: {x: std_msgs/msg/String}}, b: {outputs: {x: std_msgs/msg/String}}, "
+        "r: {inputs: {x: [a.x, b.x], y: a.x}}}}}"
+    )
+    arrivals = TriggerArrivals(analyse_architecture(both))
+    shares = {(arc.source, arc.input): arrivals.shares_input(arc) for arc in arrivals.analysis.system.arcs}
+    assert {key: shares[key] for key in sorted(shares)} == {
+        ("a", "g.r.x"): True,
+        ("a", "g.r.y"): False,
+        ("b", "g.r.x"): True,
+    }

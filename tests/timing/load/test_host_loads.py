@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.timing.printed import show_ms
 from tests.timing.sketches import analyse_sketch, list_hosts, list_reasons, list_responses
 
 
@@ -294,3 +295,34 @@ def test_what_a_verdict_rests_on() -> None:
 def test_a_pin_needs_a_second_core(cores: str, loads: list[str]) -> None:
     nodes = {"a @pc": "period: 10 ms, wcet: 1 ms, core: 0", "b @pc": "period: 10 ms, wcet: 2 ms"}
     assert list_hosts(analyse_sketch(nodes, "", f"hosts: {{pc: {{{cores}}}}}"))[1:2] == loads
+
+
+def test_a_thread_with_a_core_of_its_own_says_so_and_another_does_not() -> None:
+    nodes = dict.fromkeys(("a @pc", "b @pc", "c @one"), "period: 10 ms, wcet: 3 ms")
+    analysis = analyse_sketch(nodes, "", "hosts: {pc: {cores: 4}, one: {cores: 1}}")
+    reasons = {name: (response.tier, response.reasons[0].text) for name, response in analysis.responses.items()}
+    own_core = "its own work: pc has no more threads than cores"
+    assert reasons == {
+        "a": ("cores", own_core),
+        "b": ("cores", own_core),
+        "c": ("host", "the longest time for which all work on one can keep it busy, in whatever order"),
+    }
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "response"),
+    [
+        # 3 + 2 + 2 of `a` end at 7, just as `a` comes again.
+        ("3 ms", "2 ms", "7"),
+        # What takes no time itself waits on there: 5 + 2 and again 2.
+        ("5 ms", "0 ms", "9"),
+    ],
+)
+def test_what_takes_no_time_waits_for_what_comes_as_all_else_ends(first: str, second: str, response: str) -> None:
+    nodes = {
+        "a @pc": "period: 7 ms, wcet: 2 ms, priority: 9",
+        "s +box": f"period: 40 ms, wcet: {first}, priority: 5",
+        "t +box": f"period: 40 ms, wcet: {second}, priority: 5",
+    }
+    analysis = analyse_sketch(nodes, "", "hosts: {pc: {cores: 1}}\ncontainers: {box: {threads: 1, host: pc}}")
+    assert show_ms(analysis.responses["t"].worst) == response

@@ -152,3 +152,19 @@ def test_the_worst_activation_is_not_the_first() -> None:
 def test_what_a_gate_lets_through_is_written_as_it_is_counted(every: int, calls: Fraction, count: EventCount) -> None:
     rule = GateRule(({EventOrigin("activity", "s"): 1},), every, calls=calls)
     assert CountFormulas(Fraction(10**6)).count_gate(rule, [EventCount(5, "5")], 10) == count
+
+
+@pytest.mark.parametrize(
+    ("streams", "window", "count"),
+    [
+        ((PLAIN,), 25, EventCount(2, "floor(25 ms / 10 ms)")),
+        ((PLAIN,), 9, EventCount(0, "floor(9 ms / 10 ms)")),
+        ((EventStream(10, 5),), 25, EventCount(3, "floor((25 ms + 5 ms) / 10 ms)")),
+        ((APART,), 5, EventCount(1, "floor(5 ms / 4 ms)")),
+        ((PLAIN, EventStream(20)), 25, EventCount(4, "4")),  # of several streams the number alone
+    ],
+)
+def test_the_event_that_ends_a_window_is_not_counted(
+    streams: tuple[EventStream, ...], window: int, count: EventCount
+) -> None:
+    assert CountFormulas(Fraction(10**6)).count_held_jobs(streams, window) == count

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import show, show_ms
 from tests.timing.random_systems import architecture
@@ -540,3 +542,18 @@ def test_all_of_what_may_come_irregularly_is_an_upper_bound() -> None:
         "open": "<= 50",
         "alone": "50",
     }
+
+
+@pytest.mark.parametrize(
+    ("latency", "gap"),
+    [
+        ("{best: 1 ms, worst: 4 ms}", "13"),  # a message that takes 1 ms, the next one 4 ms
+        ("{worst: 4 ms}", "14"),
+        ("3 ms", "10"),
+    ],
+)
+def test_a_link_widens_a_gap_by_what_it_varies(latency: str, gap: str) -> None:
+    hosts = f"hosts: {{p: {{cores: 1}}, q: {{cores: 1}}}}\nlinks: {{lan: {{connects: [p, q], latency: {latency}}}}}"
+    nodes = {"a @p": "period: 10 ms, wcet: 1 ms, bcet: 1 ms", "r @q": "wcet: 1 ms"}
+    analysis = analyse_sketch(nodes, "a>r", hosts)
+    assert show_ms(analysis.paces["r"].gap) == gap

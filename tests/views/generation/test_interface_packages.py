@@ -16,7 +16,7 @@ from archgen.pipeline import check_project
 from archgen.views.generation import GENERATION_VIEWS
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
-from archgen.views.generation.interface_files import list_missing_words, list_used_packages, record_interface
+from archgen.views.generation.interface_files import list_missing_words, list_used_packages, record_definition
 from archgen.views.generation.interface_packages import make_view
 from archgen.views.generation.name_clashes import find_name_clashes
 from archgen.views.generation.package_facts import record_package_facts
@@ -176,7 +176,7 @@ def test_constants_of_both_generations() -> None:
     constant = InterfaceConstant("NAME", "string", '"a # b"', "why")
     definition = Interface("p/msg/M", ((),), ((constant,),), "what\nit is")
     for ros, value, comment, remark in ((1, "a # b", "", "why"), (2, '"a # b"', "why", "")):
-        record: Any = record_interface(definition, None, ros)
+        record: Any = record_definition(definition, None, ros)
         assert record["parts"][0]["constants"] == [
             {"name": "NAME", "type": "string", "value": value, "comment": comment, "remark": remark}
         ]

@@ -88,6 +88,11 @@ def test_a_host_knows_what_it_shares_with_others(tmp_path: Path) -> None:
     vision, robot = data["hosts"]
     assert [each["id"] for each in vision["remote"]] == ["assembly.controller"]
     assert [each["id"] for each in robot["remote"]] == ["assembly.pos_sensor"]
+    # Who only sends waits for nobody.
+    assert [[each["id"] for each in host["remote_sources"]] for host in (vision, robot)] == [
+        [],
+        ["assembly.pos_sensor"],
+    ]
     part, _ = make(tmp_path, host="robot_pc")
     assert [each["id"] for each in part["hosts"]] == ["robot_pc"]
     assert [each["name"] for each in part["components"]] == [

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from archgen import pipeline, resources
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.timing.analysis import EventPace
 from archgen.views.chart_shapes import Chart
@@ -18,24 +17,25 @@ from archgen.views.timing import rate_phrases
 from archgen.views.timing import timing_lookup as timed_module
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.architectures import generated, robot
+from tests.judged_projects import judge_ramcip
 from tests.timings import exact, timed
 
 
 @pytest.fixture(scope="module")
 def pictures() -> dict[str, Graph]:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     graphs = make_all_graphs(architecture, timed=timed(architecture))
     return {graph.id: graph for graph in graphs if graph.id.startswith("timing")}
 
 
 def test_the_whole_and_each_group_are_drawn(pictures: dict[str, Graph]) -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     homes = {node.implements[0].split(".")[0] for node in architecture.nodes.values() if node.implements}
     assert set(pictures) == {"timing", *(f"timing/{group}" for group in homes)}
 
 
 def test_every_activity_stands_in_the_whole_with_its_figure(pictures: dict[str, Graph]) -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     analysis = timed(architecture).analysis
     boxes = {box.id: box for box in pictures["timing"].boxes}
     assert set(boxes) == set(analysis.system.activities)
@@ -84,7 +84,7 @@ def test_a_pace_that_differs_from_the_producers_stands_at_the_arrow() -> None:
 
 
 def test_of_a_part_there_is_what_it_does_with_grey_neighbours_and_its_share_in_charts() -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     selection, _ = evaluate_selector("human_state", architecture)
     view = make_lookup(
         architecture,

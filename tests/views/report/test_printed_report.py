@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 import yaml
 
-from archgen import pipeline, resources
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.pages import report_outline
 from archgen.views.report.printed_figures import print_inlines, print_text
 from archgen.views.report.printed_report import make_printed_report, walk_sections
 from archgen.views.shapes import Outline, Section, Text
+from tests.judged_projects import judge_ramcip
 from tests.views.report.report_texts import list_block_texts, list_texts
 
 LIST = yaml.safe_load((Path(__file__).parent / "said_elsewhere.yaml").read_text(encoding="utf-8"))
@@ -26,7 +26,7 @@ GONE = [re.compile(entry["text"]) for entry in LIST["gone"]]
 
 @pytest.fixture(scope="module")
 def views() -> ProjectViews:
-    checked = pipeline.check_project(resources.resource_path("example_ramcip"))
+    checked = judge_ramcip()
     return make_views(checked, OutputOptions(revision="r", show_history=False))
 
 

@@ -6,19 +6,19 @@ from fractions import Fraction
 
 import pytest
 
-from archgen import pipeline, resources
 from archgen.timing.analysis import HostLoad
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.views.chart_shapes import Chart
 from archgen.views.lookup import make_lookup
 from archgen.views.timing import chain_charts, load_charts
 from archgen.views.timing.timing_lookup import TimingLookup
+from tests.judged_projects import judge_ramcip
 from tests.timings import MS, analysis_of, chain, exact, timed
 
 
 @pytest.fixture(scope="module")
 def drawn() -> dict[str, Chart]:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     return {
         chart.id: chart
         for chart in chain_charts.make_timing_charts(make_lookup(architecture, timing_lookup=timed(architecture)))
@@ -26,7 +26,7 @@ def drawn() -> dict[str, Chart]:
 
 
 def test_every_chain_and_host_has_a_chart(drawn: dict[str, Chart]) -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     wanted = {f"chains/{name}" for name in architecture.chains} | {f"load/{name}" for name in architecture.hosts}
     assert set(drawn) == {"load", *wanted}
 
@@ -54,7 +54,7 @@ def test_verdicts() -> None:
 
 
 def test_an_unknown_term_is_drawn_as_unknown() -> None:
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     found = timed(architecture)
     (open_chain,) = (result for result in found.chains if result.verdict == "open")
     chart = chain_charts.make_chain_chart(make_lookup(architecture, timing_lookup=found), found, open_chain)
@@ -102,7 +102,7 @@ def test_a_full_core_is_seen_on_a_host_that_is_not_full() -> None:
     places = (("onboard_pc core 7", 1, exact(Fraction(11, 10))), ("onboard_pc", 7, exact(Fraction(7, 10))))
     load = HostLoad(exact(Fraction(9, 5)), 8, UNKNOWN_VALUE, "overload", (("a", exact(Fraction(9, 5))),), places)
     assert load_charts.describe_load(load) == "Overloaded (core 7): 22.5 % of 8 cores."
-    architecture = pipeline.check_project(resources.resource_path("example_ramcip")).architecture
+    architecture = judge_ramcip().architecture
     chart = load_charts.make_host_chart(make_lookup(architecture), timed(architecture), "onboard_pc", load)
     alone = [(bar.title, bar.value, bar.segments[0].kind) for bar in chart.bars[-2:]]
     assert alone == [("core 7", "110 %", "missed"), ("the other 7 cores", "10 %", "best")]

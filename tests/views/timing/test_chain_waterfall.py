@@ -12,6 +12,7 @@ from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Bullets, Inlines, Waterfall
 from archgen.views.timing.chain_waterfall import make_waterfall
 from archgen.views.timing.timing_lookup import analyse_with_chains
+from tests.judged_projects import judge_ramcip
 
 ROBOT = """\
 partners: {{p: {{title: Partner P}}, q: {{title: Partner Q}}}}
@@ -136,7 +137,7 @@ def test_a_chain_without_a_deadline_has_no_limit(tmp_path: Path) -> None:
 
 
 def test_shares_stay_on_the_axis_and_figures_apart_in_the_case_study() -> None:
-    checked = check_project(Path(__file__).parents[3] / "example_ramcip")
+    checked = judge_ramcip()
     timing = analyse_with_chains(checked.architecture)
     lookup = make_lookup(checked.architecture, checked.findings, timing_lookup=timing)
     for result in timing.chains:

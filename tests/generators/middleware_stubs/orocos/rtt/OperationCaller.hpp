@@ -2,6 +2,8 @@
 #include <string>
 #include <rtt/FlowStatus.hpp>
 namespace RTT {
+class ExecutionEngine;
+class OperationInterfacePart;
 template<typename Signature> class SendHandle {};
 template<typename Signature> class OperationCaller;
 template<typename Result, typename... Arguments>
@@ -11,5 +13,7 @@ public:
   Result operator()(Arguments... arguments);
   SendHandle<Result(Arguments...)> send(Arguments... arguments);
   bool ready() const;
+  void setCaller(ExecutionEngine * caller);
+  OperationCaller & operator=(OperationInterfacePart * part);
 };
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <rtt/OperationCaller.hpp>
 #include <rtt/Port.hpp>
@@ -12,8 +13,12 @@ class ServiceRequester {
 public:
   template<typename Signature> bool addOperationCaller(OperationCaller<Signature> & caller);
 };
+class Service { public: OperationInterfacePart * getOperation(std::string name); };
 class TaskContext {
 public:
+  ExecutionEngine * engine() const;
+  TaskContext * getPeer(const std::string & name) const;
+  std::shared_ptr<Service> provides();
   enum TaskState { Init, PreOperational, FatalError, Exception, Stopped, Running, RunTimeError };
   explicit TaskContext(const std::string & name, TaskState initial_state = Stopped);
   TaskContext(const TaskContext &) = delete;

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <rtt/types/TransportPlugin.hpp>
 namespace RTT { namespace types {
 class TypekitPlugin {
 public:
@@ -10,6 +11,8 @@ public:
   virtual bool loadGlobals() { return true; }
   virtual std::string getName() = 0;
 };
+void import_plugin(TypekitPlugin * plugin);
+void import_plugin(TransportPlugin * plugin);
 } }
 #define ORO_TYPEKIT_PLUGIN(TYPEKIT) \
-  extern "C" { bool loadTypekit(void *); bool loadTypekit(void *) { TYPEKIT().loadTypes(); return true; } }
+  extern "C" { bool load##TYPEKIT(void *); bool load##TYPEKIT(void *) { RTT::types::import_plugin(new TYPEKIT()); return true; } }

@@ -1,0 +1,72 @@
+"""A project with everything written out: its leaves, what stands around them, and what they are made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from archgen.compose.type_expressions import TypeExpression
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+
+@dataclass(slots=True)
+class InstanceOrigin:
+    """Which component type a component is made from."""
+
+    expression: TypeExpression
+    is_reference: bool
+    """Whether it is exactly the type (`same_as`)."""
+    at: Span
+
+
+@dataclass(slots=True)
+class ComponentShell:
+    """A component that holds components: its entry without them, and the ids of those directly inside."""
+
+    id: str
+    group: str
+    parent: str | None
+    """The id of the component around it, None where it stands directly in its group."""
+    entry: MappingEntry
+    children: tuple[str, ...] = ()
+    parts: dict[str, MappingEntry] = field(default_factory=dict)
+    """What stands directly inside, by id, as it is written there or in the type: instances are not written out."""
+
+
+@dataclass(slots=True)
+class Expansion:
+    """A component's body with everything written out, what it is made from, and how many components it stands for."""
+
+    written: MappingNode
+    """What it was made of: kept alive, since expansions are found by its identity."""
+    body: MappingNode
+    origin: InstanceOrigin | None
+    parts: dict[str, tuple[MappingEntry, Expansion]]
+    size: int
+
+
+@dataclass(slots=True)
+class ExpandedProject:
+    """A project with everything written out: `root` has leaves only below its groups."""
+
+    root: MappingNode
+    is_plain: bool = False
+    """Whether nothing is composed and nothing an instance: it is as it was written."""
+    type_bodies: dict[str, MappingNode] = field(default_factory=dict)
+    """Component types by name, with what they are made from: the project's own, then those it uses of libraries."""
+    type_entries: dict[str, MappingEntry] = field(default_factory=dict)
+    """The same component types as they are written."""
+    shells: dict[str, ComponentShell] = field(default_factory=dict)
+    """Composed components by complete id, outer ones first."""
+    instances: dict[str, InstanceOrigin] = field(default_factory=dict)
+    """What leaves and shells are made from, by complete id."""
+    parents: dict[str, str] = field(default_factory=dict)
+    """The shell around each leaf and shell that has one, by complete ids."""
+    container_holders: dict[str, str] = field(default_factory=dict)
+    """The component that brings along each container that is not the project's own, by id."""
+    parts: dict[str, list[tuple[MappingEntry, Expansion]]] = field(default_factory=dict)
+    """What stands directly in each group, as it is written and with everything written out."""
+    damaged_elements: frozenset[str] = frozenset()
+    """Components of which the type is not known: what they have is not known either."""
+    diagnostics: tuple[Diagnostic, ...] = ()

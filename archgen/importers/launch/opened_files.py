@@ -1,0 +1,103 @@
+"""Files that a launch file in Python opens itself: YAML in them is read where they lie in the folders that were given."""
+
+from __future__ import annotations
+
+import ast
+
+from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue
+from archgen.importers.launch.moveit_configs import MoveItBuilder, call_builder, make_builder
+from archgen.importers.launch.python_methods import MethodReader
+from archgen.importers.launch.python_values import BoundMethod, CallArguments, RecordValue
+
+_COMMAND_WORDS = 2
+_RECORD_METHODS = frozenset({"to_dict"})
+
+
+class OpenedFileReader(MethodReader):
+    """Reads calls that open files."""
+
+    def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
+        """Return what a file says, as a mapping; an UnknownValue where it cannot be read; by the reader of the whole file."""
+        raise NotImplementedError
+
+    def has_file(self, path: LaunchValue) -> bool:
+        """Whether a file lies in the folders that were given; by the reader of the whole file."""
+        raise NotImplementedError
+
+    def list_names(self, folder: LaunchValue) -> list[str]:
+        """Return the names of the files in a folder; by the reader of the whole file."""
+        raise NotImplementedError
+
+    def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        """Return what a method gives; what it changes is changed."""
+        if isinstance(method.owner, MoveItBuilder):
+            return call_builder(self, method.owner, method.name, arguments, node)
+        if isinstance(method.owner, RecordValue):
+            return method.owner.values[method.name] if method.name in _RECORD_METHODS else self.quote(node)
+        if method.name in {"exists", "is_file"} and isinstance(method.owner, str | Substitution):
+            return True if self.has_file(method.owner) else self.quote(node)
+        return super().call_method(method, arguments, node)
+
+    def _call_moveitconfigsbuilder(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return make_builder(arguments) or self.quote(node)
+
+    def _call_open(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path = arguments.get(0, "file")
+        return Substitution(OPEN_FILE, (path,)) if isinstance(path, str | Substitution) else self.quote(node)
+
+    def _call_exists(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        # That a file is not at hand says nothing about the robot.
+        return True if self.has_file(arguments.get(0, "path")) else self.quote(node)
+
+    def _call_isfile(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._call_exists(arguments, node)
+
+    def _call_safe_load(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path = _find_path(arguments.get(0, "stream"))
+        return self.quote(node) if path is None else self.read_yaml(path, node)
+
+    def _call_load(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._call_safe_load(arguments, node)
+
+    def _call_full_load(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._call_safe_load(arguments, node)
+
+    def _call_process_file(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path, mappings = arguments.get(0), arguments.get(None, "mappings")
+        if isinstance(path, UnknownValue) or path is None or not (mappings is None or isinstance(mappings, dict)):
+            return self.quote(node)
+        return Substitution("command", (["xacro ", path, *_write_mappings(mappings)],))
+
+    def _call_process(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        return self._call_process_file(arguments, node)
+
+    def _call_parse(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        path = _find_path(arguments.get(0))
+        return self.quote(node) if path is None else Substitution("command", (["xacro ", path],))
+
+    def _call_process_doc(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        """Add what is given for the arguments of a document that `xacro.parse` gave: the document itself is changed."""
+        document, mappings = arguments.get(0, "doc"), arguments.get(None, "mappings")
+        words = document.parts[0] if isinstance(document, Substitution) and document.kind == "command" else None
+        if not isinstance(words, list) or words[:1] != ["xacro "]:
+            return self.quote(node)
+        if isinstance(mappings, dict):
+            words += _write_mappings(mappings)
+        elif mappings is not None:
+            words.append(self.quote(node))
+        return None
+
+
+def _write_mappings(mappings: dict[LaunchValue, LaunchValue] | None) -> list[LaunchValue]:
+    return [part for name, value in (mappings or {}).items() for part in (f" {name}:=", value)]
+
+
+def _find_path(value: LaunchValue) -> LaunchValue | None:
+    """Return the path of an open file, or of one whose text was read; None for anything else."""
+    if not isinstance(value, Substitution):
+        return None
+    if value.kind == OPEN_FILE:
+        return value.parts[0]
+    words = value.parts[0] if value.kind == "command" else None
+    is_text = isinstance(words, list) and len(words) == _COMMAND_WORDS and words[0] == "cat "
+    return words[1] if is_text and words is not None else None

@@ -1,0 +1,2 @@
+#pragma once
+#define ORO_CORBA_PROTOCOL_ID 1

@@ -1,0 +1,57 @@
+"""The projects of this repository, judged once: hundreds of tests ask a verb about the case study, and to judge it takes longest."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from unittest.mock import patch
+
+from archgen import pipeline
+from archgen.checking.checked_project import CheckedProject
+
+_ROOT = Path(__file__).resolve().parents[1]
+_RAMCIP = _ROOT / "example_ramcip"
+_SHIPPED_FOLDERS = (_RAMCIP, _ROOT / "examples")
+_Key = tuple[object, ...]
+_JUDGED: dict[_Key, CheckedProject] = {}
+_check_project = pipeline.check_project
+
+
+@functools.cache
+def judge_ramcip() -> CheckedProject:
+    """Judge the case study, once for all tests of this process that read what comes out."""
+    return _check_project(_RAMCIP)
+
+
+@contextmanager
+def judge_shipped_once() -> Iterator[None]:
+    """Have verbs judge a shipped project again only if it changed. Others they judge each time."""
+    with patch.object(pipeline, "check_project", _check_once):
+        yield
+
+
+def _check_once(
+    path: Path | None = None,
+    version_cache: pipeline.VersionCache | None = None,
+    variants: Sequence[str] | None = None,
+) -> CheckedProject:
+    folder = path.absolute() if path else Path.cwd()
+    # A cache that the caller wants to have filled is none of ours.
+    if version_cache or not any(folder.is_relative_to(shipped) for shipped in _SHIPPED_FOLDERS):
+        return _check_project(path, version_cache, variants)
+    key = (os.fspath(path) if path else None, Path.cwd(), tuple(variants) if variants else None, *_list_states(folder))
+    if key not in _JUDGED:
+        _JUDGED[key] = _check_project(path, version_cache, variants)
+    return _JUDGED[key]
+
+
+def _list_states(folder: Path) -> Iterator[tuple[str, int, int]]:
+    """Yield the path of each file of a project, with what changes if it is written."""
+    for parent, folders, names in os.walk(folder if folder.is_dir() else folder.parent):
+        folders[:] = [name for name in folders if name != "archgen-out"]
+        for name in names:
+            state = (Path(parent) / name).stat()
+            yield os.path.join(parent, name), state.st_mtime_ns, state.st_size  # noqa: PTH118 - hundreds of paths
