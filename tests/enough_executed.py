@@ -63,13 +63,17 @@ class LeaveTheRestOut:
         self._running_test = ""
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_runtest_protocol(self, item: pytest.Item) -> bool | None:
+    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
         """Say that a test has been run, if enough was executed before it."""
         test = item.nodeid.partition("::")[0]
         if test != self._running_test:
             self._running_test = os.environ[CONTEXT_VARIABLE] = test
             self._measured.switch_context(test)
-        return True if self._is_enough() else None
+        if not self._is_enough():
+            return None
+        # The last test that ran expected one of its own file next: the file's fixtures end here.
+        item.session._setupstate.teardown_exact(nextitem)  # noqa: SLF001 - pytest has no public way
+        return True
 
     def _is_enough(self) -> bool:
         data = self._measured.get_data()
