@@ -13,8 +13,7 @@ from archgen.importers.foreign.foreign_import import ForeignFileError
 
 LAUNCH_ENDINGS = (".launch", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch.py")
 MAX_LAUNCH_BYTES = 4_000_000
-_MAX_FOLDERS = 20_000
-_MAX_DEPTH = 8
+MAX_FOLDERS = 20_000
 _PARENTS_TRIED = 4
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"build", "install", "log", "node_modules", "devel"})
@@ -34,6 +33,8 @@ class LaunchFiles:
     def __init__(self, paths: Sequence[Path]) -> None:
         self.roots = list(dict.fromkeys(_find_root(path) for path in paths))
         self._own_folders = [folder for path in paths if (folder := _find_package_folder(path.resolve())) is not None]
+        self.cut_roots: list[Path] = []
+        """The folders of which not all was looked through, since there is too much in them."""
         self._packages: dict[str, Path] | None = None
         self._walked: dict[Path, list[tuple[Path, list[str]]]] = {}
         self._by_name: dict[Path, dict[str, list[Path]]] = {}
@@ -143,8 +144,9 @@ class LaunchFiles:
         for folder, folders, names in os.walk(root):
             path = Path(folder)
             folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in _SKIPPED)
-            if len(path.relative_to(root).parts) >= _MAX_DEPTH or len(found) >= _MAX_FOLDERS:
-                folders.clear()
+            if len(found) >= MAX_FOLDERS:
+                self.cut_roots.append(root)
+                break
             found.append((path, sorted(names)))
         return found
 

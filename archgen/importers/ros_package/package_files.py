@@ -14,8 +14,7 @@ from archgen.importers.foreign.xml_tree import XmlElement, parse_xml
 
 MANIFEST = "package.xml"
 _MAX_MANIFEST = 1_000_000
-_MAX_FILES = 20_000
-_MAX_DEPTH = 6
+_MAX_PARTS = 100_000
 _SKIPPED = frozenset({"build", "install", "log", "node_modules", "test", "tests"})
 
 
@@ -55,21 +54,25 @@ def find_manifests(paths: tuple[Path, ...]) -> list[Path]:
 
 
 def walk_files(folder: Path) -> Iterator[PackageFile]:
-    """Yield the files below a folder; what is built, hidden or tested is left out, and no link is followed."""
+    """Yield the files below a folder; what is built, hidden or tested is left out, and no link is followed.
+
+    Raise ForeignFileError where there are too many.
+    """
     count = 0
     for top, folders, names in os.walk(folder):
         inner = Path(top).relative_to(folder)
         folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in _SKIPPED)
-        if len(inner.parts) >= _MAX_DEPTH:
-            folders.clear()
+        count += len(folders) + len(names)
+        if count > _MAX_PARTS:
+            words = f"more than {_MAX_PARTS:,} files and folders lie below it"
+            raise ForeignFileError(words, Span.of_file(str(folder)), "give the folders of the packages instead")
         is_other = bool(inner.parts) and MANIFEST in names
         if is_other:
             # What is in another package is its own.
             folders.clear()
         for name in [MANIFEST] if is_other else sorted(names):
             path = Path(top) / name
-            if not path.is_symlink() and count < _MAX_FILES:
-                count += 1
+            if not path.is_symlink():
                 yield PackageFile(path, (Path(folder.name) / inner / name).as_posix())
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from archgen.importers.launch import launch_files, launch_import
 from archgen.importers.launch.launch_import import read_launch
 from tests.importers.launch.test_launch_import import messages_of, nodes_of, read_python, write_files
 
@@ -197,3 +198,22 @@ def test_of_packages_of_one_name_the_own_one_counts(tmp_path: Path) -> None:
             launch___b__launch__xml=f'<launch><node pkg="p" exec="{folder}" name="n"/></launch>',
         )
     assert nodes_of(read_launch([tmp_path / "b" / "launch" / "a.launch.xml"]))["n"]["executable"] == "b"
+
+
+def test_packages_lie_as_deep_as_they_like_and_folders_not_looked_through_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path.joinpath(*"abcdefghij", "drivers")
+    (package / "launch").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>drivers</name></package>")
+    (package / "launch" / "inner.launch.xml").write_text('<launch><node pkg="p" exec="x" name="inner"/></launch>')
+    outer = '<launch><include file="$(find-pkg-share drivers)/launch/inner.launch.xml"/></launch>'
+    (tmp_path / "outer.launch.xml").write_text(outer)
+    files = [tmp_path / "outer.launch.xml", tmp_path]
+    assert list(nodes_of(read_launch(files))) == ["inner"]
+    assert read_launch(files).notes == ()
+    monkeypatch.setattr(launch_files, "MAX_FOLDERS", 5)
+    monkeypatch.setattr(launch_import, "MAX_FOLDERS", 5)
+    messages = [(note.message, note.fate) for note in read_launch(files).notes]
+    words = "only the first 5 folders in it were looked through: packages that lie in others are not found"
+    assert messages[-1] == (words, "noted")

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.ros_package import package_files
 from archgen.importers.ros_package.package_import import read_packages
 from archgen.pipeline import check_project
 from archgen.syntax.yaml_writer import write_yaml
@@ -293,3 +294,18 @@ def test_messages_of_packages_for_both_are_those_of_ros_2(tools: str, is_read: b
     (tmp_path / "package.xml").write_text(manifest)
     imported = read_packages([tmp_path])
     assert ([note.kind for note in imported.notes if note.kind != "depend"] == []) == is_read
+
+
+def test_packages_lie_as_deep_as_they_like_and_too_many_files_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path.joinpath("src", *"abcdefgh")
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>deep</name></package>")
+    assert [path.parent.name for path in package_files.find_manifests((tmp_path / "src",))] == ["h"]
+    monkeypatch.setattr(package_files, "_MAX_PARTS", 9)
+    assert package_files.find_manifests((tmp_path / "src",))
+    (folder / "one_more").touch()
+    with pytest.raises(ForeignFileError, match="more than 9 files and folders") as refused:
+        package_files.find_manifests((tmp_path / "src",))
+    assert refused.value.help_line == "give the folders of the packages instead"
