@@ -133,8 +133,8 @@ class Run:
         self.output_file = stage.folder / "output"
         with self.output_file.open("wb") as output:
             self.process = subprocess.Popen(  # noqa: S603 - the script that was just generated, with stand-ins only
-                # What runs in the background of a shell ignores interrupts, and would hand that on.
-                ["/usr/bin/env", "--default-signal=INT", "bash", str(script), *words],
+                # What runs in the background of a shell ignores interrupts, and below `nohup` hang-ups, and would hand that on.
+                ["/usr/bin/env", "--default-signal=INT,HUP", "bash", str(script), *words],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=output,
