@@ -89,16 +89,19 @@ def _read_scripts(value: ast.expr, place: Span, account: ImportAccount) -> Itera
 
 def _read_cmake(text: str, package: str, place: Span, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
     plain_text = _COMMENT.sub("", text)
-    pairs = _CMAKE_VARIABLE.findall(plain_text)
-    values = {name: {value for other, value in pairs if other == name} for name in dict(pairs)}
+    values: dict[str, set[str]] = {}
+    for name, value in _CMAKE_VARIABLE.findall(plain_text):
+        values.setdefault(name, set()).add(value)
     variables = {"PROJECT_NAME": package, **{name: min(found) for name, found in values.items() if len(found) == 1}}
+    line, counted = 1, 0
     for match in _CMAKE_CALL.finditer(plain_text):
+        line += plain_text.count("\n", counted, match.start())
+        counted = match.start()
         words = [_fill_variables(word.strip('"'), variables) for word in match[2].split()]
         if match[1].lower().endswith("add_executable"):
             if not words or _NO_NODES & set(words):
                 continue
             if not _PROGRAM_NAME.match(words[0]):
-                line = plain_text.count("\n", 0, match.start()) + 1
                 span = Span(place.file, line, 1, line, 2)
                 account.add_note(match[1].lower(), f"the name of a program is computed: `{words[0]}`", span)
             elif not _TEST_WORDS & {word.lower() for word in _WORD_ENDS.split(words[0])}:

@@ -274,6 +274,15 @@ def test_packages_in_packages_and_names_that_look_like_tests(tmp_path: Path) -> 
     ]
 
 
+def test_long_build_files_take_time_in_proportion(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text(MANIFEST)
+    # What compares every variable with every other one, or counts lines from the beginning, takes minutes.
+    lines = (f"set(v{number} a)\n\nadd_executable(${{w{number}}} x)\n" for number in range(22_000))
+    (tmp_path / "CMakeLists.txt").write_text("".join(lines))
+    notes = [note for note in read_packages([tmp_path]).notes if note.kind == "add_executable"]
+    assert (len(notes), notes[-1].span.line) == (22_000, 66_000)
+
+
 @pytest.mark.parametrize(
     ("tools", "is_read"),
     [
