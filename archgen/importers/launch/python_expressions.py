@@ -247,7 +247,7 @@ class ExpressionReader:
             return self.quote(node)
 
     def _read_lambda(self, node: ast.Lambda, scope: NameScope) -> LaunchValue:
-        return FunctionValue(node, scope)
+        return FunctionValue(node, scope, self)
 
     def _read_namedexpr(self, node: ast.NamedExpr, scope: NameScope) -> LaunchValue:
         scope.values[node.target.id] = value = self.evaluate(node.value, scope)

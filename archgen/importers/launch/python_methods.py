@@ -37,8 +37,8 @@ class MethodReader(StatementReader):
             for item in value:
                 self.add_children(action, item, depth + 1)
         elif isinstance(value, UnknownValue):
-            span = action.span._replace(line=value.line or action.span.line, column=1)
-            span = span._replace(end_line=span.line, end_column=2)
+            line = value.line or action.span.line
+            span = Span(value.file or action.span.file, line, 1, line, 2)
             reason = f"what it gives is computed: `{value.reason}`"
             action.children.append(LaunchAction("unread", _name_call(value.reason), span, {"reason": reason}))
 

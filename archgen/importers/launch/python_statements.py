@@ -169,8 +169,9 @@ class StatementReader(ComprehensionReader):
             merged = merge_names(names[0], names[1], test)
         scope.values = {name: value for name, value in merged.items() if isinstance(name, str)}
         first, second = endings
-        if first == second or {first, second} == {"return", "raise"}:
-            return "return" if {first, second} == {"return", "raise"} else first
+        if first and second:
+            # Nothing behind it is reached. What may go on in another round does.
+            return next(ending for ending in ("continue", "break", "return", "raise") if ending in endings)
         if first or second:
             self.conditions.append(LaunchCondition(test, is_negated=bool(first)))
         return ""
@@ -260,7 +261,7 @@ class StatementReader(ComprehensionReader):
             rest = {name: value for name, value in arguments.named.items() if name not in known_names}
             scope.values[declared.kwarg.arg] = rest
         for name in sorted(known_names - scope.values.keys()):
-            scope.values[name] = UnknownValue(name, function.definition.lineno)
+            scope.values[name] = UnknownValue(name, function.definition.lineno, self.file)
 
 
 def _is_plain_name_test(test: ast.expr) -> bool:

@@ -46,7 +46,7 @@ class FunctionValue:
 
     definition: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
     scope: NameScope
-    reader: object = None
+    reader: object
 
 
 @dataclass(slots=True, eq=False)

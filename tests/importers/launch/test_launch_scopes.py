@@ -156,6 +156,21 @@ def test_places_are_counted_in_characters_of_the_right_file(tmp_path: Path) -> N
     assert [note.span.column for note in imported.notes] == [1, 63]
 
 
+def test_what_modules_give_is_told_at_their_lines(tmp_path: Path) -> None:
+    helper = "\n" * 30 + "measure = lambda: compute()\ndef pick(value):\n    return value\nnodes = compute()\n"
+    body = """
+    import helper
+    node = Node(package="p", executable="e", parameters=[{"a": helper.measure(), "b": helper.pick()}])
+    return LaunchDescription([node, helper.nodes])
+    """
+    imported = read_python(tmp_path, body, launch___helper__py=helper)
+    assert [f"{note.span}: {note.message}" for note in imported.notes] == [
+        "helper.py:31:1: the parameter `a` is computed: `compute()`",
+        "helper.py:32:1: the parameter `b` is computed: `value`",
+        "helper.py:34:1: what it gives is computed: `compute()`",
+    ]
+
+
 @pytest.mark.parametrize(
     ("parts", "expected"),
     [

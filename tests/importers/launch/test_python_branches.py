@@ -65,6 +65,24 @@ def test_what_follows_a_way_that_ends_counts_for_the_other_one(tmp_path: Path) -
     }
 
 
+@pytest.mark.parametrize(
+    "ways", [("break", "continue"), ("continue", "break"), ("break", "return ld"), ("raise X", "break")]
+)
+def test_nothing_follows_where_both_ways_end(ways: tuple[str, str], tmp_path: Path) -> None:
+    body = f"""
+    ld = LaunchDescription([])
+    for side in ["left", "right"]:
+        if skip(side):
+            {ways[0]}
+        else:
+            {ways[1]}
+        ld.add_action(Node(package="p", executable=side))
+    ld.add_action(Node(package="p", executable="end"))
+    return ld
+    """
+    assert list(nodes_of(read_python(tmp_path, body))) == ["end"]
+
+
 def test_what_one_way_alone_makes_is_taken_with_its_condition(tmp_path: Path) -> None:
     body = """
     extra = None
