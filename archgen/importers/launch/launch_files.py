@@ -36,16 +36,15 @@ class LaunchFiles:
         self.cut_roots: list[Path] = []
         """The folders of which not all was looked through, since there is too much in them."""
         self._packages: dict[str, Path] | None = None
-        self._walked: dict[Path, list[tuple[Path, list[str]]]] = {}
+        self._walked: dict[Path, dict[Path, list[str]]] = {}
         self._by_name: dict[Path, dict[str, list[Path]]] = {}
-        self._folders: dict[Path, dict[Path, list[str]]] = {}
 
     def list_launch_files(self) -> list[Path]:
         """Return the launch files of all packages and folders, by path."""
         found = [
             path / name
             for root in self.roots
-            for path, names in self._walk(root)
+            for path, names in self._walk(root).items()
             for name in names
             if is_launch_file(name)
         ]
@@ -85,7 +84,7 @@ class LaunchFiles:
         inner = posixpath.normpath(match[2] or ".") if match else ".."
         if folder is None or inner.startswith(("/", "..")):
             return []
-        return self._list_folders(folder).get(folder / inner, [])
+        return self._walk(folder).get(folder / inner, [])
 
     def _find_in_package(self, folder: Path, inner_path: str) -> Path | None:
         inner = posixpath.normpath(inner_path)
@@ -105,16 +104,11 @@ class LaunchFiles:
         if folder not in self._by_name:
             index: dict[str, list[Path]] = {}
             self._by_name[folder] = index
-            for path, names in self._walk(folder):
+            for path, names in self._walk(folder).items():
                 if not _TEST_FOLDERS & set(path.relative_to(folder).parts):
                     for name in names:
                         index.setdefault(name, []).append(path / name)
         return self._by_name[folder]
-
-    def _list_folders(self, folder: Path) -> dict[Path, list[str]]:
-        if folder not in self._folders:
-            self._folders[folder] = dict(self._walk(folder))
-        return self._folders[folder]
 
     def _check(self, path: Path) -> Path | None:
         """Return a path of a file below a root, to which no link leads outside."""
@@ -131,15 +125,16 @@ class LaunchFiles:
             # Of packages of one name that of a given file counts.
             self._packages = {_read_package_name(folder): folder for folder in reversed(self._own_folders)}
             for root in self.roots:
-                for path, names in self._walk(root):
+                for path, names in self._walk(root).items():
                     if "package.xml" in names:
                         self._packages.setdefault(_read_package_name(path), path)
         return self._packages.get(name)
 
-    def _walk(self, root: Path) -> list[tuple[Path, list[str]]]:
+    def _walk(self, root: Path) -> dict[Path, list[str]]:
+        """Return the folders below one, each with the names of its files."""
         if root in self._walked:
             return self._walked[root]
-        found: list[tuple[Path, list[str]]] = []
+        found: dict[Path, list[str]] = {}
         self._walked[root] = found
         for folder, folders, names in os.walk(root):
             path = Path(folder)
@@ -147,7 +142,7 @@ class LaunchFiles:
             if len(found) >= MAX_FOLDERS:
                 self.cut_roots.append(root)
                 break
-            found.append((path, sorted(names)))
+            found[path] = sorted(names)
         return found
 
 
