@@ -13,7 +13,7 @@ from archgen.importers.foreign.foreign_import import ForeignFileError
 
 LAUNCH_ENDINGS = (".launch", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch.py")
 MAX_LAUNCH_BYTES = 4_000_000
-MAX_FOLDERS = 20_000
+_MAX_FOLDERS = 20_000
 _PARENTS_TRIED = 4
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _SKIPPED = frozenset({"build", "install", "log", "node_modules", "devel"})
@@ -33,8 +33,8 @@ class LaunchFiles:
     def __init__(self, paths: Sequence[Path]) -> None:
         self.roots = list(dict.fromkeys(_find_root(path) for path in paths))
         self._own_folders = [folder for path in paths if (folder := _find_package_folder(path.resolve())) is not None]
-        self.cut_roots: list[Path] = []
-        """The folders of which not all was looked through, since there is too much in them."""
+        self.cut_roots: dict[Path, int] = {}
+        """The folders of which not all was looked through, since there is too much in them: how many folders in each were."""
         self._packages: dict[str, Path] | None = None
         self._walked: dict[Path, dict[Path, list[str]]] = {}
         self._by_name: dict[Path, dict[str, list[Path]]] = {}
@@ -139,8 +139,8 @@ class LaunchFiles:
         for folder, folders, names in os.walk(root):
             path = Path(folder)
             folders[:] = sorted(name for name in folders if not name.startswith(".") and name not in _SKIPPED)
-            if len(found) >= MAX_FOLDERS:
-                self.cut_roots.append(root)
+            if len(found) >= _MAX_FOLDERS:
+                self.cut_roots[root] = len(found)
                 break
             found[path] = sorted(names)
         return found

@@ -9,7 +9,7 @@ from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
-from archgen.importers.launch.launch_files import MAX_FOLDERS, LaunchFiles
+from archgen.importers.launch.launch_files import LaunchFiles
 from archgen.importers.launch.launch_loading import load_actions, load_included
 from archgen.importers.launch.launch_run import LaunchRun
 from archgen.importers.launch.launch_slices import SliceMaker
@@ -44,8 +44,8 @@ def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = Non
         run.run_file(path)
         found[path] = (run.nodes, run.taken)
     run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
-    for root in launch_files.cut_roots:
-        words = f"only the first {MAX_FOLDERS:,} folders in it were looked through: packages that lie in others are not found"
+    for root, count in launch_files.cut_roots.items():
+        words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
         run.add_note("folder", words, Span.of_file(root.name), "give folders that hold less", fate="noted")
     if not given:
         found = {path: each for path, each in found.items() if path not in run.included} or found

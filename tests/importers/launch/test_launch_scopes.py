@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from archgen.importers.launch import launch_files, launch_import
+from archgen.importers.launch import launch_files
 from archgen.importers.launch.launch_import import read_launch
 from tests.importers.launch.test_launch_import import messages_of, nodes_of, read_python, write_files
 
@@ -227,8 +227,7 @@ def test_packages_lie_as_deep_as_they_like_and_folders_not_looked_through_are_to
     files = [tmp_path / "outer.launch.xml", tmp_path]
     assert list(nodes_of(read_launch(files))) == ["inner"]
     assert read_launch(files).notes == ()
-    monkeypatch.setattr(launch_files, "MAX_FOLDERS", 5)
-    monkeypatch.setattr(launch_import, "MAX_FOLDERS", 5)
+    monkeypatch.setattr(launch_files, "_MAX_FOLDERS", 5)
     messages = [(note.message, note.fate) for note in read_launch(files).notes]
     words = "only the first 5 folders in it were looked through: packages that lie in others are not found"
     assert messages[-1] == (words, "noted")
