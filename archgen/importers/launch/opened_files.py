@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from abc import abstractmethod
 
 from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue
 from archgen.importers.launch.moveit_configs import MoveItBuilder, call_builder, make_builder
@@ -16,17 +17,17 @@ _RECORD_METHODS = frozenset({"to_dict"})
 class OpenedFileReader(MethodReader):
     """Reads calls that open files."""
 
+    @abstractmethod
     def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
         """Return what a file says, as a mapping; an UnknownValue where it cannot be read; by the reader of the whole file."""
-        raise NotImplementedError
 
+    @abstractmethod
     def has_file(self, path: LaunchValue) -> bool:
         """Whether a file lies in the folders that were given; by the reader of the whole file."""
-        raise NotImplementedError
 
+    @abstractmethod
     def list_names(self, folder: LaunchValue) -> list[str]:
         """Return the names of the files in a folder; by the reader of the whole file."""
-        raise NotImplementedError
 
     def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         """Return what a method gives; what it changes is changed."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import posixpath
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 
 from archgen.importers.launch.file_changes import FileChanges
@@ -107,9 +108,9 @@ class CallReader(OpenedFileReader):
             return self._finish_action(LaunchAction("unread", name, self.place(node)))
         return self.quote(node)
 
+    @abstractmethod
     def add_module_folder(self, folder: LaunchValue) -> None:
         """Look for modules in a folder, too; by the reader of the whole file."""
-        raise NotImplementedError
 
     def _finish_action(self, action: LaunchAction) -> LaunchAction:
         action.conditions += self.conditions

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -27,7 +28,7 @@ _NUMBERS = (int, float)
 _KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
 
 
-class ExpressionReader:
+class ExpressionReader(ABC):
     """Reads expressions. `context` is there while a function is read that is called at the launch."""
 
     def __init__(self, file: str, lines: list[str]) -> None:
@@ -37,9 +38,9 @@ class ExpressionReader:
         self._steps = 0
         self._depth = 0
 
+    @abstractmethod
     def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         """Return what a call gives; made by the reader of calls."""
-        raise NotImplementedError
 
     def quote(self, node: ast.AST) -> UnknownValue:
         """Return an expression that only running it would tell, as it is written."""
@@ -53,9 +54,9 @@ class ExpressionReader:
         shown = text if len(text) <= _MAX_QUOTED else f"{text[:_MAX_QUOTED]}..."
         return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number, self.file)
 
+    @abstractmethod
     def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
         """Note what is left out because only running it would tell; by the reader of the whole file."""
-        raise NotImplementedError
 
     def count_steps(self, number: int) -> None:
         """Count what takes the time of several steps."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from abc import abstractmethod
 from collections.abc import Mapping
 
 from archgen.diagnostics.source_span import Span
@@ -23,9 +24,9 @@ _SAME_METHODS = frozenset(
 class MethodReader(StatementReader):
     """Reads calls of methods."""
 
+    @abstractmethod
     def place(self, node: ast.AST) -> Span:
         """Return where a part of the file stands; by the reader of the whole file."""
-        raise NotImplementedError
 
     def add_children(self, action: LaunchAction, value: LaunchValue, depth: int = 0) -> None:
         """Put what a value holds into an action, list by list."""

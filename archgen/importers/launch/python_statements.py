@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from abc import abstractmethod
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -29,13 +30,13 @@ class StatementReader(ComprehensionReader):
         """The conditions around that are not known: what is made there counts only if they hold."""
         self._functions = 0
 
+    @abstractmethod
     def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
         """Note what is taken otherwise than it is written; by the reader of the whole file."""
-        raise NotImplementedError
 
+    @abstractmethod
     def load_module(self, name: str) -> ModuleValue | None:
         """Return a module that lies beside the file; by the reader of the whole file."""
-        raise NotImplementedError
 
     def run_block(self, statements: list[ast.stmt], scope: NameScope) -> Ending:
         """Follow statements in their order."""
