@@ -79,7 +79,7 @@ def _convert_value(kind: str, value: PlainResult) -> PlainResult:
         return number
     # As Python has it: a text with a point is no whole number.
     is_whole = not isinstance(value, str) or value.strip().lstrip("+-").isdecimal()
-    return int(number) if is_whole and math.isfinite(number) else None
+    return int(value) if is_whole and math.isfinite(number) else None
 
 
 def _read_word(text: str) -> bool | str | int | float:

@@ -220,6 +220,7 @@ def test_three_forms_say_the_same(form: str, tmp_path: Path) -> None:
         ("(lambda name: name + '_node')('x')", "x_node"),
         ("str(Path('a') / 'b').replace('/', '_')", "a_b"),
         ("['n', PythonExpression([\"1 + int('\", LaunchConfiguration('x'), \"') + int(2.7)\"])]", "n8"),
+        ("['n', PythonExpression([\"int(' 12345678901234567 ')\"])]", "n12345678901234567"),
         ("['n_', EqualsSubstitution(LaunchConfiguration('x'), '5')]", "n_true"),
     ],
 )
