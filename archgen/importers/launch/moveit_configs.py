@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue
 from archgen.importers.launch.python_values import CallArguments, RecordValue
+from archgen.importers.launch.xacro_commands import make_xacro_command
 
 if TYPE_CHECKING:
     from archgen.importers.launch.opened_files import OpenedFileReader
@@ -69,13 +70,13 @@ def call_builder(
     reader: OpenedFileReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
 ) -> LaunchValue:
     """Return what a method of a builder gives: mostly itself."""
+    files = _MoveItReader(reader, builder, node)
     if name in {"to_moveit_configs", "to_dict"}:
-        made = _MoveItReader(reader, builder, node).finish()
+        made = files.finish()
         return made.values["to_dict"] if name == "to_dict" else made
-    step = getattr(_MoveItReader(reader, builder, node), f"read_{name}", None)
-    if step is None and name not in _YAML_STEPS:
+    if name not in _YAML_STEPS and not hasattr(files, f"read_{name}"):
         return reader.quote(node)
-    _MoveItReader(reader, builder, node).take_step(name, arguments)
+    files.take_step(name, arguments)
     return builder
 
 
@@ -113,7 +114,8 @@ class _MoveItReader:
             else:
                 merged.setdefault(key, limits)
         values: dict[str, LaunchValue] = {name: parts.get(name, {}) for name in (*_STEPS, "moveit_cpp", *_YAML_STEPS)}
-        return RecordValue({**values, "package_path": self._builder.package, "to_dict": merged})
+        values |= {"package_path": self._builder.package, "to_dict": merged}
+        return RecordValue(values, frozenset({"to_dict"}))
 
     def read_robot_description(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the command that gives the URDF."""
@@ -224,10 +226,7 @@ class _MoveItReader:
     def _make_command(self, place: LaunchValue, mappings: LaunchValue, what: str) -> LaunchValue:
         if place is None or not (mappings is None or isinstance(mappings, Mapping)):
             return self._make_unknown(what)
-        words: list[LaunchValue] = ["xacro ", place]
-        for name, value in (mappings or {}).items():
-            words += [f" {name}:=", value]
-        return Substitution("command", (words,))
+        return make_xacro_command(place, mappings)
 
     def _make_unknown(self, reason: str) -> UnknownValue:
         return UnknownValue(reason, self._node.lineno, self._reader.file)

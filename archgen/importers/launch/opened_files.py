@@ -9,9 +9,9 @@ from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Subst
 from archgen.importers.launch.moveit_configs import MoveItBuilder, call_builder, make_builder
 from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, RecordValue
+from archgen.importers.launch.xacro_commands import make_xacro_command, write_mappings
 
 _COMMAND_WORDS = 2
-_RECORD_METHODS = frozenset({"to_dict"})
 
 
 class OpenedFileReader(MethodReader):
@@ -34,7 +34,7 @@ class OpenedFileReader(MethodReader):
         if isinstance(method.owner, MoveItBuilder):
             return call_builder(self, method.owner, method.name, arguments, node)
         if isinstance(method.owner, RecordValue):
-            return method.owner.values[method.name] if method.name in _RECORD_METHODS else self.quote(node)
+            return method.owner.values[method.name]
         if method.name in {"exists", "is_file"} and isinstance(method.owner, str | Substitution):
             return True if self.has_file(method.owner) else self.quote(node)
         return super().call_method(method, arguments, node)
@@ -67,14 +67,14 @@ class OpenedFileReader(MethodReader):
         path, mappings = arguments.get(0), arguments.get(None, "mappings")
         if isinstance(path, UnknownValue) or path is None or not (mappings is None or isinstance(mappings, dict)):
             return self.quote(node)
-        return Substitution("command", (["xacro ", path, *_write_mappings(mappings)],))
+        return make_xacro_command(path, mappings)
 
     def _call_process(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         return self._call_process_file(arguments, node)
 
     def _call_parse(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         path = _find_path(arguments.get(0))
-        return self.quote(node) if path is None else Substitution("command", (["xacro ", path],))
+        return self.quote(node) if path is None else make_xacro_command(path)
 
     def _call_process_doc(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         """Add what is given for the arguments of a document that `xacro.parse` gave: the document itself is changed."""
@@ -83,14 +83,10 @@ class OpenedFileReader(MethodReader):
         if not isinstance(words, list) or words[:1] != ["xacro "]:
             return self.quote(node)
         if isinstance(mappings, dict):
-            words += _write_mappings(mappings)
+            words += write_mappings(mappings)
         elif mappings is not None:
             words.append(self.quote(node))
         return None
-
-
-def _write_mappings(mappings: dict[LaunchValue, LaunchValue] | None) -> list[LaunchValue]:
-    return [part for name, value in (mappings or {}).items() for part in (f" {name}:=", value)]
 
 
 def _find_path(value: LaunchValue) -> LaunchValue | None:

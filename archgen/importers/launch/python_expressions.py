@@ -111,7 +111,7 @@ class ExpressionReader(ABC):
             return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
         if isinstance(owner, UnknownValue):
             return self.quote(node)
-        if isinstance(owner, RecordValue) and node.attr != "to_dict":
+        if isinstance(owner, RecordValue) and node.attr not in owner.methods:
             return owner.values.get(node.attr, self.quote(node))
         if node.attr in {"parent", "name"} and isinstance(owner, str | Substitution):
             return self._read_path_part(node, owner)

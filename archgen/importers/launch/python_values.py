@@ -59,9 +59,10 @@ class ModuleValue:
 
 @dataclass(slots=True, eq=False)
 class RecordValue:
-    """An object that holds values by its attributes' names; what a method without arguments gives stands there, too."""
+    """An object that holds values by its attributes' names; what its methods, without arguments, give stands there, too."""
 
     values: dict[str, LaunchValue]
+    methods: frozenset[str]
 
 
 @dataclass(slots=True, eq=False)
