@@ -54,8 +54,9 @@ class ParameterFileReader:
         text = self._read(path)
         # A launch file may open the same file in a loop.
         self._opened += self._sizes.get(path, 0)
-        is_read = text is not None and text.root is not None and self._opened <= MAX_OPENED_BYTES
-        return _read_tree(text.root, "") if is_read and text is not None and text.root is not None else None
+        if text is None or text.root is None or self._opened > MAX_OPENED_BYTES:
+            return None
+        return _read_tree(text.root, "")
 
     def _read(self, path: Path) -> ParameterText | None:
         if path not in self._texts:
@@ -72,7 +73,7 @@ class ParameterFileReader:
 
 def _read_tree(node: MappingNode, ends: str = "/") -> dict[str, Any]:
     """Return a mapping as data, its keys without some characters at their ends."""
-    return {entry.key.strip(ends) if ends else entry.key: _read_value(entry.value, ends) for entry in node}
+    return {entry.key.strip(ends): _read_value(entry.value, ends) for entry in node}
 
 
 def _read_value(node: YamlNode, ends: str) -> Any:  # noqa: ANN401

@@ -69,7 +69,7 @@ _MODULES = {
 
 
 class CallReader(OpenedFileReader):
-    """Reads calls. `own_folder` and `own_name` are the file's as launch files name them."""
+    """Reads calls. `own_name` is the file's as launch files name it."""
 
     def __init__(self, file: str, own_name: str, lines: list[str]) -> None:
         super().__init__(file, lines)

@@ -186,7 +186,7 @@ class Ros1EntityReader:
             return []
         prefix = [part for key in ("ns", "param") if (part := str(entity.attributes.get(key, "")).strip("/~"))]
         if "file" in entity.attributes:
-            return [Substitution(FILE_KIND, (self._attribute(entity, "file"), "/".join(prefix), {}))]
+            return [Substitution(FILE_KIND, (self._attribute(entity, "file"), "/".join(prefix), None))]
         values: Any = read_inline_values(textwrap.dedent(entity.text.strip("\n")), entity.span)
         if values is None:
             text = entity.text.strip()

@@ -92,7 +92,7 @@ class ScopeRun:
             self.context.scope.parameters = (*self.context.scope.parameters, {name: action.get("value")})
 
     def _run_parameter_file(self, action: LaunchAction) -> None:
-        file = Substitution(FILE_KIND, (action.get("file"), "", {}))
+        file = Substitution(FILE_KIND, (action.get("file"), "", None))
         self.context.scope.parameters = (*self.context.scope.parameters, file)
 
     def _run_remap(self, action: LaunchAction) -> None:
