@@ -26,7 +26,7 @@ _ANSWER = re.compile(r"(?:Type: )?(\w+/(?:msg|srv|action)/\w+)")
 _NODE_LISTS = re.compile(r"ros2 (?:node list|lifecycle nodes|component list)\b.*")
 _OTHER_LISTS = re.compile(r"ros2 (?:topic|service|action|param) list\b.*")
 _ACTION_ENDS = {"Action clients": "calls", "Action servers": "serves"}
-_ACTION_END = re.compile(r" +(/\S+) \[([^\]]+)\]")
+_ACTION_END = re.compile(r" +(/\S+)(?: \[([^\]]+)\])?")
 _COMPONENT = re.compile(r"\s+\d+\s+(/\S+)")
 _PARAMETER_HEAD = re.compile(r"(/\S+):")
 _BAG_TOPIC = re.compile(r"(?:Topic information:)?\s*Topic: (/\S+) \| Type: (\S+) \|.*")
@@ -117,7 +117,9 @@ class _DumpReader:
         end = _ACTION_END.fullmatch(line.text)
         if asked[1] == "action" and end and self._use:
             node = self._graph.get_node(end[1], line.span)
-            self._graph.add_use(node, self._use, asked[2], self._choose_message(asked[2], end[2], line))
+            # Without `-t` it says no type.
+            message = self._choose_message(asked[2], end[2], line) if end[2] else ""
+            self._graph.add_use(node, self._use, asked[2], message)
             return True
         answer = _ANSWER.fullmatch(line.text)
         if answer:

@@ -424,6 +424,21 @@ def test_what_the_tools_print_of_real_nodes_is_read(tmp_path: Path) -> None:
     }
 
 
+def test_ends_of_actions_are_taken_without_types(tmp_path: Path) -> None:
+    told = (
+        "$ ros2 action info /drive\nAction: /drive\nAction clients: 1\n    /planner\nAction servers: 1\n    /driver\n"
+    )
+    listed = "$ ros2 action list -t\n/drive [nav2_msgs/action/NavigateToPose]\n"
+    action = {"name": "/drive", "message": "nav2_msgs/action/NavigateToPose"}
+    imported = read_text(told + listed, tmp_path, 2)
+    nodes = imported.slices["running_nodes.yaml"]["nodes"]
+    assert (nodes["planner"]["calls"], nodes["driver"]["serves"]) == ({"drive": action}, {"drive": action})
+    assert imported.notes == ()
+    imported = read_text(told, tmp_path, 2)
+    assert imported.slices["running_nodes.yaml"]["nodes"]["driver"]["serves"] == {"drive": {"name": "/drive"}}
+    assert "the type of `/drive` of `/driver` is not known" in [note.message for note in imported.notes]
+
+
 @pytest.mark.parametrize("ros", [1, 2])
 @pytest.mark.parametrize("data", [b"", b"\n\n", b"hello\n", b"\0\1", b"\xff" * 100, b"/" * 100_000, b"a: [" * 5_000])
 def test_what_is_no_dump_is_told(data: bytes, ros: int, tmp_path: Path) -> None:
