@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
-from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_arguments import LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext, LaunchScope
@@ -17,7 +15,7 @@ from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
 from archgen.importers.launch.node_making import NodeMaker
 from archgen.importers.launch.parameter_files import ParameterFileReader
 from archgen.importers.launch.scope_run import ScopeRun
-from archgen.importers.launch.server_parameters import read_server_parameters
+from archgen.importers.launch.server_parameters import ServerParameter, read_server_parameters
 
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
 MAX_NODES = 20_000
@@ -42,7 +40,7 @@ class LaunchRun(ScopeRun):
         self.taken: Counter[str] = Counter()
         """What was taken of the file that is read."""
         self.included: set[Path] = set()
-        self.server_parameters: list[tuple[str, Any, Span]] = []
+        self.server_parameters: list[ServerParameter] = []
         """Parameters of ROS 1 that stand outside of nodes, by their full names."""
         self.parameter_reader = ParameterFileReader()
         self._load_actions = load_actions
@@ -106,7 +104,8 @@ class LaunchRun(ScopeRun):
         scope = self.context.scope
         for name, value in read_server_parameters(self, action).items():
             if isinstance(scope.namespace, str):
-                self.server_parameters.append((join_names(scope.namespace, name), value, action.span))
+                full_name = join_names(scope.namespace, name)
+                self.server_parameters.append(ServerParameter(full_name, value, action.span, scope.conditions))
 
     def _run_group(self, action: LaunchAction) -> None:
         is_scoped = action.get("scoped", True)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import Substitution, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode
@@ -17,25 +18,43 @@ if TYPE_CHECKING:
 SIMULATED_TIME = "use_sim_time"
 
 
+class ServerParameter(NamedTuple):
+    """A parameter outside of nodes: its full name, and the conditions around, each with its verdict by the defaults."""
+
+    full_name: str
+    value: Any
+    span: Span
+    conditions: tuple[tuple[str, bool | None], ...]
+
+
 def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[str, Any]:
     """Give nodes what stands below their names; return what is for all nodes, and note the rest."""
     names = {node.full_name: node for node in nodes if node.full_name}
     for_all: dict[str, Any] = {}
-    for full_name, value, span in run.server_parameters:
-        if full_name == f"/{SIMULATED_TIME}":
-            for_all[SIMULATED_TIME] = value
-            continue
+    for full_name, value, span, conditions in run.server_parameters:
         parts = full_name.strip("/").split("/")
         owner = next(
             (names[name] for end in range(len(parts), 0, -1) if (name := "/" + "/".join(parts[:end])) in names), None
         )
+        # What is not sure to count is for nodes that run under the same conditions.
+        shared = () if owner is None else owner.conditions
+        others = [(words, verdict) for words, verdict in conditions if verdict is not True and words not in shared]
+        if any(verdict is False for _, verdict in others):
+            continue
+        if others:
+            run.add_note("param", f"what counts only {others[0][0]} is left out", span)
+            continue
+        if full_name == f"/{SIMULATED_TIME}":
+            for_all[SIMULATED_TIME] = value
+            continue
         if owner is None:
             message = f"`{full_name}` stands on the parameter server and below no node of the files"
             run.add_note("param", message, span, "give it to the nodes that read it")
             continue
         inner = parts[len(owner.full_name.strip("/").split("/")) :]
         if isinstance(value, CommandWords):
-            owner.parameter_commands.setdefault(".".join(inner), list(value))
+            if not _has_parameter(owner, inner):
+                owner.parameter_commands.setdefault(".".join(inner), list(value))
             continue
         for part in reversed(inner):
             value = {part: value}  # noqa: PLW2901 - wrapped from the inside
@@ -46,6 +65,13 @@ def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[st
         merge_values(owner.parameters, given)
         merge_values(owner.parameters, own)
     return for_all
+
+
+def _has_parameter(node: LaunchedNode, parts: list[str]) -> bool:
+    found: Any = node.parameters
+    for part in parts:
+        found = found.get(part) if isinstance(found, dict) else None
+    return found is not None
 
 
 def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, Any]:

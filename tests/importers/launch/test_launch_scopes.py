@@ -119,6 +119,35 @@ def test_names_of_ros_1_are_nearest_first(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('<param name="/n/x" value="1" if="true"/>{}', {"x": 1}),
+        ('<param name="/n/x" value="1" if="false"/>{}', None),
+        ('<group if="false"><param name="/n/x" value="1"/></group>{}', None),
+        ('<group if="false"><param name="/use_sim_time" value="true"/></group>{}', None),
+        ('<group if="false"><param name="/n/x" value="1"/>{}</group>', {"x": 1}),
+        ('<group if="$(arg open)"><param name="/n/x" value="1"/>{}</group>', {"x": 1}),
+        ('<param name="/n/x" value="1" if="$(arg open)"/>{}', None),
+        ('<param name="/n/own" command="cat a"/>{}', None),
+    ],
+)
+def test_parameters_of_the_server_count_under_their_conditions(
+    text: str, expected: dict[str, int] | None, tmp_path: Path
+) -> None:
+    node = '<node pkg="p" type="e" name="n"><param name="own" value="2"/></node>'
+    whole = f'<launch><arg name="open"/>{text.format(node)}</launch>'
+    imported = read_launch([write_files(tmp_path, a__launch=whole)])
+    (sections,) = imported.slices.values()
+    assert "ros" not in sections
+    assert sections["nodes"]["n"]["parameters"] == {**(expected or {}), "own": 2}
+    assert "parameter_commands" not in sections["nodes"]["n"]
+    left_out = [note.message for note in imported.notes if note.fate == "not taken"]
+    assert left_out == (
+        ["what counts only if $(var open) is left out"] if text.startswith('<param name="/n/x" value="1" if="$') else []
+    )
+
+
+@pytest.mark.parametrize(
     ("body", "expected"),
     [
         ('parameters=[{"a": {"b": load(), "c": 1}}]', "not taken: Node:15: the parameter `a.b` is computed: `load()`"),
