@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -88,6 +89,9 @@ def test_latencies_through_calls_add_up(tmp_path: Path) -> None:
     assert "asker_ask_request: out event data port asking_types::Ask_Request {" in system_text
     assert "server_x_ask_answer: out event data port asking_types::Ask_Response {" in system_text
     assert "is no end to end flow" not in system_text
+    said_of_calls = re.findall(r": subprogram access \S+ -> \S+ \{([^}]*)\}", system_text)
+    assert said_of_calls
+    assert "Latency" not in "".join(said_of_calls)  # which is that of one way
 
 
 def test_calls_come_back_without_their_ports(tmp_path: Path) -> None:

@@ -9,8 +9,7 @@ import yaml
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
 from archgen.views.generation.aadl_component_types import find_type
-from tests.generators.aadl_judge import judge_packages
-from tests.generators.test_aadl import write_files
+from tests.generators.test_aadl_devices import write_project
 from tests.importers.aadl.aadl_texts import merge_slices
 
 PROJECT = """\
@@ -58,16 +57,6 @@ chains:
   see: {through: [eyes.camera, eyes.both], deadline: 200 ms}
   see_right: {through: [eyes.right, eyes.both], deadline: 200 ms}
 """
-
-
-def write_project(folder: Path, text: str) -> dict[str, str]:
-    """Return the AADL files of a project, which are AADL."""
-    (folder / "archgen.yaml").write_text(text, encoding="utf-8")
-    project = check_project(folder)
-    assert not project.has_errors, [each.message for each in project.findings]
-    files = write_files(project, folder / "ws")
-    judge_packages(files)
-    return files
 
 
 def test_types_and_instances_come_back_as_they_were(tmp_path: Path) -> None:

@@ -15,18 +15,22 @@ from tests.running import ROOT, archgen_here
 
 PROJECT = """\
 archgen: 1
-project: {id: round_trip, title: Round trip}
+project: {id: round_trip, title: Round trip, description: There and back, version: 1.2.0}
 ros: {distro: jazzy}
 types:
-  Scan: {message: sensor_msgs/msg/LaserScan, comment: "What \\"it\\" sees: 100 %", size: 4 kB}
-  scan: {message: sensor_msgs/msg/PointCloud2}
+  Scan: {message: sensor_msgs/msg/LaserScan, comment: "What \\"it\\" sees: 100 %", size: 4 kB, version: 2.0.0, status: planned}
+  scan: {message: sensor_msgs/msg/PointCloud2, size: 5 GB, frame: base_link, deprecated: {use: Scan}}
   Twist: {message: geometry_msgs/msg/Twist}
   State: {fields: {state: uint8}, constants: {OK: {type: uint8, value: 1}}}
   Reset: {message: std_srvs/srv/Trigger}
   Go: {message: nav2_msgs/action/NavigateToPose}
   Map: {fields: {name: string, end: "float64[3]", more: {type: "float32[]", unit: m, comment: Cells}}}
 component_types:
-  camera: {functionality: Sees., inputs: {}, outputs: {image: sensor_msgs/msg/Image}}
+  camera:
+    functionality: Sees.
+    version: 1.0.0
+    inputs: {}
+    outputs: {image: {type: sensor_msgs/msg/Image, version: 1.0.0}}
   sieve: {functionality: Sifts., generic: [T], inputs: {in: T}, outputs: {out: T}}
   ghost: {outputs: {image: sensor_msgs/msg/Image}}
 groups:
@@ -44,6 +48,9 @@ groups:
         requirements: [R-1]
         tags: [fast]
         parameters: {rate: 10.0}
+        status: planned
+        contact: me@lab.org
+        urls: {manual: "https://lab.org"}
         operations: {clean: {}}
         hints:
           aadl:
@@ -57,9 +64,9 @@ groups:
     components:
       stop:
         role: filter
-        inputs: {scan: {from: sensing.lidar.scan}}
+        inputs: {scan: {from: sensing.lidar.scan, freshness: 1 s, optional: true}}
         outputs: {twist: Twist}
-        timing: {behaviour: event, wcet: 4 ms, bcet: 1 ms}
+        timing: {behaviour: event, wcet: 4 ms, bcet: 1 ms, response: 20 ms}
       base:
         role: sink
         inputs: {twist: {from: driving.stop.twist}}
@@ -78,6 +85,13 @@ nodes:
     host: pc
     package: urg
     executable: urg_node
+    description: Reads it.
+    tags: [own]
+    status: planned
+    name: urg
+    arguments: [--fast]
+    remaps: {/old: /new}
+    scheduling: fifo
     publishes: {scan: {topic: /scan, own_name: /raw}}
   stop:
     implements: driving.stop
@@ -86,8 +100,8 @@ nodes:
     publishes: {twist: {topic: /cmd_vel}}
   base: {implements: driving.base, host: board, namespace: /wheels, threads: 2, language: cpp, start: {phase: core}}
   server: {implements: driving.server, container: process, serves: {reset: /reset, go: /go}}
-containers: {process: {host: pc, threads: 2}}
-hosts: {pc: {scheduling: edf}, board: {}}
+containers: {process: {host: pc, threads: 2, package: box, executable: box, name: crate, namespace: /box}}
+hosts: {pc: {scheduling: edf, tags: [fast]}, board: {}}
 links: {lan: {connects: [pc, board], bandwidth: 100 Mbit/s, latency: {best: 100 us, worst: 2 ms}}}
 chains: {react: {title: Stops, through: [sensing.lidar, driving.stop, driving.base], deadline: 200 ms}}
 partners: {lab: Lab}
@@ -117,7 +131,29 @@ LOST = {
     "threads of nodes": ["/nodes/base/threads"],
     "languages": ["/nodes/base/language"],
     "quality of service but for the depth": ["/nodes/stop/subscribes/scan/qos/reliability"],
-    "constants of types": ["/types/State/constants"],
+    "description and version of the project": ["/project/description", "/project/version"],
+    "frames, sizes above 4 GiB, deprecations and constants of types": [
+        *(f"/types/scan/{key}" for key in ("deprecated", "frame", "size")),
+        "/types/State/constants",
+    ],
+    "versions of component types and ports": [
+        "/component_types/camera/version",
+        "/component_types/camera/outputs/image/version",
+    ],
+    "status, contact, addresses of components": [
+        f"/groups/sensing/components/lidar/{key}" for key in ("contact", "status", "urls")
+    ],
+    "freshness": ["/groups/driving/components/stop/inputs/scan/freshness"],
+    "whether an input is optional": ["/groups/driving/components/stop/inputs/scan/optional"],
+    "`response`": ["/groups/driving/components/stop/timing/response"],
+    "names, descriptions, tags, status, arguments, remappings, scheduling of nodes": [
+        f"/nodes/lidar_driver/{key}"
+        for key in ("arguments", "description", "name", "remaps", "scheduling", "status", "tags")
+    ],
+    "tags of hosts": ["/hosts/pc/tags"],
+    "programs and names of containers": [
+        f"/containers/process/{key}" for key in ("executable", "name", "namespace", "package")
+    ],
     "resources": ["/resources"],
     "what partners are called": ["/partners/lab/title"],
     "that a component has no inputs or no outputs": [

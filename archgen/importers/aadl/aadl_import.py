@@ -199,11 +199,11 @@ def _make_slice(**sections: Mapping[str, Any]) -> dict[str, Any]:
 
 def _subtract_base(body: Body, base_id: str, component_types: Mapping[str, Body]) -> Body:
     """Return a component type as made from another one: what it says otherwise than that."""
-    base = component_types[base_id]
-    if _adds_inside(body, _write_whole(base, component_types)):
+    base = _write_whole(component_types[base_id], component_types)
+    if _adds_inside(body, base):
         # A part was refined to one that has more: what is made from a type adds nothing inside of its parts.
         return body
-    return {"is": base_id, **_subtract(body, _write_whole(base, component_types))}
+    return {"is": base_id, **_subtract(body, base)}
 
 
 def _adds_inside(body: Body, base: Body) -> bool:

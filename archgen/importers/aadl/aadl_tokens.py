@@ -74,18 +74,17 @@ def scan_tokens(text: str, max_tokens: int = MAX_TOKENS) -> Iterator[Token]:
     """
     offset, size, match_token, tokens_left = 0, len(text), _TOKEN.match, max_tokens
     while offset < size:
+        match = match_token(text, offset)
+        kind = match.lastgroup or "" if match else "stray"
+        if match and kind == "blank":
+            offset = match.end()
+            continue
         tokens_left -= 1
         if tokens_left < 0:
             raise TooManyTokensError(offset)
-        match = match_token(text, offset)
         if match is None:
-            yield Token("stray", text[offset], offset, text[offset])
+            yield Token(kind, text[offset], offset, text[offset])
             offset += 1
-            continue
-        kind = match.lastgroup or ""
-        if kind == "blank":
-            tokens_left += 1
-            offset = match.end()
             continue
         if kind == "annex":
             end = text.find("**}", offset + 3)

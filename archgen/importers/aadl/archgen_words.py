@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
+from urllib.parse import unquote
 
 from archgen.importers.aadl.aadl_tree import AadlName, Path
 from archgen.importers.aadl.property_values import Scope, read_count, read_text, read_texts
 
-_ESCAPED_BYTES = re.compile(r"(?:%[0-9A-Fa-f]{2})+")
 _COMPONENT_KEYS = ("title", "description", "functionality", "owner", "role")
 _NODE_KEYS = {"package": "package_name", "executable": "executable_name"}
 
 
-def decode_text(text: str) -> str:
-    """Return a text in which `%` and two digits stand for a byte."""
-    return _ESCAPED_BYTES.sub(lambda match: bytes.fromhex(match[0].replace("%", "")).decode("utf-8", "replace"), text)
-
-
 def find_own_text(scope: Scope, path: Path, key: str) -> str:
     """Return the text of a property of archgen's, or nothing."""
-    return decode_text(read_text(scope.value(path, f"archgen::{key}")))
+    return unquote(read_text(scope.value(path, f"archgen::{key}")))
 
 
 def find_own_texts(scope: Scope, path: Path, key: str) -> dict[str, str]:
     """Return texts by the names that they begin with: `("drive: a.b, c.d")`."""
-    texts = (decode_text(text) for text in read_texts(scope.value(path, f"archgen::{key}")))
+    texts = (unquote(text) for text in read_texts(scope.value(path, f"archgen::{key}")))
     return {name: text for name, separator, text in (text.partition(": ") for text in texts) if separator}
 
 
@@ -43,7 +37,7 @@ def is_marked(scope: Scope, path: Path, key: str) -> bool:
 def read_component_words(scope: Scope) -> dict[str, Any]:
     """Return what archgen says of a component or group."""
     words: dict[str, Any] = {key: text for key in _COMPONENT_KEYS if (text := find_own_text(scope, (), key))}
-    tags = [decode_text(text) for text in read_texts(scope.value((), "archgen::tags"))]
+    tags = [unquote(text) for text in read_texts(scope.value((), "archgen::tags"))]
     return {**words, "tags": tags} if tags else words
 
 

@@ -255,13 +255,16 @@ class ClassifierResolver:
 
 
 def _choose_value(association: Property, initial_mode: str) -> Property:
-    """Return an association with the value that it has in the initial mode, as far as it says one."""
+    """Return an association with the value that it has in the initial mode: its own, else the one of all other modes."""
     values = ((association.value, association.modes), *association.other_values)
-    for index, (value, modes) in enumerate(values):
-        if index and _counts_in(modes, initial_mode):
-            rest = tuple(each for each in values if each[0] is not value)
-            return replace(association, value=value, modes=modes, other_values=rest, made_from=(association,))
-    return association
+    chosen = next((index for index, (_, modes) in enumerate(values) if _counts_in(modes, initial_mode)), None)
+    if chosen is None:
+        chosen = next((index for index, (_, modes) in enumerate(values) if not modes), 0)
+    if not chosen:
+        return association
+    value, modes = values[chosen]
+    rest = (*values[:chosen], *values[chosen + 1 :])
+    return replace(association, value=value, modes=modes, other_values=rest, made_from=(association,))
 
 
 def _counts_in(modes: Modes, initial_mode: str) -> bool:

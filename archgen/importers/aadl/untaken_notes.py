@@ -27,13 +27,14 @@ def tell_untaken(resolver: ClassifierResolver, used: UsedProperties, notes: Note
     """Tell all that was left out; `used` are the associations that were taken."""
     names = resolver.names
     written_over = used.ids | resolver.overridden
+    known_sets = frozenset(names.property_sets)
     for known in names.known.values():
         classifier = known.classifier
         for name, span in classifier.annexes:
             notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
         for association in _list_associations(classifier):
             if not known.is_of_library and id(association) not in written_over and not _is_computed(association, names):
-                _tell_property(association, frozenset(names.property_sets), notes)
+                _tell_property(association, known_sets, notes)
             elif id(association) in used.ids:
                 _tell_values(association, notes)
         _tell_modes(known, notes)
@@ -43,7 +44,7 @@ def tell_untaken(resolver: ClassifierResolver, used: UsedProperties, notes: Note
         for name, span in package.annexes:
             notes.add_counted(f"annex {name}", "the text of annexes is not read", span)
         for association in package.properties:
-            _tell_property(association, frozenset(names.property_sets), notes)
+            _tell_property(association, known_sets, notes)
 
 
 def _list_associations(classifier: Classifier) -> list[Property]:
@@ -78,7 +79,7 @@ def _tell_values(association: Property, notes: NoteList) -> None:
     name, others = association.name, association.other_values
     if others:
         values = f"{len(others) + 1} values, each for other modes"
-        words = f"{name} has {values}; the one of the initial mode counts, else the first"
+        words = f"{name} has {values}; the one of the initial mode counts, else that of no mode, else the first"
     elif association.modes:
         words = f"{name} has this value in {_name_modes(association.modes)}; here it counts always"
     else:

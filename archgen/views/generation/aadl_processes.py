@@ -50,7 +50,7 @@ _INTERNAL_KINDS = {
 """What a node has that is no port of a component, by its use."""
 
 
-def find_whole(architecture: Architecture, node: Node) -> Component | None:
+def _find_whole(architecture: Architecture, node: Node) -> Component | None:
     """Return the composed component that a node is the only process of."""
     for each in node.wholes:
         shell = architecture.shells.get(each)
@@ -98,7 +98,7 @@ class Process:
         self.subcomponents: list[dict[str, Any]] = []
         self.properties: list[AadlProperty] = []
         components = [found for each in node.implements if (found := architecture.find_component(each)) is not None]
-        self.whole = find_whole(architecture, node)
+        self.whole = _find_whole(architecture, node)
         """The composed component that it is the only process of."""
         self._hints = read_aadl_hints(*components, *([self.whole] if self.whole else []))
         self.behaviours = {

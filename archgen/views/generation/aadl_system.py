@@ -131,7 +131,8 @@ class SystemWriter:
                         continue
                     ends = (source.node.id, edge.output, reader.node.id, edge.input)
                     latency = self._latencies.get(ends)
-                    if latency:
+                    # A call takes its link there and back: the ports for its request and its answer say each.
+                    if latency and output.flow == "topic":
                         properties.append(make_property("Latency", write_range(*latency)))
                     route = self._routes[ends] = self._tree.join((source, output), (reader, part), properties)
                     self._bind_connection(route, source, reader, is_call=output.flow != "topic")

@@ -109,7 +109,10 @@ class TypeBook:
         properties = [
             *make_named_properties(own_name, declared.name),
             *make_text_properties(
-                description=declared.comment, status=declared.status, flow_kind="action" if flow == "action" else None
+                description=declared.comment,
+                status=declared.status,
+                version=declared.version,
+                flow_kind="action" if flow == "action" else None,
             ),
         ]
         if flow == "topic" and size and size.value <= _GREATEST_SIZE and size.value.denominator == 1:

@@ -17,12 +17,23 @@ NO_MODES = "3:1 modes: archgen has no modes: what changes when one follows anoth
         (
             "Period => 10 ms in modes (slow), 2 ms in modes (fast);",
             "2 ms",
-            ["Period has 2 values, each for other modes; the one of the initial mode counts, else the first"],
+            [
+                "Period has 2 values, each for other modes; the one of the initial mode counts, else that of no mode, else the first"
+            ],
         ),
         (
             "Period => 10 ms in modes (slow), 5 ms in modes (still);",
             "10 ms",
-            ["Period has 2 values, each for other modes; the one of the initial mode counts, else the first"],
+            [
+                "Period has 2 values, each for other modes; the one of the initial mode counts, else that of no mode, else the first"
+            ],
+        ),
+        (
+            "Period => 10 ms in modes (slow), 2 ms;",
+            "2 ms",
+            [
+                "Period has 2 values, each for other modes; the one of the initial mode counts, else that of no mode, else the first"
+            ],
         ),
         (
             "Period => 2 ms in modes (fast); Period => 10 ms in modes (slow);",

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.importers.aadl.archgen_words import decode_text
-from tests.importers.aadl.aadl_texts import import_text, merge_slices
+from tests.importers.aadl.aadl_texts import import_package, import_text, merge_slices
 
 MODEL = """
 property set archgen is
@@ -138,5 +137,7 @@ def test_a_model_of_archgen(tmp_path: Path) -> None:
     }
 
 
-def test_bytes_are_decoded() -> None:
-    assert decode_text("%22a%22 h%C3%B6he %zz %FF") == '"a" höhe %zz \ufffd'
+def test_bytes_are_decoded(tmp_path: Path) -> None:
+    properties = 'archgen::Title => "%22a%22 h%C3%B6he %zz %FF";'
+    imported = import_package(tmp_path, f"process p features x: out data port; properties {properties} end p;")
+    assert merge_slices(imported)["component_types"]["p"]["title"] == '"a" höhe %zz \ufffd'

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from itertools import islice
 from pathlib import Path
 
 import pytest
 
 from archgen.importers.aadl import aadl_import, hardware_tree, system_walk
 from archgen.importers.aadl.aadl_import import read_aadl
+from archgen.importers.aadl.aadl_tokens import TooManyTokensError, scan_tokens
 from archgen.importers.aadl.hardware_tree import HardwareTree
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
@@ -51,6 +53,13 @@ def test_what_a_model_holds_is_bounded_over_all_files(tmp_path: Path, monkeypatc
     with pytest.raises(ForeignFileError, match="more than 100 words and signs") as told:
         read_aadl(files)
     assert (Path(told.value.span.file), told.value.span.line) == (files[1], 2)
+
+
+def test_blanks_behind_the_last_word_that_fits_count_for_nothing() -> None:
+    text = "data a end a;  -- as many as fit\n"
+    assert [token.text for token in islice(scan_tokens(text, 5), 6)] == ["data", "a", "end", "a", ";", ""]
+    with pytest.raises(TooManyTokensError):
+        list(islice(scan_tokens(text, 4), 6))
 
 
 def test_other_encodings_are_read_and_told(tmp_path: Path) -> None:
