@@ -196,7 +196,8 @@ def _executed_shares(modules_by_test: Mapping[str, list[str]], folder: Path) -> 
 
 def _measure_together(test: str, request: pytest.FixtureRequest, folder: Path) -> dict[str, float]:
     """Return what a row of the table executed, measured with its neighbours; nothing where that run failed."""
-    selected = [each for each in COVERED_BY if any(f"[{each}]" in item.nodeid for item in request.session.items)]
+    items = (item for item in request.session.items if getattr(item, "function", None) is request.function)
+    selected = [str(item.callspec.params["test"]) for item in items if isinstance(item, pytest.Function)]
     first = selected.index(test) // _ROWS_AT_ONCE * _ROWS_AT_ONCE
     rows = {each: COVERED_BY[each] for each in selected[first : first + _ROWS_AT_ONCE]}
 

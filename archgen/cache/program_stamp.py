@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -25,7 +25,7 @@ WRITER_LIBRARIES = (
     "pyyaml",
 )
 """The libraries that decide what is written. The command line uses click beside them."""
-_FOLDER_SUFFIX = ".dist-info"
+_FOLDER_SUFFIXES = (".dist-info", ".egg-info")
 _EMIT_FOLDER = Path(__file__).resolve().parents[1] / "emit"
 
 
@@ -75,29 +75,38 @@ def _walk_files(top: Path) -> Iterator[str]:
 def _describe_libraries() -> str:
     """Describe the libraries: their versions, and for Graphviz's shared objects their sizes and dates."""
     folder_versions = _read_folder_versions()
-    versions = [f"{name} {folder_versions.get(name) or _library_version(name)}" for name in WRITER_LIBRARIES]
+    versions = [f"{name} {_choose_version(name, folder_versions.get(name, ()))}" for name in WRITER_LIBRARIES]
     # zlib decides the bytes of all that Python compresses, docx files above all.
     return f"{sys.version} {zlib.ZLIB_RUNTIME_VERSION} {versions} {sorted(_describe_graphviz())}"
 
 
-def _read_folder_versions() -> dict[str, str]:
-    """Return the versions of installed libraries by their names, as the folders that installers leave tell them."""
-    versions: dict[str, str] = {}
-    for place in sys.path:
+def _read_folder_versions() -> dict[str, list[str]]:
+    """Return the versions of installed libraries by their names, as the folders that installers leave tell them.
+
+    Of a library that is installed twice, all of them: a stamp may change too often, but never too seldom. "" stands for one
+    that is not told.
+    """
+    versions: dict[str, list[str]] = {}
+    for place in dict.fromkeys(sys.path):
         try:
             entries = os.listdir(place or ".")  # noqa: PTH208 - names are enough
         except OSError:
             continue
-        # Sorted: which of two is first must not hang on the order of the disk.
-        for name, _, version in sorted(
-            entry[: -len(_FOLDER_SUFFIX)].partition("-") for entry in entries if entry.endswith(_FOLDER_SUFFIX)
-        ):
-            # What is first on the path is what is imported.
-            versions.setdefault(re.sub("[-_.]+", "-", name).lower(), version)
+        # Sorted: a stamp must not hang on the order of the disk.
+        for entry in sorted(entries):
+            stem, suffix = os.path.splitext(entry)  # noqa: PTH122 - thousands of names
+            if suffix in _FOLDER_SUFFIXES:
+                name, _, version = stem.partition("-")
+                versions.setdefault(re.sub("[-_.]+", "-", name).lower(), []).append(version)
     return versions
 
 
-def _library_version(name: str) -> str:
+def _choose_version(name: str, folder_versions: Sequence[str]) -> str:
+    """Return what folders tell of a library's version, or, where they do not, what Python finds out."""
+    return " ".join(folder_versions) if folder_versions and all(folder_versions) else _read_metadata_version(name)
+
+
+def _read_metadata_version(name: str) -> str:
     # Imported here, and below: it takes long to load (it parses mails), and few installations lack such folders.
     from importlib import metadata
 

@@ -20,8 +20,11 @@ def command(rule: str | None, distro: str | None) -> None:
 
     For a component type that ships, such as `ros.amcl`, say where it was read.
     """
-    if distro is not None or (rule is not None and "." in rule):
-        explain_sources(rule or "", distro)
+    if rule is None and distro is not None:
+        msg = "--distro goes with a component type that ships, such as `ros.amcl`"
+        raise click.UsageError(msg)
+    if rule is not None and (distro is not None or "." in rule):
+        explain_sources(rule, distro)
         return
     from archgen import pipeline
     from archgen.diagnostics.text_columns import align_rows, find_width

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import sys
 from collections.abc import Iterator, Sequence
@@ -83,7 +84,8 @@ def command(  # noqa: PLR0913 - one for each option
 
 def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     """Return the words without launch arguments, and these by name: the last value counts, as for `ros2 launch`."""
-    matches = [None if Path(word).exists() else _LAUNCH_ARGUMENT.fullmatch(word) for word in words]
+    # By `os.path`: a value may be longer than a file's name can be, which a `Path` refuses.
+    matches = [None if os.path.exists(word) else _LAUNCH_ARGUMENT.fullmatch(word) for word in words]  # noqa: PTH110
     files = [word for word, match in zip(words, matches, strict=True) if match is None]
     if not files:
         msg = "name a file, too"

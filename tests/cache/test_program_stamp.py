@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -51,3 +52,42 @@ def test_libraries_and_graphviz_itself_are_named() -> None:
         assert "_graphviz" in stamp
         assert "lxml " in stamp
     assert program_stamp.stamp_writers().split()[0] != program_stamp.stamp_program().split()[0]
+
+
+def _describe_with(monkeypatch: pytest.MonkeyPatch, *places: Path) -> str:
+    monkeypatch.setattr("sys.path", [*map(str, places), *sys.path])
+    try:
+        return program_stamp._describe_libraries.__wrapped__()  # noqa: SLF001 - what stamps have of the libraries
+    finally:
+        monkeypatch.undo()
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (["lxml-1.0.dist-info"], ["lxml-1.1.dist-info"]),
+        # What an update left there hides nothing.
+        (["lxml-1.0.dist-info", "lxml-1.1.dist-info"], ["lxml-1.0.dist-info", "lxml-1.2.dist-info"]),
+        # Debian's packages, before a newer one of another place.
+        (["lxml-1.0-py3.12.egg-info"], ["lxml-1.1-py3.12.egg-info"]),
+        (["python_docx-1.0.dist-info"], ["python_docx-1.1.dist-info"]),
+    ],
+)
+def test_another_version_of_a_library_changes_the_stamp(
+    before: list[str], after: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stamps = []
+    for number, names in enumerate((before, before, after)):
+        for name in names:
+            (tmp_path / str(number) / name).mkdir(parents=True)
+        stamps.append(_describe_with(monkeypatch, tmp_path / str(number)))
+    assert stamps[0] == stamps[1] != stamps[2]
+
+
+def test_a_version_that_no_folder_tells_is_found_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A library that is installed for changing it has a folder without a version."""
+    (tmp_path / "lxml.egg-info").mkdir()
+    (tmp_path / "lxml.egg-info" / "PKG-INFO").write_text("Metadata-Version: 2.1\nName: lxml\nVersion: 0.0.7\n")
+    assert "'lxml 0.0.7'" in _describe_with(monkeypatch, tmp_path)
+    (tmp_path / "broken.zip").touch()
+    assert "'lxml 6." in _describe_with(monkeypatch, tmp_path / "broken.zip", tmp_path / "nowhere")

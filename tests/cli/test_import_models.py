@@ -162,6 +162,7 @@ def test_launch_arguments_are_given_and_remembered(run: Run) -> None:
     done = run("import", "a.launch.xml", "n:=second", "-o", "robot", "--merge")
     assert done.status == 2
     assert "a_launch.yaml does not come from this file: nothing was written" in done.err
+    assert run("import", "a.launch.xml", f"n:={'long' * 100}", "-o", "third").status == 0
     done = run("import", "a.launch.xml", "m:=first", "-o", "other")
     assert done.status == 1
     assert "declares an argument `m`\n  = help: did you mean `n`?" in done.err

@@ -44,7 +44,7 @@ def test_names_are_those_of_all_distributions() -> None:
     [
         (("ros.amlc",), "no component type named 'ros.amlc' ships with archgen; did you mean `ros.amcl`?"),
         (("x.y",), "no component type named 'x.y' ships with archgen"),
-        (("--distro", "jazzy"), "no component type named '' ships with archgen"),
+        (("--distro", "jazzy"), "--distro goes with a component type that ships, such as `ros.amcl`"),
         (("ros.amcl", "--distro", "foxy"), "nothing ships for the distribution 'foxy'; there are jazzy"),
         (("ros.amcl", "--distro", "rolling"), "'ros.amcl' does not ship for rolling; `archgen explain ros.amcl`"),
     ],

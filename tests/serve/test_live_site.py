@@ -27,9 +27,9 @@ def read_text(live_site: LiveSite, path: str) -> str:
 
 
 def without_live_parts(page: str) -> str:
-    assert "connect-src &#39;self&#39;" in page
+    assert "connect-src &#x27;self&#x27;" in page
     page = re.sub(
-        r' data-version="[^"]*"', "", page.replace("connect-src &#39;self&#39;", "connect-src &#39;none&#39;")
+        r' data-version="[^"]*"', "", page.replace("connect-src &#x27;self&#x27;", "connect-src &#x27;none&#x27;")
     )
     return re.sub(r"<(?:link|script)[^>]*live/live[^>]*>(?:</script>)?\n", "", page)
 

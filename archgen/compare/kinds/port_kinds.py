@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.kinds.component_keys import list_port_holders
 from archgen.compare.kinds.frame_kind import frame_reference
@@ -38,58 +42,63 @@ _PORT_FEATURES = (
     FeatureSpec("topics", 3, lambda relations, port: frozenset(relations.topics_by_port[port.id])),
     text_feature(1, "description", "external"),
 )
-OUTPUT = KindSpec(
-    "output",
-    None,
-    (
-        KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="carries"),
-        *_PORT_KEYS,
-        frame_reference("is given in"),
-        *OUTPUT_KEYS,
-        *ANNOTATIONS,
-    ),
-    elements=lambda version: version.architecture.outputs,
-    features=(
-        *_PORT_FEATURES,
-        FeatureSpec(
-            "readers",
-            5,
-            lambda relations, port: relations.common_ids(
-                "component", list_port_holders(relations.readers_by_output[port.id])
+
+
+def _make_port_kind(
+    name: str,
+    elements: Callable[[ArchitectureVersion], Mapping[str, Any]],
+    type_verb: str,
+    own_keys: Iterable[KeySpec],
+    other_ends: FeatureSpec,
+) -> KindSpec:
+    """Make the kind of a port: what inputs and outputs have in common, and what only one of the two has."""
+    return KindSpec(
+        name,
+        None,
+        (
+            KeySpec(
+                "type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb=type_verb
             ),
+            *_PORT_KEYS,
+            *own_keys,
+            *ANNOTATIONS,
+        ),
+        elements=elements,
+        features=(*_PORT_FEATURES, other_ends),
+        has_path_id=True,
+        parent_kind="component",
+        stays_in_parent=True,
+        parent=_port_parent,
+        owner=_port_owner,
+        components=lambda port, context: (_port_parent(port, context)[1],),
+    )
+
+
+OUTPUT = _make_port_kind(
+    "output",
+    lambda version: version.architecture.outputs,
+    "carries",
+    (frame_reference("is given in"), *OUTPUT_KEYS),
+    FeatureSpec(
+        "readers",
+        5,
+        lambda relations, port: relations.common_ids(
+            "component", list_port_holders(relations.readers_by_output[port.id])
         ),
     ),
-    has_path_id=True,
-    parent_kind="component",
-    stays_in_parent=True,
-    parent=_port_parent,
-    owner=_port_owner,
-    components=lambda port, context: (_port_parent(port, context)[1],),
 )
-INPUT = KindSpec(
+INPUT = _make_port_kind(
     "input",
-    None,
+    lambda version: version.architecture.inputs,
+    "expects",
     (
-        KeySpec("type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb="expects"),
-        *_PORT_KEYS,
         KeySpec("optional", lambda port, _: port.optional or None, Effect.SYSTEM),
         KeySpec("freshness", worsening=Worsening.LESS, verb="must be no older than"),
         frame_reference("is expected in"),
-        *ANNOTATIONS,
     ),
-    elements=lambda version: version.architecture.inputs,
-    features=(
-        *_PORT_FEATURES,
-        FeatureSpec(
-            "sources",
-            5,
-            lambda relations, port: relations.common_ids("output", relations.outputs_by_input[port.id]),
-        ),
+    FeatureSpec(
+        "sources",
+        5,
+        lambda relations, port: relations.common_ids("output", relations.outputs_by_input[port.id]),
     ),
-    has_path_id=True,
-    parent_kind="component",
-    stays_in_parent=True,
-    parent=_port_parent,
-    owner=_port_owner,
-    components=lambda port, context: (_port_parent(port, context)[1],),
 )

@@ -6,9 +6,8 @@ A function, not a template: to load Jinja2 and compile one takes a tenth of a se
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 
-from archgen.emit.site.html_text import replace_forbidden
+from archgen.emit.site.html_text import escape_html
 from archgen.frozen import dataclass
 
 
@@ -68,16 +67,16 @@ def write_frame(page: PageFrame) -> str:
 def _write_head(page: PageFrame) -> str:
     """Write all from the beginning to the navigation."""
     root = page.root
-    heading, title = _escape_text(page.heading), _escape_text(page.site_title)
-    version = _escape_text(page.version)
+    heading, title = escape_html(page.heading), escape_html(page.site_title)
+    version = escape_html(page.version)
     version_attribute = f' data-version="{version}"' if page.version else ""
-    revision = f'<span class="revision">{_escape_text(page.revision)}</span>\n' if page.revision else ""
+    revision = f'<span class="revision">{escape_html(page.revision)}</span>\n' if page.revision else ""
     return f"""\
 <!DOCTYPE html>
 <html lang="en"{version_attribute}>
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{_escape_text(page.policy)}">
+<meta http-equiv="Content-Security-Policy" content="{escape_html(page.policy)}">
 <meta name="referrer" content="no-referrer">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{heading}{f" · {title}" if page.heading != page.site_title else ""}</title>
@@ -90,7 +89,7 @@ def _write_head(page: PageFrame) -> str:
 <a class="skip" href="#content">Skip to the content</a>
 <header class="bar">
 <button type="button" class="menu" popovertarget="navigation" aria-label="Menu"><span aria-hidden="true"></span></button>
-<a class="project" href="{_escape_text(page.start)}">{title}</a>
+<a class="project" href="{escape_html(page.start)}">{title}</a>
 {revision}<button type="button" class="theme" hidden>Dark</button>
 </header>
 <div class="frame">"""
@@ -101,8 +100,8 @@ def _write_loaded_files(page: PageFrame) -> str:
     root = page.root
     lines: list[str] = []
     if page.explorer_style:
-        lines.append(f'<link rel="stylesheet" href="{_escape_text(page.explorer_style)}">')
-        lines.append(f'<script src="{_escape_text(page.explorer_begin)}"></script>')
+        lines.append(f'<link rel="stylesheet" href="{escape_html(page.explorer_style)}">')
+        lines.append(f'<script src="{escape_html(page.explorer_begin)}"></script>')
     if page.matrix:
         lines.append(f'<link rel="stylesheet" href="{root}assets/matrix.css">')
     lines.append(f'<script src="{root}assets/theme.js"></script>')
@@ -111,7 +110,7 @@ def _write_loaded_files(page: PageFrame) -> str:
         lines.append(f'<script src="{root}live/live.js" defer></script>')
     lines.append(f'<script src="{root}assets/site.js" defer></script>')
     lines.append(f'<script src="{root}assets/search.js" defer></script>')
-    lines += [f'<script src="{_escape_text(script)}" defer></script>' for script in page.explorer_scripts]
+    lines += [f'<script src="{escape_html(script)}" defer></script>' for script in page.explorer_scripts]
     return "".join([f"{line}\n" for line in lines])
 
 
@@ -119,9 +118,7 @@ def _write_crumbs(page: PageFrame) -> list[str]:
     if not page.crumbs:
         return []
     items = [
-        f'<li><a href="{_escape_text(href)}">{_escape_text(text)}</a></li>'
-        if href
-        else f"<li>{_escape_text(text)}</li>"
+        f'<li><a href="{escape_html(href)}">{escape_html(text)}</a></li>' if href else f"<li>{escape_html(text)}</li>"
         for text, href in page.crumbs
     ]
     return ['<nav class="crumbs" aria-label="Breadcrumb">\n<ol>', *items, "</ol>\n</nav>"]
@@ -129,12 +126,12 @@ def _write_crumbs(page: PageFrame) -> list[str]:
 
 def _write_heading(page: PageFrame) -> list[str]:
     """Write the title with its verdict, and the lines below it."""
-    heading = f"<h1>{_escape_text(page.heading)}</h1>"
+    heading = f"<h1>{escape_html(page.heading)}</h1>"
     lines = [f'<div class="title">{heading} {page.verdict}</div>' if page.verdict else heading]
     if page.lead:
-        lines.append(f'<p class="lead">{_escape_text(page.lead)}</p>')
+        lines.append(f'<p class="lead">{escape_html(page.lead)}</p>')
     if page.explorer_link:
-        lines.append(f'<p class="explore"><a href="{_escape_text(page.explorer_link)}">Show in explorer</a></p>')
+        lines.append(f'<p class="explore"><a href="{escape_html(page.explorer_link)}">Show in explorer</a></p>')
     if page.place:
         lines.append(f'<p class="written">Written in {page.place}</p>')
     return lines
@@ -144,12 +141,5 @@ def _write_contents(page: PageFrame) -> list[str]:
     """Write the list of a page's sections, unless there is but one."""
     if len(page.contents) <= 1:
         return []
-    items = [f'<li><a href="#{_escape_text(name)}">{_escape_text(title)}</a></li>' for title, name in page.contents]
+    items = [f'<li><a href="#{escape_html(name)}">{escape_html(title)}</a></li>' for title, name in page.contents]
     return ['<nav class="contents" aria-label="On this page">\n<ul>', *items, "</ul>\n</nav>"]
-
-
-@lru_cache(65536)
-def _escape_text(text: str) -> str:
-    """Escape text for an element or an attribute, quotes by their numbers."""
-    text = replace_forbidden(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
-    return text.replace("'", "&#39;").replace('"', "&#34;")

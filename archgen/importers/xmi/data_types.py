@@ -95,7 +95,7 @@ class DataTypes:
             literals = list_children(element, "EnumerationLiteral") if _is_enumeration(element) else []
             if not self._fields[name] and not literals:
                 continue
-            message = spell_message_name(name)
+            message = spell_message_name(name, {})
             reason = "no message of ROS can be called so, which needs letters and digits, a letter first"
             if message is not None:
                 first = first_types.setdefault(message, name)

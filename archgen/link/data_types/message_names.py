@@ -37,7 +37,8 @@ def name_messages(
             continue
         kind = find_message_kind(conceptual_type)
         package = _find_package(types, name, sources)
-        message = conceptual_type.message or _make_message_name(types, name, f"{package}/{kind}")
+        spelled_name = spell_message_name(name, types)
+        message = conceptual_type.message or (f"{package}/{kind}/{spelled_name}" if spelled_name else None)
         span = first_written_span(conceptual_type.message_at, conceptual_type.at, spans.get(name, conceptual_type.at))
         named_type = types[name] = replace(conceptual_type, message=message)
         conflict = _find_conflict(named_type, kind, span, first_types)
@@ -87,18 +88,14 @@ def _find_package(types: Mapping[str, ConceptualType], type_name: str, sources: 
     return sources.library_packages.get(library or "", f"{sources.project_id}_msgs")
 
 
-def spell_message_name(type_name: str) -> str | None:
-    """Return what the message of a type is called that is not generic; None where no name of ROS comes of it."""
-    words = _WORD.findall(type_name.rpartition("/")[2]) if type_name.isascii() else ()
-    name = "".join(word[:1].upper() + word[1:] for word in words)
-    return name if _MESSAGE_NAME.match(name) else None
+def spell_message_name(type_name: str, types: Mapping[str, ConceptualType]) -> str | None:
+    """Return what the message of a type is called, its words joined in capitals; None where no name of ROS comes of it.
 
-
-def _make_message_name(types: Mapping[str, ConceptualType], type_name: str, path: str) -> str | None:
-    """Return the message of a type's name, its words joined in capitals; None where no name of ROS comes of it."""
+    Only names of generic ones among `types` are taken apart.
+    """
     # Letters that ROS does not know cannot just be left out: `Größe` is no `Gre`.
     name = "".join(_list_words(types, type_name)) if type_name.isascii() else ""
-    return f"{path}/{name}" if _MESSAGE_NAME.match(name) else None
+    return name if _MESSAGE_NAME.match(name) else None
 
 
 def _list_words(types: Mapping[str, ConceptualType], type_name: str) -> Iterator[str]:

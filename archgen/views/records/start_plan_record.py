@@ -8,6 +8,7 @@ from archgen.bringup.plan_shapes import DroppedWait, RosLaunch, StartPlan, Start
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views.records.record_values import drop_unknown, record_quantity, to_plain
+from archgen.views.records.start_record import record_ready
 from archgen.views.start_phrases import NamedWait, name_waits
 
 VERSION = 1
@@ -33,7 +34,6 @@ def record_plan(
 
 
 def _record_step(step: StartStep) -> dict[str, object]:
-    ready = step.ready
     return drop_unknown(
         {
             "id": step.id,
@@ -48,13 +48,7 @@ def _record_step(step: StartStep) -> dict[str, object]:
             "ros": _record_launch(step.ros) if step.ros else None,
             "log_file": step.log_file,
             "waits": [_record_wait(wait) for wait in name_waits(step)],
-            "ready": drop_unknown(
-                {
-                    **{key: getattr(ready, key) for key in ("port", "file", "topic", "service", "log")},
-                    "wait": record_quantity(ready.wait, "ns"),
-                    "within": record_quantity(ready.within, "ns"),
-                }
-            ),
+            "ready": record_ready(step.ready),
             "seconds_at_most": step.seconds_at_most,
             "once": step.once or None,
             "state": step.state,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from archgen.emit.site.page_frame import PageFrame, write_frame
 
 HOSTILE = "<script>alert('1')</script> & \"more\"\x07"
-ESCAPED = "&lt;script&gt;alert(&#39;1&#39;)&lt;/script&gt; &amp; &#34;more&#34;\ufffd"
+ESCAPED = "&lt;script&gt;alert(&#x27;1&#x27;)&lt;/script&gt; &amp; &quot;more&quot;\ufffd"
 PLAIN = PageFrame(
     site_title="Rover",
     revision="",
@@ -35,7 +35,7 @@ def test_a_plain_page_has_its_title_its_content_and_nothing_empty() -> None:
     assert html.startswith('<!DOCTYPE html>\n<html lang="en">\n<head>\n')
     assert html.endswith("<p>Sees.</p>\n</main>\n</div>\n</body>\n</html>")
     assert "<title>Eye · Rover</title>" in html
-    assert '<meta http-equiv="Content-Security-Policy" content="default-src &#39;none&#39;">' in html
+    assert '<meta http-equiv="Content-Security-Policy" content="default-src &#x27;none&#x27;">' in html
     assert '<link rel="stylesheet" href="../assets/site.css">' in html
     # One section needs no list of sections; nothing is asked of a server.
     for absent in ("crumbs", "contents", "revision", "lead", "explore", "written", "matrix", "live/", "data-version"):

@@ -30,7 +30,7 @@ def test_each_page_has_the_policy_and_nothing_that_it_refuses(site: FileTree) ->
     for path, data in site.files.items():
         if path.endswith(".html"):
             text = data.decode()
-            assert PAGE_POLICY in text.replace("&#39;", "'"), path
+            assert PAGE_POLICY in text.replace("&#x27;", "'"), path
             assert '<meta name="referrer" content="no-referrer">' in text, path
             assert _INLINE.findall(text) == [], path
 
