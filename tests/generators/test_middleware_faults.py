@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -169,8 +170,19 @@ nodes: {a: {implements: g.a, host: one}, b: {implements: g.b, host: two}}
     assert 'type="CORBA"' not in files["deployment/one.cpf"]
     assert '<struct name="g_a" type="CORBA">' in files["deployment/two.cpf"]
     # `connectOperations` of the deployer takes only what its own program has.
-    assert 'g_b.join_start("g_a", "start_");' in files["deployment/two.ops"]
+    assert 'g_b.join_start_("g_a", "start_");' in files["deployment/two.ops"]
     assert "&GB::join_start, this, RTT::ClientThread" in files["src/g_b.cpp"]
+
+
+def test_what_joins_a_call_replaces_no_operation(tmp_path: Path) -> None:
+    """RTT keeps the later one of two operations of a name."""
+    text = (
+        f"archgen: 1\n{ASK}groups: {{g: {{components: {{s: {{outputs: {{ask: Ask}}}},"
+        " c: {inputs: {ask: s.ask}, operations: {join_ask: {}, join_ask_: {}}}}}}\n"
+    )
+    generate(write_project(tmp_path / "p", text), tmp_path / "w", "orocos")
+    names = re.findall(r'addOperation\("(\w+)"', (tmp_path / "w" / "orocos" / "src" / "g_c.cpp").read_text("utf-8"))
+    assert sorted(names) == ["join_ask", "join_ask_"]
 
 
 MANY = """\
