@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from archgen.products.workspace_product import WorkspaceRequest
-from tests.generators.middleware_projects import HAS_COMPILER, generate, write_project
+from tests.generators.middleware_projects import HAS_COMPILER, STAND_INS, generate, write_project
 from tests.generators.test_middlewares import MIDDLEWARES, compile_middleware
 from tests.running import contents
 
@@ -168,5 +170,74 @@ nodes: {a: {implements: g.a, host: one}, b: {implements: g.b, host: two}}
     assert 'type="CORBA"' not in files["deployment/one.cpf"]
     assert '<struct name="g_a" type="CORBA">' in files["deployment/two.cpf"]
     # `connectOperations` of the deployer takes only what its own program has.
-    assert 'g_b.join_start("g_a", "start_");' in files["deployment/two.ops"]
+    assert 'g_b.join_start_("g_a", "start_");' in files["deployment/two.ops"]
     assert "&GB::join_start, this, RTT::ClientThread" in files["src/g_b.cpp"]
+
+
+def test_what_joins_a_call_replaces_no_operation(tmp_path: Path) -> None:
+    """RTT keeps the later one of two operations of a name."""
+    text = (
+        f"archgen: 1\n{ASK}groups: {{g: {{components: {{s: {{outputs: {{ask: Ask}}}},"
+        " c: {inputs: {ask: s.ask}, operations: {join_ask: {}, join_ask_: {}}}}}}\n"
+    )
+    generate(write_project(tmp_path / "p", text), tmp_path / "w", "orocos")
+    names = re.findall(r'addOperation\("(\w+)"', (tmp_path / "w" / "orocos" / "src" / "g_c.cpp").read_text("utf-8"))
+    assert sorted(names) == ["join_ask", "join_ask_"]
+
+
+MANY = """\
+archgen: 1
+project: {id: p}
+ros: {definitions: {q_msgs/msg/None: "", q_msgs/msg/Many: "q_msgs/None[] nothing\\nstring[] texts\\nbool[] truths\\nint16[] numbers"}}
+types: {Many: q_msgs/msg/Many}
+groups: {g: {components: {a: {outputs: {many: Many}}}}}
+"""
+ROUND_TRIP = """\
+#include "p/%s"
+int main() {
+  p::q_msgs::Many sent;
+  sent.nothing.resize(3);
+  sent.texts = {"a", "", "bcd"};
+  sent.truths = {true, false};
+  sent.numbers = {1, -2};
+  p::encoding::Writer writer;
+  %s;
+  %s;
+  for (std::size_t size = 0; size <= writer.bytes.size(); ++size) {
+    p::q_msgs::Many read;
+    p::encoding::Reader reader{writer.bytes.data(), size, true};
+    %s;
+    %s;
+    const bool is_equal = read.nothing.size() == 3 && read.texts == sent.texts && read.truths == sent.truths && read.numbers == sent.numbers;
+    if (reader.is_good != (size == writer.bytes.size()) || (reader.is_good && !is_equal)) {
+      return 1;
+    }
+  }
+  return 0;
+}
+"""
+"""A record, and behind it a list of what takes no bytes; what is cut short anywhere is refused."""
+
+
+@needs_compiler
+@pytest.mark.build
+@pytest.mark.parametrize(
+    ("middleware", "header", "put", "get"),
+    [
+        ("orocos", "serialization.hpp", "writer.put({})", "reader.get({})"),
+        ("player", "encoding.hpp", "p::encoding::put(writer, {})", "p::encoding::get(reader, {})"),
+    ],
+    ids=("orocos", "player"),
+)
+def test_what_is_written_as_bytes_is_read_again(
+    middleware: str, header: str, put: str, get: str, tmp_path: Path
+) -> None:
+    generate(write_project(tmp_path / "p", MANY), tmp_path / "w", middleware)
+    calls = (
+        each.format(name) for each, name in ((put, "sent"), (put, "sent.nothing"), (get, "read"), (get, "read.nothing"))
+    )
+    (tmp_path / "main.cpp").write_text(ROUND_TRIP % (header, *calls), "utf-8")
+    folders = (tmp_path / "w" / middleware / "include", STAND_INS / middleware)
+    command = ["g++", "-std=c++14", *(f"-I{each}" for each in folders), "main.cpp", "-o", "main"]
+    subprocess.run(command, cwd=tmp_path, check=True)  # noqa: S603
+    subprocess.run([tmp_path / "main"], check=True)  # noqa: S603

@@ -204,12 +204,14 @@ def record_hosts(
         if host in clashing:
             continue
         ends = by_end.get(host, [])
-        remote = {
+        others = {
             each[f"{end}_id"]: {"id": each[f"{end}_id"], "name": each[f"{end}_name"], "host": each[f"{end}_host"]}
             for end in ("source", "target")
             for each in ends
             if each[f"{end}_host"] != host
         }
+        remote = sorted(others.values(), key=lambda each: places[each["id"]])
+        sources = {each["source_id"] for each in ends}
         hosts.append(
             {
                 "id": host,
@@ -217,11 +219,8 @@ def record_hosts(
                 "title": known[host].title if host in known else "",
                 "instances": by_host[host],
                 "connections": ends,
-                "remote": sorted(remote.values(), key=lambda each: places[each["id"]]),
-                "remote_sources": sorted(
-                    (remote[each] for each in dict.fromkeys(each["source_id"] for each in ends) if each in remote),
-                    key=lambda each: places[each["id"]],
-                ),
+                "remote": remote,
+                "remote_sources": [each for each in remote if each["id"] in sources],
                 "ports": _list_joined_ports(each for each in ends if each["target_host"] == host),
                 "place": write_place(spans[host]) if host in known else "",
             }

@@ -40,10 +40,11 @@ def _record_operation(types: MiddlewareTypes, words: str, operation: Operation, 
     if isinstance(request, str):
         request = {"request": request}
     given = dict(request or {})
-    arguments = [(name, types.find_called_type(written, operation.at)) for name, written in given.items()]
     if len(given) > _MOST_ARGUMENTS or len({name_member(name) for name in given}) < len(given):
         fields = [(name, types.find_written_type(written)) for name, written in given.items()]
         arguments = [("request", types.add_answer(f"{words} {operation.id} request", fields, operation.at))]
+    else:
+        arguments = [(name, types.find_called_type(written, operation.at)) for name, written in given.items()]
     answer = operation.response
     if isinstance(answer, Mapping):
         fields = [(name, types.find_written_type(written)) for name, written in answer.items()]

@@ -180,6 +180,12 @@ def _join_types(listed: Iterable[list[ValueType]]) -> list[ValueType]:
     ]
 
 
+def _list_port_types(own: SimulatedClass, *directions: str) -> list[ValueType]:
+    """Return the types of the ports that a class has, and not of those that are left out."""
+    kept = (listed for key, listed in own.port_types.items() if key in own.ports and key[0] in directions)
+    return [each for listed in kept for each in listed]
+
+
 def record_class(
     context: GenerationContext, types: SimulatedTypes, own: SimulatedClass, base: str
 ) -> tuple[dict[str, object], list[Diagnostic]]:
@@ -198,10 +204,9 @@ def record_class(
     parameters, parameter_findings = record_simulated_parameters(context, own.components)
     findings += parameter_findings
     own_names = [own.name.java, f"{own.name.java}Behaviour", "Behaviour", "Parameters"]
-    all_types = [each for listed in own.port_types.values() for each in listed]
-    server_types = [
-        each for (direction, _), listed in own.port_types.items() if direction == "server" for each in listed
-    ]
+    server_types = _list_port_types(own, "server")
+    read_or_sent_types = _list_port_types(own, "input", "output")
+    all_types = _list_port_types(own, "input", "output", "client", "server")
     package = f"{base}.{own.name.package}"
     spellings = types.spell_in_java(all_types, package, own_names)
     ports: dict[str, list[dict[str, object]]] = {"inputs": [], "outputs": [], "clients": [], "servers": []}
@@ -220,12 +225,6 @@ def record_class(
                 "place": write_place(port.at),
             }
         )
-    read_or_sent_types = [
-        each
-        for (direction, _), value_types in own.port_types.items()
-        if direction in {"input", "output"}
-        for each in value_types
-    ]
     is_shared = len(own.components) > 1 or first.component_type is not None
     return {
         "package": own.name.package,

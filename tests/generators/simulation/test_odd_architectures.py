@@ -122,6 +122,21 @@ def test_hostile_texts_compile(tmp_path: Path, attack: str) -> None:
     build_java(tmp_path / "ws")
 
 
+def test_the_type_of_a_port_that_is_left_out_is_not_imported(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+project: {id: p}
+types: {T: {message: p_msgs/msg/T, fields: {x: {type: int8}}}, U: {message: q_msgs/msg/U, fields: {x: {type: int8}}}}
+groups: {g: {components: {a: {outputs: {t: T, T: U}}}}}
+"""
+    (tmp_path / "archgen.yaml").write_text(text, "utf-8")
+    generate(tmp_path, tmp_path / "ws", backends=("python_simulation",))
+    (path,) = (tmp_path / "ws").rglob("g/a.py")
+    code = path.read_text("utf-8")
+    assert "import p_msgs as" in code
+    assert "q_msgs" not in code
+
+
 def test_nothing_at_all(tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text("archgen: 1\nproject: {id: nothing}\n", "utf-8")
     generate(tmp_path, tmp_path / "ws")
