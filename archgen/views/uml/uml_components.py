@@ -44,7 +44,8 @@ class UmlComponents:
         for name, body in component_types.items():
             self.class_ids[name] = registry.claim(f"component_type.{name}", read_mapping(body).get("hints"))
         self.templates = UmlTemplates(registry, types, component_types)
-        self._samples = {each.type_name: each.id for each in reversed(list(architecture.shells.values()))}
+        self.samples = {each.type_name: each.id for each in reversed(list(architecture.shells.values()))}
+        """The first composed component of each type: it shows what stands inside of the type."""
 
     def write_type(self, name: str) -> UmlTree:
         """Return a component type as a class."""
@@ -62,8 +63,7 @@ class UmlComponents:
         declared = self._list_parameter_types(base)
         tree["children"] += self._write_ports(f"type.{name}", body, inherited={})
         tree["children"] += self._features.write_features(f"type.{name}", body, declared)
-        # A composed component of the type shows what stands inside.
-        sample = self._samples.get(name, "")
+        sample = self.samples.get(name, "")
         tree["children"] += self._write_inside(f"type.{name}", body, sample, "nestedClassifier")
         self.templates.close_scope()
         return tree

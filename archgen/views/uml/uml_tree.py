@@ -53,6 +53,12 @@ def read_hints(hints: object) -> Mapping[str, Any]:
     return own if isinstance(own, Mapping) else {}
 
 
+def list_names(hints: Mapping[str, Any], key: str) -> list[str]:
+    """Return the names that an import kept below a key: a single one, or a list."""
+    kept = hints.get(key)
+    return [kept] if isinstance(kept, str) else [str(each) for each in kept] if isinstance(kept, list) else []
+
+
 def read_mapping(value: object) -> Mapping[str, Any]:
     """Return a mapping of the packed project; an empty one for what is none."""
     return value if isinstance(value, Mapping) else {}
