@@ -11,6 +11,8 @@ from archgen.model.element_ids import make_id
 UmlTree = dict[str, Any]
 """An element: `tag`, `attributes` as pairs, `text`, `children`."""
 OWN_PREFIX = "archgen."
+TYPE_PREFIX = "type_."
+"""What paths in component types begin with. No id ends so: a group may be called `type`."""
 _USABLE_ID = re.compile(r"[^\s#<>&\"']{1,200}\Z")
 
 

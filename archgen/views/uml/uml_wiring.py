@@ -9,7 +9,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name
 from archgen.model.component import Connection, Input
 from archgen.views.uml.uml_components import PortPath, UmlComponents, name_interface
-from archgen.views.uml.uml_tree import IdRegistry, UmlTree, list_names, make_tree, read_hints, read_mapping
+from archgen.views.uml.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, list_names, make_tree, read_hints, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
 
@@ -130,7 +130,7 @@ class UmlWiring:
     def write_delegations(self, composed: Iterator[tuple[str, Mapping[str, Any]]]) -> None:
         """Write what outputs of composed components give on. `composed` are these with their paths."""
         for path, body in composed:
-            place = self._components.samples.get(path.removeprefix("type."), "") if _is_type(path) else path
+            place = self._components.samples.get(path.removeprefix(TYPE_PREFIX), "") if _is_type(path) else path
             for name, port in read_mapping(body.get("outputs")).items():
                 given = self._architecture.shell_ports.get(f"output {place}.{name}", ()) if place else ()
                 inner = [(_move(each, place, path), each.rpartition(".")[2]) for each in given]
@@ -155,12 +155,12 @@ def _read_references(path: str, written: object, around: str = "") -> list[PortP
 
 
 def _is_type(path: str) -> bool:
-    return path.startswith("type.")
+    return path.startswith(TYPE_PREFIX)
 
 
 def _split_type(path: str, bodies: Mapping[str, Any]) -> tuple[str, str]:
     """Return the component type of a path in it, and the path inside."""
-    words = path.removeprefix("type.").split(".")
+    words = path.removeprefix(TYPE_PREFIX).split(".")
     for length in (2, 1):
         name = ".".join(words[:length])
         if name in bodies:
