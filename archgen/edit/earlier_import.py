@@ -58,18 +58,18 @@ def list_known_ids(slices: Mapping[str, Mapping[str, Any]], tool: str) -> dict[s
     """Return the ids of elements by those that they have in another tool (`hints: {uml: {id: ...}}`)."""
     known: dict[str, str] = {}
     for data in slices.values():
-        for path, tool_id in _walk_hints(data, tool, ()):
-            known.setdefault(tool_id, path[-1])
+        for element_id, tool_id in _walk_hints(data, tool):
+            known.setdefault(tool_id, element_id)
     return known
 
 
-def _walk_hints(data: Mapping[str, Any], tool: str, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the path of each element with its id in another tool."""
+def _walk_hints(data: Mapping[str, Any], tool: str) -> Iterator[tuple[str, str]]:
+    """Yield the id of each element with that in another tool."""
     for key, value in data.items():
         if isinstance(value, Mapping):
             if tool_id := read_tool_id(value, tool):
-                yield (*path, key), tool_id
-            yield from _walk_hints(value, tool, (*path, key))
+                yield key, tool_id
+            yield from _walk_hints(value, tool)
 
 
 def read_tool_id(body: Mapping[str, Any], tool: str) -> str:
