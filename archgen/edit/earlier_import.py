@@ -13,6 +13,8 @@ from archgen.syntax.project_files import read_text_file
 
 _PLACE_KEYS = frozenset({"from", "implements", "connects"})
 """Keys whose values name components by their groups."""
+_TOOLS = {"xmi": "uml"}
+"""What `hints` call the tools whose ids an import leaves there, by format where it has another name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +25,11 @@ class ImportOrigin:
     file_names: tuple[str, ...]
     arguments: tuple[str, ...] = ()
     """Launch arguments as they were given, `NAME:=VALUE`: with others the same file is another model."""
+
+    @property
+    def tool(self) -> str:
+        """Return what `hints` call the tool."""
+        return _TOOLS.get(self.format_name, self.format_name)
 
     @property
     def header(self) -> str:
