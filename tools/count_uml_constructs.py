@@ -15,7 +15,7 @@ from pathlib import Path
 
 from archgen.importers.foreign.foreign_import import ForeignFileError
 from archgen.importers.xmi.import_ledger import NOT_TAKEN, NOTED, TAKEN, ImportLedger
-from archgen.importers.xmi.leftovers import TOOL_TAGS
+from archgen.importers.xmi.uml_catalogue import TOOL_TAGS
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, is_written_here
 from archgen.importers.xmi.xmi_files import XmiDocument, read_documents
 from archgen.importers.xmi.xmi_import import convert_documents

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import sys
 from collections.abc import Iterator, Sequence
@@ -84,8 +83,7 @@ def command(  # noqa: PLR0913 - one for each option
 
 def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     """Return the words without launch arguments, and these by name: the last value counts, as for `ros2 launch`."""
-    # By `os.path`: a value may be longer than a file's name can be, which a `Path` refuses.
-    matches = [None if os.path.exists(word) else _LAUNCH_ARGUMENT.fullmatch(word) for word in words]  # noqa: PTH110
+    matches = [None if _is_there(word) else _LAUNCH_ARGUMENT.fullmatch(word) for word in words]
     files = [word for word, match in zip(words, matches, strict=True) if match is None]
     if not files:
         msg = "name a file, too"
@@ -98,7 +96,7 @@ def _split_words(words: Sequence[str]) -> tuple[ImportFormat, list[Path]]:
     named = IMPORT_FORMATS.get(words[0])
     if named and len(words) > 1:
         return named, _find_files(words[1:])
-    if len(words) > 1 and not Path(words[0]).exists():
+    if len(words) > 1 and not _is_there(words[0]):
         _refuse_format(words[0])
     files = _find_files(words)
     formats = {known.name: known for file in files if (known := guess_format(file))}
@@ -119,10 +117,18 @@ def _refuse_format(word: str) -> None:
 
 def _find_files(words: Sequence[str]) -> list[Path]:
     for word in words:
-        if not Path(word).exists():
+        if not _is_there(word):
             msg = f"there is no file {word}"
             raise click.UsageError(make_visible(msg))
     return [Path(word) for word in words]
+
+
+def _is_there(word: str) -> bool:
+    try:
+        return Path(word).exists()
+    except OSError:
+        # Longer than a name can be: the value of an argument, or nothing.
+        return False
 
 
 def _refuse_options(import_format: ImportFormat, given: dict[str, object]) -> None:

@@ -13,6 +13,8 @@ from archgen.syntax.project_files import read_text_file
 
 _PLACE_KEYS = frozenset({"from", "implements", "connects"})
 """Keys whose values name components by their groups."""
+_TOOLS = {"xmi": "uml"}
+"""What `hints` call the tools whose ids an import leaves there, by format where it has another name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +25,11 @@ class ImportOrigin:
     file_names: tuple[str, ...]
     arguments: tuple[str, ...] = ()
     """Launch arguments as they were given, `NAME:=VALUE`: with others the same file is another model."""
+
+    @property
+    def tool(self) -> str:
+        """Return what `hints` call the tool."""
+        return _TOOLS.get(self.format_name, self.format_name)
 
     @property
     def header(self) -> str:
@@ -58,18 +65,18 @@ def list_known_ids(slices: Mapping[str, Mapping[str, Any]], tool: str) -> dict[s
     """Return the ids of elements by those that they have in another tool (`hints: {uml: {id: ...}}`)."""
     known: dict[str, str] = {}
     for data in slices.values():
-        for path, tool_id in _walk_hints(data, tool, ()):
-            known.setdefault(tool_id, path[-1])
+        for element_id, tool_id in _walk_hints(data, tool):
+            known.setdefault(tool_id, element_id)
     return known
 
 
-def _walk_hints(data: Mapping[str, Any], tool: str, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the path of each element with its id in another tool."""
+def _walk_hints(data: Mapping[str, Any], tool: str) -> Iterator[tuple[str, str]]:
+    """Yield the id of each element with that in another tool."""
     for key, value in data.items():
         if isinstance(value, Mapping):
             if tool_id := read_tool_id(value, tool):
-                yield (*path, key), tool_id
-            yield from _walk_hints(value, tool, (*path, key))
+                yield key, tool_id
+            yield from _walk_hints(value, tool)
 
 
 def read_tool_id(body: Mapping[str, Any], tool: str) -> str:

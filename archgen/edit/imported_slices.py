@@ -33,8 +33,6 @@ _HOLDERS = frozenset(
 """Keys below which elements stand by their ids."""
 _GROWING_KEYS = frozenset({"from", "implements", "connects"})
 """Keys whose lists people make longer: what they added to what the model says stays."""
-_TOOLS = {"xmi": "uml"}
-"""What `hints` call the tools whose ids an import leaves there, by format."""
 
 
 @dataclass(slots=True)
@@ -91,7 +89,7 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
     prefix = "" if target == root else f"{target.relative_to(root).as_posix()}/"
     files = FolderFiles(root) if root.is_dir() else None
     earlier = read_earlier_import(target, origin) if merge else {}
-    new_slices, moves = keep_places(earlier, imported.slices, _TOOLS.get(origin.format_name, origin.format_name))
+    new_slices, moves = keep_places(earlier, imported.slices, origin.tool)
     slices = [
         _plan_slice(f"{prefix}{name}", data, imported.comments.get(name, {}), origin, files, merge=merge)
         for name, data in new_slices.items()
@@ -110,8 +108,7 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
 
 def find_known_ids(origin: ImportOrigin, folder: Path) -> dict[str, str]:
     """Return the ids that elements have since an earlier import, by those of the other tool."""
-    earlier = read_earlier_import(folder.resolve(), origin)
-    return list_known_ids(earlier, _TOOLS.get(origin.format_name, origin.format_name))
+    return list_known_ids(read_earlier_import(folder.resolve(), origin), origin.tool)
 
 
 def find_root(folder: Path) -> Path | None:

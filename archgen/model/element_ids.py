@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 import unicodedata
-from collections.abc import Mapping
-from collections.abc import Set as AbstractSet
+from collections.abc import Container, Mapping
 
 ElementFiles = Mapping[tuple[str, str], tuple[str, ...]]
 """The files in which elements are written, by kind (`group`, `component`, `node`) and complete id, in order of appearance."""
@@ -66,7 +65,7 @@ def make_id(name: str, prefix: str) -> str:
     return element_id
 
 
-def make_unique_id(wanted_id: str, used_ids: AbstractSet[str], first_number: int = 2) -> str:
+def make_unique_id(wanted_id: str, used_ids: Container[str], first_number: int = 2) -> str:
     """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ...
 
     One that is too long is cut.

@@ -142,6 +142,8 @@ def test_errors_that_come_with_a_model_are_shown(run: Run) -> None:
         (("robot.toy", "rate:=3", "-o", "x"), "toy takes no arguments such as rate:=..., as launch files do"),
         (("launch", "rate:=3", "-o", "x"), "there is no file launch"),
         (("rate:=3", "-o", "x"), "name a file, too"),
+        (("robot.toy", f"rate:={'3' * 300}", "-o", "x"), "toy takes no arguments such as rate:="),
+        (("x" * 300,), "there is no file xxx"),
     ],
 )
 def test_wrong_words_are_told(words: tuple[str, ...], message: str, run: Run) -> None:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from collections.abc import Set as AbstractSet
 from types import MappingProxyType
-from typing import cast
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
@@ -33,8 +31,7 @@ def choose_id(
     wanted = make_id(name or get_name(element) or get_kind(element), kind)
     # Thousands of one name: counting on from 2 for each would take time with the square of the model.
     first_number = len(taken) if number_id(wanted, _MANY_NUMBERS) in taken else 2
-    # A mapping answers `in` as a set does, and need not be copied.
-    return make_unique_id(wanted, cast("AbstractSet[str]", taken), first_number)
+    return make_unique_id(wanted, taken, first_number)
 
 
 def say_title(name: str, element_id: str) -> dict[str, object]:

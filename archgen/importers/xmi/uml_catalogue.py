@@ -37,7 +37,8 @@ _SILENT_TAGS = frozenset(
 """Parts of elements that are read with them, or say again what stands elsewhere."""
 _OWNING_TAGS = frozenset({"packagedElement", "ownedMember", "nestedPackage", "nestedClassifier"})
 _TEMPLATE_KINDS = frozenset({"TemplateSignature", "RedefinableTemplateSignature", "TemplateBinding"})
-_TOOL_TAGS = frozenset({"Extension", "eAnnotations", "Documentation"})
+TOOL_TAGS = frozenset({"Extension", "eAnnotations", "Documentation"})
+"""What a tool keeps for itself."""
 _WHY = {
     "UseCase": "use cases of the language have actors and steps in words",
     "Actor": "it has no component of its own",
@@ -119,7 +120,7 @@ class _CatalogueWalk:
         """Sort what stands in a package, a class or a node, to any depth."""
         for child in element.children:
             kind = get_kind(child)
-            if child.tag in _TOOL_TAGS:
+            if child.tag in TOOL_TAGS:
                 self._count_tool_part(child)
             elif "xmi:idref" in child.attributes or "href" in child.attributes:
                 self._visit_reference(child)
@@ -159,7 +160,7 @@ class _CatalogueWalk:
         self.catalogue.packages[feature] = package
         for child in feature.children:
             kind = get_kind(child)
-            if child.tag in _TOOL_TAGS:
+            if child.tag in TOOL_TAGS:
                 self._count_tool_part(child)
             is_reference = "xmi:idref" in child.attributes or "href" in child.attributes
             if kind in self._lists and child.tag not in _SILENT_TAGS and not is_reference:
@@ -180,7 +181,7 @@ class _CatalogueWalk:
     def note_surroundings(self, document: XmiDocument) -> None:
         """Note what a tool keeps for itself, and the stereotypes that it wrote outside of the model."""
         for child in document.surroundings:
-            if child.tag in _TOOL_TAGS:
+            if child.tag in TOOL_TAGS:
                 self._count_tool_part(child)
         for tag, parts in self._tool_parts.items():
             if tag != "Documentation":
@@ -191,7 +192,7 @@ class _CatalogueWalk:
         for child in document.surroundings:
             if child in self._index.flow_stereotypes:
                 self._ledger.take(child, child.tag)
-            elif child.tag not in _TOOL_TAGS:
+            elif child.tag not in TOOL_TAGS:
                 stereotypes[f"{child.prefix}:{child.tag}"].append(child)
         for name, uses in stereotypes.items():
             owners = f"{len(uses)} elements" if len(uses) > 1 else "one element"

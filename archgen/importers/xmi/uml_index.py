@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.xml_tree import XmlElement
@@ -43,9 +42,6 @@ _SAME_ARCHIVE = "local:"
 """What the addresses begin with by which MagicDraw leads from one file of an archive to another."""
 
 
-_NO_IDS: Mapping[str, str] = MappingProxyType({})
-
-
 @dataclass(frozen=True, slots=True)
 class Reference:
     """What an element names: another element of the files, or only a name where that lies elsewhere."""
@@ -59,9 +55,9 @@ class Reference:
 class UmlIndex:
     """All elements of the documents. `doubled` are those whose id another one has already."""
 
-    def __init__(self, documents: Sequence[XmiDocument], known_ids: Mapping[str, str] = _NO_IDS) -> None:
+    def __init__(self, documents: Sequence[XmiDocument], known_ids: Mapping[str, str] | None = None) -> None:
         self._documents = documents
-        self.known_ids = known_ids
+        self.known_ids = known_ids or {}
         """Ids of the language that elements have since an earlier import, by their `xmi:id`."""
         self._document_of: dict[XmlElement, int] = {}
         self._parents: dict[XmlElement, XmlElement] = {}

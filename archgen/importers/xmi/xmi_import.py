@@ -35,7 +35,7 @@ def read_xmi(files: Sequence[Path], known_ids: Mapping[str, str] | None = None) 
     `known_ids` are ids that elements have since an earlier import, by their `xmi:id`: a new name is a new title.
     """
     documents = read_documents(files)
-    index = UmlIndex(documents, known_ids or {})
+    index = UmlIndex(documents, known_ids)
     return convert_documents(documents, index, ImportLedger(index))
 
 

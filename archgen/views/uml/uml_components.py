@@ -11,7 +11,15 @@ from archgen.model.component import Component
 from archgen.model.path_resolver import title_from_id
 from archgen.views.uml.uml_features import UmlFeatures
 from archgen.views.uml.uml_templates import UmlTemplates
-from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_comments, make_tree, read_hints, read_mapping
+from archgen.views.uml.uml_tree import (
+    TYPE_PREFIX,
+    IdRegistry,
+    UmlTree,
+    make_comments,
+    make_tree,
+    read_hints,
+    read_mapping,
+)
 from archgen.views.uml.uml_types import UmlTypes
 
 PortPath = tuple[str, str]
@@ -44,7 +52,8 @@ class UmlComponents:
         for name, body in component_types.items():
             self.class_ids[name] = registry.claim(f"component_type.{name}", read_mapping(body).get("hints"))
         self.templates = UmlTemplates(registry, types, component_types)
-        self._samples = {each.type_name: each.id for each in reversed(list(architecture.shells.values()))}
+        self.samples = {each.type_name: each.id for each in reversed(list(architecture.shells.values()))}
+        """The first composed component of each type: it shows what stands inside of the type."""
 
     def write_type(self, name: str) -> UmlTree:
         """Return a component type as a class."""
@@ -60,11 +69,10 @@ class UmlComponents:
             general_id = self._registry.claim(f"generalization.{name}")
             tree["children"].append(make_tree("generalization", "Generalization", general_id, general=general))
         declared = self._list_parameter_types(base)
-        tree["children"] += self._write_ports(f"type.{name}", body, inherited={})
-        tree["children"] += self._features.write_features(f"type.{name}", body, declared)
-        # A composed component of the type shows what stands inside.
-        sample = self._samples.get(name, "")
-        tree["children"] += self._write_inside(f"type.{name}", body, sample, "nestedClassifier")
+        tree["children"] += self._write_ports(f"{TYPE_PREFIX}{name}", body, inherited={})
+        tree["children"] += self._features.write_features(f"{TYPE_PREFIX}{name}", body, declared)
+        sample = self.samples.get(name, "")
+        tree["children"] += self._write_inside(f"{TYPE_PREFIX}{name}", body, sample, "nestedClassifier")
         self.templates.close_scope()
         return tree
 
@@ -143,7 +151,7 @@ class UmlComponents:
         return [
             self._write_component(f"{path}.{name}", read_mapping(each), f"{place}.{name}", tag)
             for name, each in inside.items()
-            if path.startswith("type.") or self._wants(f"{path}.{name}")
+            if path.startswith(TYPE_PREFIX) or self._wants(f"{path}.{name}")
         ]
 
     def _write_ports(

@@ -6,7 +6,15 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from archgen.model.architecture import Architecture
-from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_comments, make_tree, read_hints, read_mapping
+from archgen.views.uml.uml_tree import (
+    IdRegistry,
+    UmlTree,
+    list_names,
+    make_comments,
+    make_tree,
+    read_hints,
+    read_mapping,
+)
 
 
 def write_deployment(
@@ -55,17 +63,11 @@ def _write_hints(
     registry: IdRegistry, name: str, host: UmlTree, host_id: str, hints: Mapping[str, Any]
 ) -> list[UmlTree]:
     """Write the execution environments and the libraries that an import found at a node."""
-    for key in ("middleware", "artifacts"):
-        kept = hints.get(key)
-        names = [kept] if isinstance(kept, str) else kept if isinstance(kept, list) else []
-        for number, each in enumerate(map(str, names), 1):
-            path = f"{name}.{number}"
-            if key == "middleware":
-                environment_id = registry.claim(f"environment.{path}")
-                host["children"].append(make_tree("nestedNode", "ExecutionEnvironment", environment_id, each))
+    for number, each in enumerate(list_names(hints, "middleware"), 1):
+        environment_id = registry.claim(f"environment.{name}.{number}")
+        host["children"].append(make_tree("nestedNode", "ExecutionEnvironment", environment_id, each))
     libraries = []
-    kept = hints.get("artifacts")
-    for number, each in enumerate(map(str, kept if isinstance(kept, list) else ()), 1):
+    for number, each in enumerate(list_names(hints, "artifacts"), 1):
         artifact_id = registry.claim(f"library.{name}.{number}")
         libraries.append(make_tree("packagedElement", "Artifact", artifact_id, each))
         _deploy(registry, host, host_id, artifact_id, f"library.{name}.{number}")

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from typing import Any
 
+from archgen.model.quantity import parse_quantity
 from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_comments, make_tree, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
 _DECLARATION_KEYS = frozenset(
     {"type", "value", "unit", "range", "choices", "description", "read_only", "visibility", "from", "hints"}
 )
-_QUANTITY = re.compile(r"([0-9]+(?:\.[0-9]+)?) *(ns|us|ms|s|min|h|Hz|kHz)\Z")
-_SECONDS = {
-    "ns": Decimal("1e-9"),
-    "us": Decimal("1e-6"),
-    "ms": Decimal("1e-3"),
-    "s": Decimal(1),
-    "min": Decimal(60),
-    "h": Decimal(3600),
-}
 
 
 class UmlFeatures:
@@ -81,19 +72,16 @@ class UmlFeatures:
     def _write_period(self, path: str, timing: Mapping[str, Any]) -> list[UmlTree]:
         """Return the property `sample`: the period in seconds, 0 where an arrival or a call sets it off."""
         words = str(timing.get("period") or timing.get("rate") or "")
-        quantity = _QUANTITY.match(words)
-        if quantity is None:
-            return []
-        amount, unit = Decimal(quantity[1]), quantity[2]
-        if unit.endswith("Hz"):
-            hertz = amount * (1000 if unit == "kHz" else 1)
-            seconds = Decimal(1) / hertz if hertz else Decimal(0)
+        if period := parse_quantity(words, "duration"):
+            nanoseconds = period.value
+        elif rate := parse_quantity(words, "frequency"):
+            nanoseconds = 10**9 / rate.value if rate.value else rate.value
         else:
-            seconds = amount * _SECONDS[unit]
+            return []
         element_id = self._registry.claim(f"parameter.{path}.sample")
         real = self._types.refer_parameter("float")
         tree = make_tree("ownedAttribute", "Property", element_id, "sample", visibility="public", type=real)
-        number = format(seconds.quantize(Decimal("1e-9")).normalize(), "f")
+        number = format(Decimal(round(nanoseconds)).scaleb(-9).normalize(), "f")
         tree["children"].append(self._types.write_default(element_id, "float", number, name=words))
         return [tree]
 

@@ -11,6 +11,8 @@ from archgen.model.element_ids import make_id
 UmlTree = dict[str, Any]
 """An element: `tag`, `attributes` as pairs, `text`, `children`."""
 OWN_PREFIX = "archgen."
+TYPE_PREFIX = "type_."
+"""What paths in component types begin with. No id ends so: a group may be called `type`."""
 _USABLE_ID = re.compile(r"[^\s#<>&\"']{1,200}\Z")
 
 
@@ -51,6 +53,12 @@ def read_hints(hints: object) -> Mapping[str, Any]:
     """Return what the hints of an element say for UML."""
     own = hints.get("uml") if isinstance(hints, Mapping) else None
     return own if isinstance(own, Mapping) else {}
+
+
+def list_names(hints: Mapping[str, Any], key: str) -> list[str]:
+    """Return the names that an import kept below a key: a single one, or a list."""
+    kept = hints.get(key)
+    return [kept] if isinstance(kept, str) else [str(each) for each in kept] if isinstance(kept, list) else []
 
 
 def read_mapping(value: object) -> Mapping[str, Any]:

@@ -71,13 +71,11 @@ class UmlTypes:
     def write_types(self, *, only_used: bool) -> list[UmlTree]:
         """Return the elements of all types; with a selection those that are named."""
         trees: dict[str, UmlTree] = {}
-        waiting = [name for name in self._types if not only_used or name in self._written]
-        while waiting:
-            name = waiting.pop(0)
-            if name not in trees:
-                before = set(self._written)
+        wanted = self._written if only_used else self._types.keys()
+        # A type may name others that nothing named before.
+        while names := [name for name in self._types if name in wanted and name not in trees]:
+            for name in names:
                 trees[name] = self._write_type(name, read_mapping(self._types[name]))
-                waiting += [each for each in self._types if each in self._written - before and each not in trees]
         ordered = [trees[name] for name in self._types if name in trees]
         return [*ordered, *self._named.values(), *self._enumerations]
 

@@ -9,7 +9,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import title_from_id
 from archgen.views.uml.uml_components import UmlComponents
 from archgen.views.uml.uml_deployment import write_deployment
-from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_tree, read_mapping
+from archgen.views.uml.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, make_tree, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 from archgen.views.uml.uml_wiring import UmlWiring
 
@@ -120,7 +120,7 @@ def _list_composed(
     bodies: Mapping[str, Any], shown_types: list[str], groups: Mapping[str, Any]
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Yield all components and types that hold components, with their paths."""
-    stack = [(f"type.{name}", read_mapping(bodies[name])) for name in shown_types]
+    stack = [(f"{TYPE_PREFIX}{name}", read_mapping(bodies[name])) for name in shown_types]
     stack += [
         (f"{group}.{name}", read_mapping(each))
         for group, body in groups.items()
@@ -137,7 +137,7 @@ def _list_composed(
 def _place_connectors(trees: list[UmlTree], components: UmlComponents, connectors: Mapping[str, list[UmlTree]]) -> None:
     """Put each connector into the class or component whose inside it joins."""
     paths = {element_id: path for path, element_id in components.component_ids.items()}
-    paths |= {element_id: f"type.{name}" for name, element_id in components.class_ids.items()}
+    paths |= {element_id: f"{TYPE_PREFIX}{name}" for name, element_id in components.class_ids.items()}
     stack = list(trees)
     while stack:
         tree = stack.pop()

@@ -9,7 +9,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name
 from archgen.model.component import Connection, Input
 from archgen.views.uml.uml_components import PortPath, UmlComponents, name_interface
-from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_tree, read_hints, read_mapping
+from archgen.views.uml.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, list_names, make_tree, read_hints, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
 
@@ -30,10 +30,8 @@ class UmlWiring:
         """Write an interface for each output of a component. Those of component types need none."""
         for (path, name), hints in self._components.outputs.items():
             if (path, name) in self._components.port_ids and not _is_type(path):
-                kept = read_hints(hints).get("interface")
-                names = [kept] if isinstance(kept, str) else kept if isinstance(kept, list) else []
-                for number, each in enumerate(names or [""]):
-                    self._write_interface((path, name), str(each), is_first=number == 0)
+                for number, each in enumerate(list_names(read_hints(hints), "interface") or [""]):
+                    self._write_interface((path, name), each, is_first=number == 0)
 
     def _write_interface(self, port: PortPath, name: str, *, is_first: bool) -> None:
         path = ".".join(port)
@@ -58,14 +56,14 @@ class UmlWiring:
 
     def write_inputs(self, bodies: Mapping[str, Any]) -> None:
         """Write what each input reads. `bodies` are the packed component types, for references inside of them."""
-        shells = {each.type_name: each.id for each in reversed(list(self._architecture.shells.values()))}
+        samples = self._components.samples
         for (path, name), hints in self._components.inputs.items():
             if (path, name) not in self._components.port_ids:
                 continue
             place = path
             if _is_type(path):
                 type_name, inner = _split_type(path, bodies)
-                place = f"{shells[type_name]}.{inner}" if inner and type_name in shells else ""
+                place = f"{samples[type_name]}.{inner}" if inner and type_name in samples else ""
             reader = self._architecture.inputs.get(f"{place}.{name}") or self._find_shell_input(place, name)
             sources = (
                 list(dict.fromkeys(s for each in reader.connections for s in _list_sources(each))) if reader else []
@@ -131,9 +129,8 @@ class UmlWiring:
 
     def write_delegations(self, composed: Iterator[tuple[str, Mapping[str, Any]]]) -> None:
         """Write what outputs of composed components give on. `composed` are these with their paths."""
-        shells = {f"type.{each.type_name}": each.id for each in reversed(list(self._architecture.shells.values()))}
         for path, body in composed:
-            place = shells.get(path, "" if _is_type(path) else path)
+            place = self._components.samples.get(path.removeprefix(TYPE_PREFIX), "") if _is_type(path) else path
             for name, port in read_mapping(body.get("outputs")).items():
                 given = self._architecture.shell_ports.get(f"output {place}.{name}", ()) if place else ()
                 inner = [(_move(each, place, path), each.rpartition(".")[2]) for each in given]
@@ -158,12 +155,12 @@ def _read_references(path: str, written: object, around: str = "") -> list[PortP
 
 
 def _is_type(path: str) -> bool:
-    return path.startswith("type.")
+    return path.startswith(TYPE_PREFIX)
 
 
 def _split_type(path: str, bodies: Mapping[str, Any]) -> tuple[str, str]:
     """Return the component type of a path in it, and the path inside."""
-    words = path.removeprefix("type.").split(".")
+    words = path.removeprefix(TYPE_PREFIX).split(".")
     for length in (2, 1):
         name = ".".join(words[:length])
         if name in bodies:
