@@ -46,7 +46,7 @@ def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = Non
     run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
     for root, count in launch_files.cut_roots.items():
         words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
-        run.add_note("folder", words, Span.of_file(root.name), "give folders that hold less", fate="noted")
+        run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
     if not given:
         found = {path: each for path, each in found.items() if path not in run.included} or found
     return _make_import(run, found)
