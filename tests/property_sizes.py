@@ -7,6 +7,7 @@ own `-m`, before any test is imported. With fewer examples the test is the same,
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -40,3 +41,22 @@ def choose_profile(config: pytest.Config) -> str:
 def count_examples(full_count: int) -> int:
     """Return the number of examples for a property that tries `full_count` in `make test-all`."""
     return full_count if settings.get_current_profile_name() == FULL_PROFILE else max(1, full_count // _QUICK_SHARE)
+
+
+def list_seeds(full_count: int) -> list[int | pytest.ParameterSet]:
+    """Return the numbers below `full_count` for a test that draws by one: a quarter of them in `make test`, the others slow."""
+    quick_count = max(1, full_count // _QUICK_SHARE)
+    return [
+        *range(quick_count),
+        *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(quick_count, full_count)),
+    ]
+
+
+def mark_further_samples(samples: Iterable[object]) -> list[object]:
+    """Mark all but the first as slow, for a test that takes seconds for each: `make test` tries it on the first.
+
+    A sample of several parameters is a tuple.
+    """
+    first, *others = samples
+    others_values = (sample if isinstance(sample, tuple) else (sample,) for sample in others)
+    return [first, *(pytest.param(*values, marks=pytest.mark.slow) for values in others_values)]

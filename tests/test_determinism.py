@@ -77,11 +77,16 @@ def test_pictures_in_every_format_are_the_same_bytes(moved: Path, tmp_path: Path
     "words",
     [
         ("check", "--format", "json"),
-        ("check", "--format", "text"),
-        ("stats",),
-        ("stats", "--format", "json"),
         ("list", "--of", "edges", "--format", "csv"),
-        ("show", "object_recognition"),
+        *(
+            pytest.param(words, marks=pytest.mark.slow)
+            for words in (
+                ("check", "--format", "text"),
+                ("stats",),
+                ("stats", "--format", "json"),
+                ("show", "object_recognition"),
+            )
+        ),
     ],
     ids=" ".join,
 )

@@ -26,6 +26,7 @@ from tests import hostile
 from tests.browser_pages import launch_chromium
 from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
+from tests.property_sizes import mark_further_samples
 from tests.running import archgen_here, contents, made_once
 
 WORDS = tuple(hostile.TEXTS)
@@ -33,7 +34,7 @@ SCHEMES = {"http", "https", "mailto"}
 ACTIVE = {"script", "iframe", "object", "embed", "base", "form", "foreignobject", "animate", "set", "math", "style"}
 
 
-@pytest.fixture(scope="module", params=WORDS)
+@pytest.fixture(scope="module", params=mark_further_samples(WORDS))
 def kind(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
@@ -235,7 +236,7 @@ def local(url: str) -> bool:
 EVERYWHERE = hostile.TEXTS["markup"].replace("\n", " ")
 
 
-@pytest.mark.parametrize("kind", WORDS, indirect=True)
+@pytest.mark.parametrize("kind", mark_further_samples(WORDS), indirect=True)
 def test_ids_references_and_names_are_refused_in_words(kind: str, tmp_path: Path) -> None:
     """The same texts as keys and in keys with a grammar: findings, and outputs of what is left."""
     text = hostile.TEXTS[kind]

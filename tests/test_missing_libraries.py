@@ -9,7 +9,7 @@ from urllib.parse import unquote, urldefrag
 import pytest
 
 from tests import readable
-from tests.running import RAMCIP, archgen, contents
+from tests.running import RAMCIP, ROOT, archgen, contents
 
 LIBRARY = "libX11.so.6: cannot open shared object file: No such file or directory"
 
@@ -71,6 +71,6 @@ def test_the_site_says_what_is_missing_and_links_to_nothing_that_is_not_there(bu
 
 
 def test_diagram_fails(poor: dict[str, str], tmp_path: Path) -> None:
-    done = archgen("diagram", RAMCIP, "-o", "out", cwd=tmp_path, env=poor, status=2)
+    done = archgen("diagram", ROOT / "examples" / "first_robot", "-o", "out", cwd=tmp_path, env=poor, status=2)
     assert done.stderr.decode().splitlines()[1:] == ["Error: no picture could be drawn, nothing was written"]
     assert not (tmp_path / "out").exists()

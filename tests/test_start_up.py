@@ -62,8 +62,11 @@ def test_a_verb_imports_nothing_heavy_without_need(tmp_path: Path, words: tuple[
 
 
 def test_build_needs_neither_ruamel_nor_networkx(tmp_path: Path) -> None:
-    modules = imported_modules(tmp_path, "build", str(ROOT / "examples/first_robot"), "-o", "out")
-    assert (tmp_path / "out/packed.yaml").exists()
+    text = "groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {i: a.o}}}}}\n"
+    (tmp_path / "archgen.yaml").write_text(f"archgen: 1\n{text}", encoding="utf-8")
+    modules = imported_modules(tmp_path, "build", "archgen.yaml", "-o", "out")
+    assert (tmp_path / "out/site/components/g.a.html").exists()
+    assert (tmp_path / "out/report.docx").exists()
     assert {"networkx", "ruamel.yaml"} & modules == set()
 
 

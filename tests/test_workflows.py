@@ -15,6 +15,7 @@ import yaml
 
 from archgen.resources import REPOSITORY
 from tests import repositories
+from tests.property_sizes import mark_further_samples
 from tests.running import ROOT
 
 FILES = ("action.yml", "comment/action.yml", ".github/workflows/ci.yml", ".github/workflows/action.yml")
@@ -180,7 +181,7 @@ def merge_branches(folder: Path) -> tuple[str, str]:
     return fork, tip
 
 
-@pytest.mark.parametrize("kind", ["merged_result", "merge_train"])
+@pytest.mark.parametrize("kind", mark_further_samples(["merged_result", "merge_train"]))
 def test_a_merged_results_pipeline_of_gitlab_tells_only_what_the_request_changes(
     tmp_path: Path, runner: Path, kind: str
 ) -> None:

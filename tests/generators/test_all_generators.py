@@ -19,6 +19,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from tests import hostile
+from tests.property_sizes import mark_further_samples
 from tests.running import ROOT, contents
 
 GENERATORS = [name for name, each in find_backends(ROOT / "docs")[0].items() if each.makes == "workspace"]
@@ -43,7 +44,7 @@ def _check_files(folder: Path) -> None:
             subprocess.run([shell, "-n"], input=data, check=True, capture_output=True)  # noqa: S603 - reads it only
 
 
-@pytest.fixture(scope="module", params=list(hostile.TEXTS))
+@pytest.fixture(scope="module", params=mark_further_samples(hostile.TEXTS))
 def hostile_project(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> CheckedProject:
     folder = tmp_path_factory.mktemp("hostile")
     (folder / "archgen.yaml").write_text(hostile.written(hostile.project(hostile.TEXTS[request.param])), "utf-8")

@@ -13,6 +13,7 @@ import pytest
 from archgen import pipeline
 from archgen.pipeline import CheckedProject
 from archgen.syntax.yaml_writer import write_yaml
+from tests.property_sizes import list_seeds
 
 _TYPES = ("std_msgs/msg/String", "sensor_msgs/msg/Image")
 _GROUPS, _PARTS = 3, 4
@@ -72,7 +73,7 @@ def count_findings(checked: CheckedProject) -> Counter[tuple[str, str, str | Non
     )
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", list_seeds(8))
 def test_a_variant_has_the_findings_of_what_is_packed_of_it(tmp_path: Path, seed: int) -> None:
     file = tmp_path / "robot.yaml"
     file.write_text(write_robot(seed), encoding="utf-8")
@@ -186,7 +187,7 @@ def list_all(value: object) -> object:
     return value
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", list_seeds(12))
 @pytest.mark.parametrize("write", [write_robot, write_varied_robot])
 def test_what_variants_share_is_as_if_each_had_been_judged_alone(
     tmp_path: Path, write: Callable[[int], str], seed: int

@@ -13,6 +13,7 @@ from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from tests.passes.random_projects import RandomProject
 from tests.passes.same_meaning import EXAMPLES, check_packed, pack, transform_alike, write_project
+from tests.property_sizes import list_seeds
 
 CONNECTING = ("connect_components", "connect_ports", "connect_types")
 
@@ -73,7 +74,7 @@ def flatten_alike(checked: CheckedProject, *, finds_same: bool = True) -> Checke
     return transformed
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", list_seeds(40))
 def test_random_projects(seed: int, tmp_path: Path) -> None:
     checked = write_project(tmp_path / "robot", RandomProject(seed).text)
     if any(str(each.severity) == "error" for each in checked.findings):

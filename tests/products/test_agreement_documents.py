@@ -26,6 +26,7 @@ from tests import hostile
 from tests.agreeing import DUO, checked, written
 from tests.emit.docx import inspection, judges
 from tests.judged_projects import judge_ramcip
+from tests.property_sizes import mark_further_samples
 from tests.repositories import commit, git, repository
 from tests.running import QUICK_START
 
@@ -112,6 +113,7 @@ def judge_pages(pages: Sequence[Path]) -> list[str]:
     return [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in messages]
 
 
+@pytest.mark.slow
 def test_the_nu_checker_finds_nothing(tmp_path: Path) -> None:
     pages = [tmp_path / f"{kind}.html" for kind in KINDS]
     for page in pages:
@@ -128,6 +130,9 @@ def test_the_nu_checker_finds_a_fault_on_any_page(tmp_path: Path) -> None:
     assert "faulty.html:1: Duplicate ID" in said
 
 
+@pytest.mark.parametrize(
+    "made", mark_further_samples(["markup", *(kind for kind in KINDS if kind != "markup")]), indirect=True
+)
 def test_word_opens_it(made: PartnerAgreement, tmp_path: Path) -> None:
     file = tmp_path / "a.docx"
     agreement_documents.write_agreement(made, "docx", file)

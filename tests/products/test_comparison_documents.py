@@ -69,6 +69,7 @@ def test_the_page_stands_by_itself(made: Made) -> None:
     assert "This picture could not be drawn" not in html
 
 
+@pytest.mark.slow
 def test_the_nu_checker_finds_nothing(tmp_path: Path) -> None:
     pages = [tmp_path / f"{kind}.html" for kind in KINDS]
     for page in pages:

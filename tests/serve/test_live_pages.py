@@ -12,6 +12,7 @@ from archgen.serve.live_site import LiveSite
 from archgen.serve.site_server import SiteServer
 from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
+from tests.property_sizes import mark_further_samples
 from tests.serve.conftest import ROBOT
 
 LONG_TEXT = "# Words\n\n" + "".join(f"## Part {number}\n\n{'Some words. ' * 80}\n\n" for number in range(30))
@@ -190,8 +191,8 @@ def test_what_is_tried_out_stays_when_a_file_changes(visit: OpenPage, save: Save
     expect(page.get_by_label("Execution time of eye")).to_have_value("50 ms")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1280, 360])
+@pytest.mark.parametrize("scheme", mark_further_samples(["light", "dark"]))
+@pytest.mark.parametrize("width", mark_further_samples([360, 1280]))
 def test_axe_finds_nothing(visit: OpenPage, save: Save, width: int, scheme: str) -> None:
     page = visit("chains/stop.html", width=width, scheme=scheme)
     page.get_by_label("Execution time of eye").fill("150 ms")

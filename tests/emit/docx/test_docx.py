@@ -52,6 +52,7 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, list[str]]
     return path.read_bytes(), judges.pages(path)
 
 
+@pytest.mark.slow
 def test_contents_show_the_pages_where_the_headings_are(printed: tuple[bytes, list[str]]) -> None:
     _, pages = printed
     assert len(pages) > 20
@@ -64,6 +65,7 @@ def test_contents_show_the_pages_where_the_headings_are(printed: tuple[bytes, li
         assert int(page) in found, f"{heading} is said to be on page {page} and stands on {found}"
 
 
+@pytest.mark.slow
 def test_stored_page_numbers_are_close_to_the_real_ones(printed: tuple[bytes, list[str]]) -> None:
     data, pages = printed
     stored = [int(page) for page in re.findall(r"PAGEREF .*?<w:t [^>]*>(\d+)</w:t>", document(data))]

@@ -22,6 +22,7 @@ from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import draw_group, make_all_graphs
 from archgen.views.lookup import make_lookup
 from tests.architectures import generated, robot
+from tests.property_sizes import list_seeds
 from tests.timings import timed
 
 ROBOT = make_all_graphs(robot(1))
@@ -78,14 +79,14 @@ def test_pictures_of_the_examples(example: str) -> None:
     assert [graph.id for graph in graphs if graph.asked != sum(arrow.count for arrow in graph.arrows)] == []
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", list_seeds(20))
 def test_two_hundred_groups(seed: int) -> None:
     view = make_lookup(generated(seed, 10, 3 + seed % 10, 40 + 6 * seed))
     wrong = [(name, faults(draw_group(view, name))) for name in view.architecture.groups]
     assert [each for each in wrong if each[1]] == []
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", list_seeds(8))
 def test_other_architectures_as_a_whole(seed: int) -> None:
     architecture = generated(seed, 2 + 2 * seed, 9, 30 + 10 * seed)
     whole = [graph for graph in make_all_graphs(architecture) if graph.layout in {"two-step", "overview"}]

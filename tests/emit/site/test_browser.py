@@ -15,6 +15,7 @@ from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site as make_site
 from archgen.views import shapes
 from tests.browser_pages import OpenPage, judge_with_axe
+from tests.property_sizes import mark_further_samples
 from tests.running import QUICK_START
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -127,7 +128,7 @@ def test_the_nu_checker_finds_nothing_in_the_case_study(example: Path) -> None:
 
 
 # The other two pairs are tried with the case study.
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (360, "dark")])
+@pytest.mark.parametrize(("width", "scheme"), mark_further_samples([(360, "dark"), (1280, "light")]))
 def test_axe_finds_nothing(visit: OpenPage, width: int, scheme: str) -> None:
     for path in SAMPLE:
         assert judge_with_axe(visit(path, width, scheme)) == [], path

@@ -12,6 +12,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
 from tests.emit.site.conftest import write_bare_site
+from tests.property_sizes import mark_further_samples
 from tests.running import RAMCIP
 
 HOSTILE = '</script><img src=x onerror=document.title="taken"><script>document.title="taken"</script>'
@@ -321,7 +322,7 @@ def test_a_list_has_all_that_the_map_has(visit: OpenPage) -> None:
     assert page.locator(".panel h2").inner_text() == "Human Model"
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", mark_further_samples(["dark", "light"]))
 @pytest.mark.parametrize(
     "hash_",
     ["", "#open=human_state&sel=2%2Bfall_detector%2B1&pick=human_state.fall_detector&colour=owner", "#view=list"],

@@ -115,6 +115,7 @@ def test_a_step_that_runs_once_and_fails_ends_the_start(script: Path, port: int,
     assert stage.journal == ["start clock", "end clock"]
 
 
+@pytest.mark.slow  # it waits for seconds, as the script does
 def test_what_does_not_listen_is_killed_with_all_that_it_started(script: Path, port: int, tmp_path: Path) -> None:
     run, _ = start(script, tmp_path, port, manners={"world": "deaf", "b": "parent"}, patience=1)
     run.wait_for("up        all: 4 steps")
@@ -123,6 +124,7 @@ def test_what_does_not_listen_is_killed_with_all_that_it_started(script: Path, p
     assert "killing   world: it does not end by itself" in run.output
 
 
+@pytest.mark.slow  # it waits for seconds, as the script does
 def test_what_does_not_end_by_an_interrupt_is_terminated(script: Path, port: int, tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, port, manners={"a": "stubborn"}, patience=8)
     run.wait_for("up        all: 4 steps")
@@ -152,6 +154,7 @@ def test_it_does_not_run_twice(script: Path, port: int, tmp_path: Path) -> None:
     assert stage.journal.count("start world") == 1
 
 
+@pytest.mark.slow  # it waits for seconds, as the script does
 def test_what_respawns_starts_again(port: int, tmp_path: Path) -> None:
     script = make_script(
         tmp_path, port, old="[finder], start: {", new="[finder], start: {respawn: true, respawn_delay: 1 s, "

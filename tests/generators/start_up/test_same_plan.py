@@ -17,6 +17,7 @@ from archgen.bringup.plan_shapes import StartPlan
 from archgen.bringup.start_plan import make_start_plan
 from archgen.pipeline import check_project
 from tests.generators.start_up.started_workspaces import judge, make_workspace
+from tests.property_sizes import mark_further_samples
 from tests.running import RAMCIP, ROOT
 
 PROJECTS = {
@@ -196,6 +197,7 @@ def test_compose_files_are_what_the_specification_says(generated: Generated) -> 
         assert [str(error) for error in validator.iter_errors(yaml.safe_load(text))] == []
 
 
+@pytest.mark.parametrize("generated", mark_further_samples(["vehicle", "courier", "ramcip"]), indirect=True)
 def test_shellcheck_finds_nothing(generated: Generated) -> None:
     # With what they read; one computer's script is like the other.
     host_scripts = [generated.workspace / "start" / "hosts" / f"{generated.hosts[0]}.sh"]

@@ -104,6 +104,7 @@ def test_what_fails_on_one_computer_stops_both(script: Path, ports: list[int], t
     assert "stop parcel_registry" in stage.journal
 
 
+@pytest.mark.slow  # it waits for seconds, as the script does
 def test_when_the_script_above_is_killed_the_others_stop(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, _ = start(script, tmp_path, ports, "--all-here")
     run.wait_for("up        parcel_registry")
@@ -133,6 +134,7 @@ def test_it_reaches_others_by_ssh(script: Path, ports: list[int], tmp_path: Path
     assert run.wait_for_end() == 128 + signal.SIGTERM
 
 
+@pytest.mark.slow  # it waits for seconds, as the script does
 def test_alone_a_computer_waits_for_what_it_sees_of_others(script: Path, ports: list[int], tmp_path: Path) -> None:
     settings = script.with_name("settings.sh")
     before = settings.read_text(encoding="utf-8")

@@ -21,6 +21,7 @@ from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.syntax.yaml_writer import write_yaml
 from tests.passes.patterns.random_robots import make_robot
 from tests.passes.random_projects import RandomProject
+from tests.property_sizes import list_seeds
 from tests.running import ROOT
 
 CONNECTIONS = ("connect_components", "connect_ports", "connect_types", "resolve_instances")
@@ -112,7 +113,7 @@ def test_rules_leave_the_leaves_and_connections_of_the_pass(tmp_path: Path) -> N
     assert sum(gone) > 20
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", list_seeds(20))
 def test_rules_and_pass_agree_on_drawn_projects(seed: int, tmp_path: Path) -> None:
     (tmp_path / "archgen.yaml").write_text(RandomProject(seed).text, encoding="utf-8")
     _compare(_write_out(check_project(tmp_path), tmp_path / "written", "node"))

@@ -13,6 +13,7 @@ from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.syntax.yaml_writer import write_yaml
 from tests.passes.patterns.random_robots import make_robot
+from tests.property_sizes import list_seeds
 from tests.running import ROOT
 
 TWINS = (
@@ -67,7 +68,7 @@ def test_rules_make_what_the_pass_of_their_name_makes(example: str, name: str) -
     _compare(check_project(ROOT / "examples" / example), name)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", list_seeds(12))
 def test_rules_and_passes_agree_on_random_robots(seed: int, tmp_path: Path) -> None:
     checked = check_project(make_robot(seed, tmp_path))
     assert [each for each in checked.findings if str(each.severity) == "error"] == []

@@ -18,6 +18,7 @@ from archgen.timing.chains.figure_explanations import explain_word
 from archgen.timing.load.queue_responses import QUEUE_TIERS
 from archgen.timing.load.response_workings import ResponseWorkings
 from archgen.timing.run_analysis import analyse_architecture
+from tests.property_sizes import list_seeds
 from tests.running import RAMCIP
 from tests.timing.hand_reader import read_equations
 from tests.timing.random_styles import random_style_text
@@ -164,12 +165,14 @@ def test_chains_are_the_sums_of_their_terms(case_study: Results) -> None:
     assert len(chains) == 8
 
 
+@pytest.mark.parametrize("share", list_seeds(4))
 def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_busy_add_up(
-    unpinned_case_study: Results,
+    unpinned_case_study: Results, share: int
 ) -> None:
+    """Of a quarter of all elements at a time: each is worked out anew."""
     analysis = unpinned_case_study.analysis
     blocked = added = 0
-    for name, response in analysis.responses.items():
+    for name, response in list(analysis.responses.items())[share::4]:
         lines = print_reasons(unpinned_case_study, name)
         assert [(line, each) for line in lines for each in read_equations(line) if not each.holds] == []
         sums = [line for line in lines if line.endswith(", A + B") and " = " in line]
@@ -180,7 +183,7 @@ def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_bu
             assert is_close(computed, response.worst.value or Fraction(0)), name
             added += 1
         blocked += any(line.startswith("B = (") for line in lines)
-    assert min(blocked, added) > 5
+    assert min(blocked, added) > 1
 
 
 def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_listed(
@@ -220,7 +223,7 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> Non
             assert (storing_working.value, storing_working.is_consistent) == (wait.value, True)
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", list_seeds(24))
 def test_responses_of_threads_and_queues_follow_from_the_work_that_is_listed(seed: int) -> None:
     model = architecture(random_threads_text(seed))
     results = Results(analyse_architecture(model), {})
