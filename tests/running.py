@@ -62,7 +62,8 @@ def archgen_here(
         try:
             main()
         except SystemExit as stop:
-            left = stop.code if isinstance(stop.code, int) else 0
+            # A text is printed by Python itself, and ends with 1.
+            left = stop.code if isinstance(stop.code, int) else int(stop.code is not None)
         finally:
             if was_collecting:
                 gc.enable()

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.property_sizes import QUICK_PROFILE, choose_profile, count_examples
+from tests.property_sizes import (
+    QUICK_PROFILE,
+    choose_profile,
+    count_examples,
+    list_seeds,
+    mark_further_samples,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -57,6 +63,30 @@ def test_no_property_fails_for_the_time_that_it_takes(pytestconfig: pytest.Confi
     assert settings.default is not None
     assert settings.default.deadline is None
     assert settings(max_examples=count_examples(400)).deadline is None
+
+
+def _split_by_mark(samples: Iterable[object]) -> tuple[list[object], list[tuple[object, ...]]]:
+    """Return the samples that `make test` tries, and those that only `make test-all` does."""
+    plain, slow = list[object](), list[tuple[object, ...]]()
+    for sample in samples:
+        if isinstance(sample, pytest.ParameterSet):
+            assert [mark.name for mark in sample.marks] == ["slow"]
+            slow.append(tuple(sample.values))
+        else:
+            plain.append(sample)
+    return plain, slow
+
+
+@pytest.mark.parametrize(("count", "quick_count"), [(1, 1), (3, 1), (8, 2), (40, 10)])
+def test_a_quarter_of_the_seeds_is_tried_at_once_and_none_is_left_out(count: int, quick_count: int) -> None:
+    quick, slow = _split_by_mark(list_seeds(count))
+    assert quick == list(range(quick_count))
+    assert slow == [(seed,) for seed in range(quick_count, count)]
+
+
+def test_the_first_sample_is_tried_at_once_and_none_is_left_out() -> None:
+    assert _split_by_mark(mark_further_samples(["a", "b", "c"])) == (["a"], [("b",), ("c",)])
+    assert _split_by_mark(mark_further_samples([(1, "a"), (2, "b")])) == ([(1, "a")], [(2, "b")])
 
 
 def _draw() -> list[tuple[str, int]]:
