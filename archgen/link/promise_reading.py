@@ -23,7 +23,7 @@ _MAX_LENGTH = 400
 
 
 @dataclass(frozen=True, slots=True)
-class _Limit:
+class _WrittenLimit:
     number: float
     unit: str
     at: Span
@@ -52,13 +52,13 @@ def read_promise(holder: MappingNode, element_id: str, diagnostics: list[Diagnos
     return promise if any(promise.list_kept()) else None
 
 
-def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> tuple[_Limit, ...]:
+def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> tuple[_WrittenLimit, ...]:
     """Return the least and the greatest value; nothing, and a diagnostic, where they are not two in one unit."""
     entry = body.entries.get("range")
     if entry is None:
         return ()
     items = mapping_values.get_scalars(body, "range")
-    limits: list[_Limit] = []
+    limits: list[_WrittenLimit] = []
     for item in items:
         limit = _read_limit(item)
         if limit is None:
@@ -94,7 +94,7 @@ def _count(number: int) -> str:
     return {0: "is none", 1: "is one"}.get(number, f"are {number}")
 
 
-def _read_limit(item: ScalarNode) -> _Limit | None:
+def _read_limit(item: ScalarNode) -> _WrittenLimit | None:
     if isinstance(item.value, bool):
         return None
     match = _LIMIT.match(item.text) if len(item.text) < _MAX_LENGTH else None
@@ -104,7 +104,7 @@ def _read_limit(item: ScalarNode) -> _Limit | None:
     number: float = float(text.replace(".inf", "inf"))
     if number.is_integer() and re.fullmatch(r"[-+]?[0-9]{1,18}", text):
         number = int(text)
-    return _Limit(number, match["unit"], item.span)
+    return _WrittenLimit(number, match["unit"], item.span)
 
 
 def read_deprecation(holder: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> Deprecation | None:

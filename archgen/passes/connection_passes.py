@@ -22,7 +22,7 @@ from archgen.syntax.yaml_tree import MappingEntry, ScalarNode, SequenceNode
 _SIDES = {"input": "inputs", "output": "outputs"}
 
 
-class _Holder(NamedTuple):
+class _StatementHolder(NamedTuple):
     """What a statement holds for in a linked project: a group, a composed component or an instance, by complete id."""
 
     linked: LinkedTree
@@ -60,13 +60,15 @@ def _write_connections(work: PassWork, key: str, mode: str) -> None:
     }
     if not places:
         return
-    found: dict[TreePath, dict[_Holder, dict[TreePath, _FoundSources]]] = {path: {} for path in places.values()}
+    found: dict[TreePath, dict[_StatementHolder, dict[TreePath, _FoundSources]]] = {
+        path: {} for path in places.values()
+    }
     for linked, is_probe in ((work.link(), False), (link_types(work), True)):
         for holder_id, entry in _list_entries(linked):
             statement = mapping_values.get_body(entry).entries.get(key)
             place = places.get(statement.key_span) if statement else None
             if place is not None:
-                holder = _Holder(linked, holder_id, is_probe)
+                holder = _StatementHolder(linked, holder_id, is_probe)
                 found[place][holder] = _find_sources(linked, holder_id, key)
     for place, found_by_holder in found.items():
         # What could follow in several ways stays as it is, and is told.
@@ -144,7 +146,7 @@ def _write_reference(linked: LinkedTree, port: PortKey, source: PortSource) -> s
     return source.target.id if is_taken else short
 
 
-def _is_ambiguous(holder: _Holder, key: str) -> bool:
+def _is_ambiguous(holder: _StatementHolder, key: str) -> bool:
     if key == "from":
         return False
     linked = holder.linked
@@ -162,7 +164,7 @@ def _write_place(
     work: PassWork,
     place: TreePath,
     key: str,
-    found_by_holder: dict[_Holder, dict[TreePath, _FoundSources]],
+    found_by_holder: dict[_StatementHolder, dict[TreePath, _FoundSources]],
 ) -> None:
     for path in dict.fromkeys(path for found in found_by_holder.values() for path in found):
         answers = {found[path].references if path in found else () for found in found_by_holder.values()}

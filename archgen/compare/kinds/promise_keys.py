@@ -79,7 +79,7 @@ def deprecation_key(kind: Literal["output", "type", "component_type"]) -> KeySpe
 OUTPUT_KEYS = (PROMISE, VERSION, deprecation_key("output"))
 
 
-def read_port_words(shell: Component, context: ReadContext) -> Mapping[str, object]:
+def read_own_output_words(shell: Component, context: ReadContext) -> Mapping[str, object]:
     """Return what a composed component says itself of its outputs, by `output:key`; what it gives on is told there."""
     return {
         f"{output.name}:{key}": value

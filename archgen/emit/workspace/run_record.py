@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.emit.file_tree import OutputError
-from archgen.emit.workspace.generated_file import explain_bad_path, fold_path
+from archgen.emit.workspace.generated_file import explain_bad_path, fold_file_path
 
 RECORD_FOLDER = ".archgen"
 _FORMAT = 1
@@ -71,7 +71,10 @@ def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
     folder = workspace / RECORD_FOLDER
     names = sorted(path.stem for path in folder.glob("*.json")) if folder.is_dir() else []
     return {
-        fold_path(path): name for name in names if name != backend for path in read_run_record(workspace, name).files
+        fold_file_path(path): name
+        for name in names
+        if name != backend
+        for path in read_run_record(workspace, name).files
     }
 
 

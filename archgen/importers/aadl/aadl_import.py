@@ -13,7 +13,7 @@ from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
 from archgen.importers.aadl.classifier_names import ClassifierNames
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
-from archgen.importers.aadl.data_types import DataTypes
+from archgen.importers.aadl.data_types import AadlDataTypes
 from archgen.importers.aadl.hardware_mapping import HardwareMapper
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.model_roots import ModelRoots
@@ -99,7 +99,7 @@ class _ModelImport:
     def __init__(self, names: ClassifierNames, notes: NoteList) -> None:
         self._names, self._notes, self._used = names, notes, UsedProperties()
         self._resolver = ClassifierResolver(names, notes)
-        self._types = DataTypes(self._resolver, notes, self._used)
+        self._types = AadlDataTypes(self._resolver, notes, self._used)
         mapper = PortMapper(self._resolver, self._types, self._used, notes)
         self._finder = StructureFinder(self._resolver, mapper, self._used, notes)
 

@@ -6,7 +6,7 @@ from typing import Any
 from urllib.parse import unquote
 
 from archgen.importers.aadl.aadl_tree import AadlName, Path
-from archgen.importers.aadl.property_values import Scope, read_count, read_text, read_texts
+from archgen.importers.aadl.property_values import Scope, read_count, read_first_text, read_texts
 
 _COMPONENT_KEYS = ("title", "description", "functionality", "owner", "role")
 _NODE_KEYS = {"package": "package_name", "executable": "executable_name"}
@@ -14,7 +14,7 @@ _NODE_KEYS = {"package": "package_name", "executable": "executable_name"}
 
 def find_own_text(scope: Scope, path: Path, key: str) -> str:
     """Return the text of a property of archgen's, or nothing."""
-    return unquote(read_text(scope.value(path, f"archgen::{key}")))
+    return unquote(read_first_text(scope.value(path, f"archgen::{key}")))
 
 
 def find_own_texts(scope: Scope, path: Path, key: str) -> dict[str, str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tokens import END
-from archgen.importers.aadl.aadl_tree import Classifier, Connection, Flow, Path, Subcomponent
+from archgen.importers.aadl.aadl_tree import AadlConnection, Classifier, Flow, Path, Subcomponent
 from archgen.importers.aadl.feature_parsing import (
     ACCESSES,
     CATEGORIES,
@@ -204,7 +204,7 @@ def _parse_array_elements(cursor: TokenCursor) -> None:
             cursor.expect(",")
 
 
-def _parse_connection(cursor: TokenCursor) -> Connection:
+def _parse_connection(cursor: TokenCursor) -> AadlConnection:
     start = cursor.token.offset
     name, refined = "", False
     if cursor.peek().text == ":":
@@ -214,7 +214,7 @@ def _parse_connection(cursor: TokenCursor) -> Connection:
     kind = accept_one_of(cursor, _CONNECTION_KINDS)
     if not kind:
         cursor.fail("a kind of connection is missing here: port, data access, feature group, ...")
-    found = Connection(name, kind, (), (), cursor.span_from(start), refined=refined)
+    found = AadlConnection(name, kind, (), (), cursor.span_from(start), refined=refined)
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
         found.source = parse_contained_path(cursor)
         found.both_ways = cursor.accept("<->")

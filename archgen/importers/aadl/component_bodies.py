@@ -11,7 +11,7 @@ from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure, keep_thread
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort
-from archgen.importers.aadl.property_values import Scope, read_count, read_text
+from archgen.importers.aadl.property_values import Scope, read_count, read_first_text
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved
 from archgen.importers.aadl.structures import Structure, StructuredPart, Wire
 from archgen.importers.aadl.thread_timing import add_port_hints, add_trigger, find_role, fits_role, map_timing
@@ -198,7 +198,7 @@ def map_node_ports(structure: Structure, scope: Scope, *, is_type: bool) -> Body
     for port in structure.ports.ports:
         path = port.path
         use: Body = {}
-        default_name = read_text(scope.value(path, "topic_properties::default_name"))
+        default_name = read_first_text(scope.value(path, "topic_properties::default_name"))
         if default_name:
             key = "name" if port.is_call else "topic"
             use["own_name" if port.is_input or not is_type else key] = default_name

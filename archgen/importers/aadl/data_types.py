@@ -9,7 +9,7 @@ from archgen.importers.aadl.aadl_tree import AadlLink, AadlList, AadlName
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, UsedProperties, read_size, read_text, read_texts
+from archgen.importers.aadl.property_values import Scope, UsedProperties, read_first_text, read_size, read_texts
 from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, Resolved, Use
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
@@ -38,7 +38,7 @@ _KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
 """Data of the library of components: they are hints of who has them, and no types."""
 
 
-class DataTypes:
+class AadlDataTypes:
     """The types of a model; each gets its name when it is first asked for."""
 
     def __init__(self, resolver: ClassifierResolver, notes: NoteList, used: UsedProperties) -> None:
@@ -148,7 +148,7 @@ class DataTypes:
         hints: dict[str, Any] = {}
         if texts := read_texts(scope.value((), "source_text")):
             hints["source_text"] = texts
-        if text := read_text(scope.value((), "source_name")):
+        if text := read_first_text(scope.value((), "source_name")):
             hints["source_name"] = text
         return {**body, "hints": {"aadl": hints}} if hints else body
 

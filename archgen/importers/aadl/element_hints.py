@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path as FilePath
 from typing import Any
 
-from archgen.importers.aadl.aadl_tree import Connection, Path, Property
+from archgen.importers.aadl.aadl_tree import AadlConnection, AadlProperty, Path
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, read_text, read_texts, read_time_range
+from archgen.importers.aadl.property_values import Scope, read_first_text, read_texts, read_time_range
 from archgen.importers.aadl.resolved_classifiers import Part, Resolved
 from archgen.importers.aadl.structures import Structure
 
@@ -17,7 +17,7 @@ def keep_sources(scope: Scope, path: Path) -> dict[str, Any]:
     hints: dict[str, Any] = {}
     if texts := read_texts(scope.value(path, "source_text")):
         hints["source_text"] = texts
-    if text := read_text(scope.value(path, "source_name")):
+    if text := read_first_text(scope.value(path, "source_name")):
         hints["source_name"] = text
     return hints
 
@@ -79,12 +79,12 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
     return hints | _keep_data(structure, scope, notes)
 
 
-def _list_own_ends(connection: Connection) -> list[Path]:
+def _list_own_ends(connection: AadlConnection) -> list[Path]:
     """Return the ends of a connection that are features of what it stands in."""
     return [end for end in (connection.source, connection.target) if len(end) == 1]
 
 
-def _name_connection(connection: Connection) -> str:
+def _name_connection(connection: AadlConnection) -> str:
     return connection.name or f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
 
 
@@ -129,7 +129,7 @@ def is_internal_state(part: Part) -> bool:
     return "internal_state" in {part.written.name.lower(), type_name}
 
 
-def check_schema_file(name: str, association: Property, notes: NoteList) -> None:
+def check_schema_file(name: str, association: AadlProperty, notes: NoteList) -> None:
     """Tell of a schema that is not beside the AADL file or below it; no other place is looked at."""
     folder = FilePath(association.span.file).parent.resolve()
     help_line = "Source_Text names it from the folder of the AADL file"

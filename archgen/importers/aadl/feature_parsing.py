@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.importers.aadl.aadl_tree import Binding, Feature, Prototype
+from archgen.importers.aadl.aadl_tree import AadlFeature, Binding, Prototype
 from archgen.importers.aadl.property_parsing import parse_property_list
 from archgen.importers.aadl.token_cursor import AadlSyntaxError, TokenCursor
 
@@ -107,12 +107,12 @@ def _parse_actual(cursor: TokenCursor) -> Binding:
     return Binding(category, classifier, parse_bindings(cursor))
 
 
-def parse_feature(cursor: TokenCursor) -> Feature:
+def parse_feature(cursor: TokenCursor) -> AadlFeature:
     """Parse a feature up to its `;`."""
     start = cursor.token.offset
     name = cursor.expect_name("a feature")
     cursor.expect(":")
-    feature = Feature(name, "", cursor.span_from(start))
+    feature = AadlFeature(name, "", cursor.span_from(start))
     feature.refined = cursor.accept("refined", "to")
     feature.direction = parse_direction(cursor)
     if not feature.direction:
@@ -137,7 +137,7 @@ def parse_feature(cursor: TokenCursor) -> Feature:
     return feature
 
 
-def _parse_feature_type(cursor: TokenCursor, feature: Feature) -> None:
+def _parse_feature_type(cursor: TokenCursor, feature: AadlFeature) -> None:
     if cursor.accept("inverse", "of"):
         feature.inverse = True
     if feature.kind == "feature" or feature.kind in ACCESSES:

@@ -20,7 +20,7 @@ from archgen.importers.aadl.property_values import (
     write_number,
 )
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
-from archgen.importers.aadl.robot_groups import LaunchedSystem, list_leaf_ports
+from archgen.importers.aadl.robot_groups import LaunchedSystem, list_ports_behind_end
 from archgen.importers.aadl.structures import Structure
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.port_media import MEDIUM_NAMES
@@ -225,7 +225,7 @@ def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> li
         if structure
         else ()
     )
-    return [path for end in ends for path, _ in list_leaf_ports(end, place)]
+    return [path for end in ends for path, _ in list_ports_behind_end(end, place)]
 
 
 def _read_speed(scope: Scope) -> Body:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import Path, Property
+from archgen.importers.aadl.aadl_tree import AadlProperty, Path
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.bus_names import read_bound_path
 from archgen.importers.aadl.classifier_names import fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, read_references
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
-from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_path
+from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_part_path
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
 
 PROCESSORS = frozenset({"processor", "virtual processor"})
@@ -88,7 +88,7 @@ class HardwareFinder:
         self._add_bindings(resolved, scope, path)
         for connection in resolved.connections.values():
             if connection.kind in _BUS_ACCESSES and connection.source:
-                tree.join(fold_path((*path, *connection.source)), fold_path((*path, *connection.target)))
+                tree.join(fold_part_path((*path, *connection.source)), fold_part_path((*path, *connection.target)))
         for name, part in resolved.parts.items():
             inner = self._resolver.resolve(part.use)
             inner_path, inner_scope = (*path, name), scope.go_into(part, inner)
@@ -124,7 +124,7 @@ class HardwareFinder:
                 self.tree.bound_connections.setdefault((*path, *bus), {})[path, connection.name.lower()] = None
 
 
-def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], Property]]:
+def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], AadlProperty]]:
     """Yield what is bound in a classifier, in braces of its parts as well; references there begin at the classifier, too."""
     yield from resolved.properties.items()
     for name, part in resolved.parts.items():
@@ -132,4 +132,4 @@ def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], Prope
             key = fold_property_name(association.name)
             if key in {"actual_processor_binding", "actual_connection_binding"}:
                 for path in association.paths or ((),):
-                    yield ((name, *fold_path(path)), key), association
+                    yield ((name, *fold_part_path(path)), key), association

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, UsedProperties, read_text
+from archgen.importers.aadl.property_values import Scope, UsedProperties, read_first_text
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved, Use
 from archgen.importers.aadl.structures import Structure, StructureFinder
 from archgen.model.element_ids import make_id, make_unique_id
@@ -116,7 +116,7 @@ class ModelRoots:
         category = structure.resolved.category
         if category not in _TYPE_CATEGORIES and category != "thread group":
             return
-        wanted = read_text(
+        wanted = read_first_text(
             Scope(self._resolver, UsedProperties(), structure.resolved).value((), "archgen::component_type")
         )
         is_reused = self._uses.get(id(structure), 0) != 1 or id(structure) in self._extended

@@ -8,7 +8,7 @@ from archgen.importers.aadl.aadl_tokens import END, MAX_TOKENS, AadlText
 from archgen.importers.aadl.aadl_tree import Package, PropertySet
 from archgen.importers.aadl.classifier_parsing import at_classifier, parse_annex, parse_classifier
 from archgen.importers.aadl.feature_parsing import CATEGORIES, accept_one_of
-from archgen.importers.aadl.property_parsing import parse_definition, parse_property
+from archgen.importers.aadl.property_parsing import parse_property, parse_property_definition
 from archgen.importers.aadl.token_cursor import AadlSyntaxError, SyntaxFault, TokenCursor
 
 _MAX_NAME_TOKENS = 50
@@ -202,4 +202,4 @@ def _parse_set_entry(cursor: TokenCursor, found: PropertySet) -> None:
     if cursor.at("annex"):
         parse_annex(cursor, [])
     else:
-        parse_definition(cursor, found)
+        parse_property_definition(cursor, found)

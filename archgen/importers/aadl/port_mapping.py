@@ -7,7 +7,7 @@ from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text, is_marked, read_port_words
-from archgen.importers.aadl.data_types import DataTypes
+from archgen.importers.aadl.data_types import AadlDataTypes
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Port, Resolved
@@ -70,7 +70,9 @@ class MappedPorts:
 class PortMapper:
     """Maps the features of classifiers, each classifier once."""
 
-    def __init__(self, resolver: ClassifierResolver, types: DataTypes, used: UsedProperties, notes: NoteList) -> None:
+    def __init__(
+        self, resolver: ClassifierResolver, types: AadlDataTypes, used: UsedProperties, notes: NoteList
+    ) -> None:
         """Name types by `types`."""
         self._resolver, self._types, self._used, self._notes = resolver, types, used, notes
         self._mapped: dict[int, MappedPorts] = {}

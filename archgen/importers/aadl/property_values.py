@@ -10,11 +10,11 @@ from archgen.importers.aadl.aadl_tree import (
     AadlList,
     AadlName,
     AadlNumber,
+    AadlProperty,
     AadlRange,
-    AadlText,
+    AadlString,
     AadlValue,
     Path,
-    Property,
 )
 from archgen.importers.aadl.classifier_names import ClassifierNames, fold_property_name
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
@@ -46,7 +46,7 @@ class UsedProperties:
 
     ids: set[int] = field(default_factory=set)
 
-    def add(self, association: Property | None) -> None:
+    def add(self, association: AadlProperty | None) -> None:
         """Remember one, with what it was put together from."""
         waiting = [association] if association else []
         while waiting:
@@ -70,7 +70,7 @@ class Scope:
     """The type of an instance of which only what is written around it is asked for; `hidden_path` leads on from there."""
     hidden_path: Path = ()
 
-    def find(self, path: Path, name: str) -> Property | None:
+    def find(self, path: Path, name: str) -> AadlProperty | None:
         """Return the association of a property to what stands at a path, or None."""
         found = [outer.properties.get((prefix + path, name)) for outer, prefix in self.layers]
         found.append(self._find_inside(self.inner, path, name) if self.inner else None)
@@ -79,7 +79,7 @@ class Scope:
             self.used.add(association)
         return next(filter(None, found), None)
 
-    def _find_inside(self, resolved: Resolved, path: Path, name: str) -> Property | None:
+    def _find_inside(self, resolved: Resolved, path: Path, name: str) -> AadlProperty | None:
         if found := resolved.properties.get((path, name)):
             self.used.add(found)
             return found
@@ -101,7 +101,7 @@ class Scope:
         inner = self.resolver.resolve(part.use)
         return self._find_inside(inner, path[1:], name) if inner else None
 
-    def _find_written(self, written: list[Property], path: Path, name: str) -> Property | None:
+    def _find_written(self, written: list[AadlProperty], path: Path, name: str) -> AadlProperty | None:
         for association in reversed(written):
             paths = [tuple(step.lower() for step in target) for target in association.paths] or [()]
             if path in paths and fold_property_name(association.name) == name:
@@ -116,7 +116,7 @@ class Scope:
                 return fold_value(found.value, self.resolver.names)
         return None
 
-    def find_inherited(self, path: Path, name: str) -> Property | None:
+    def find_inherited(self, path: Path, name: str) -> AadlProperty | None:
         """Return the association of a property that counts for all that stands in what it is written of."""
         ways = [path[:length] for length in range(len(path), -1, -1)]
         for way in ways:
@@ -146,7 +146,7 @@ class Scope:
             layers.append((_wrap_properties(part), ()))
         return Scope(self.resolver, self.used, inner, tuple(layers))
 
-    def find_hidden(self, path: Path, name: str) -> Property | None:
+    def find_hidden(self, path: Path, name: str) -> AadlProperty | None:
         """Return what the type of an instance itself says of it."""
         return self._find_inside(self.hidden, (*self.hidden_path, *path), name) if self.hidden else None
 
@@ -195,14 +195,14 @@ def fold_value(value: AadlValue, names: ClassifierNames) -> AadlValue:
 
 def read_texts(value: AadlValue | None) -> list[str]:
     """Return the texts of a list of texts, or of one."""
-    if isinstance(value, AadlText):
+    if isinstance(value, AadlString):
         return [value.text]
     if isinstance(value, AadlList):
-        return [item.text for item in value.items if isinstance(item, AadlText)]
+        return [item.text for item in value.items if isinstance(item, AadlString)]
     return []
 
 
-def read_text(value: AadlValue | None) -> str:
+def read_first_text(value: AadlValue | None) -> str:
     """Return the text of a value, the first of a list, or nothing."""
     return next(iter(read_texts(value)), "")
 

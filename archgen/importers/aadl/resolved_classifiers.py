@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from archgen.importers.aadl.aadl_tree import (
+    AadlConnection,
+    AadlFeature,
     AadlList,
+    AadlProperty,
     AadlValue,
     Binding,
     Classifier,
-    Connection,
-    Feature,
     Flow,
     Modes,
     Path,
-    Property,
     Subcomponent,
 )
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
@@ -56,7 +56,7 @@ class Part:
 class Port:
     """A feature, its classifier looked up."""
 
-    written: Feature
+    written: AadlFeature
     use: Use
     kind: str
     direction: str
@@ -74,10 +74,10 @@ class Resolved:
     """What its prototypes stand for."""
     ports: dict[str, Port] = field(default_factory=dict)
     parts: dict[str, Part] = field(default_factory=dict)
-    connections: dict[str, Connection] = field(default_factory=dict)
+    connections: dict[str, AadlConnection] = field(default_factory=dict)
     flows: dict[tuple[str, bool], Flow] = field(default_factory=dict)
     """By name, and whether it is a flow of an implementation."""
-    properties: dict[tuple[Path, str], Property] = field(default_factory=dict)
+    properties: dict[tuple[Path, str], AadlProperty] = field(default_factory=dict)
     """The last association of each property, by the path that it applies to."""
     initial_mode: str = ""
     """In lower case; empty where it has no modes."""
@@ -208,7 +208,7 @@ class ClassifierResolver:
                 chosen = _choose_value(association, found.initial_mode)
                 found.properties[key] = self._override(found, found.properties.get(key), chosen)
 
-    def _override(self, found: Resolved, earlier: Property | None, association: Property) -> Property:
+    def _override(self, found: Resolved, earlier: AadlProperty | None, association: AadlProperty) -> AadlProperty:
         """Return what counts of two associations to the same; `+=>` goes on behind the list that was there."""
         if earlier is None:
             return association
@@ -242,7 +242,7 @@ class ClassifierResolver:
         found.calls += [call for call in parent.calls if call not in found.calls]
         found.annexes += [name for name in parent.annexes if name not in found.annexes]
 
-    def _add_feature(self, found: Resolved, feature: Feature, env: Mapping[str, Use]) -> None:
+    def _add_feature(self, found: Resolved, feature: AadlFeature, env: Mapping[str, Use]) -> None:
         earlier = found.ports.get(feature.name.lower())
         use = self.find_use(feature.classifier, {}, found.known, env) if feature.classifier else Use()
         if earlier and not feature.classifier:
@@ -254,7 +254,7 @@ class ClassifierResolver:
         found.ports[feature.name.lower()] = Port(feature, use, kind, direction, found.known)
 
 
-def _choose_value(association: Property, initial_mode: str) -> Property:
+def _choose_value(association: AadlProperty, initial_mode: str) -> AadlProperty:
     """Return an association with the value that it has in the initial mode: its own, else the one of all other modes."""
     values = ((association.value, association.modes), *association.other_values)
     chosen = next((index for index, (_, modes) in enumerate(values) if _counts_in(modes, initial_mode)), None)

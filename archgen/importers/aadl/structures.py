@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import Connection, Path
+from archgen.importers.aadl.aadl_tree import AadlConnection, Path
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
@@ -58,7 +58,7 @@ class Wire:
 
     producer: End
     consumer: End
-    connection: Connection
+    connection: AadlConnection
 
 
 @dataclass(slots=True, eq=False)
@@ -73,7 +73,7 @@ class Structure:
     """The only thread of a process, which is one component with it."""
     thread_ports: dict[tuple[str, bool], str] = field(default_factory=dict)
     """The ports of that thread behind those of the process, by id and whether they are inputs."""
-    access_connections: dict[str, Connection] = field(default_factory=dict)
+    access_connections: dict[str, AadlConnection] = field(default_factory=dict)
 
     _inner_ends: dict[int, list[End]] | None = None
     _wires_by_name: dict[str, list[Wire]] | None = None
@@ -174,7 +174,7 @@ class StructureFinder:
         """Find which port of the thread stands behind which of the process."""
         name = thread.written.name.lower()
         for connection in found.resolved.connections.values():
-            ends = [fold_path(connection.source), fold_path(connection.target)]
+            ends = [fold_part_path(connection.source), fold_part_path(connection.target)]
             inside = next((end[1:] for end in ends if len(end) > 1 and end[0] == name), None)
             outside = next((end for end in ends if end and end[0] != name), None)
             if connection.kind not in WIRE_KINDS:
@@ -199,7 +199,7 @@ class StructureFinder:
 
     def _list_ends(self, found: Structure, written_path: Path) -> list[tuple[Path, End]] | None:
         """Return the ports that an end of a connection means, with their paths below it; None if it is no component's."""
-        path = fold_path(written_path)
+        path = fold_part_path(written_path)
         if not path:
             return []
         part = found.parts.get(path[0]) if len(path) > 1 else None
@@ -217,7 +217,7 @@ class StructureFinder:
 
 
 def _join_ends(
-    sources: list[tuple[Path, End]] | None, targets: list[tuple[Path, End]] | None, connection: Connection
+    sources: list[tuple[Path, End]] | None, targets: list[tuple[Path, End]] | None, connection: AadlConnection
 ) -> Iterator[Wire]:
     """Yield who sends to whom: ends of feature groups are joined by their names below the group."""
     targets_by_path: dict[Path, list[End]] = {}
@@ -245,6 +245,6 @@ def _is_only_hardware(structure: Structure) -> bool:
     )
 
 
-def fold_path(path: Path) -> Path:
+def fold_part_path(path: Path) -> Path:
     """Return a path as it is compared: in lower case, without `self`."""
     return tuple(step.lower() for step in path if step.lower() != "self")

@@ -8,8 +8,8 @@ from archgen.importers.aadl.component_bodies import Body, map_node_ports, name_u
 from archgen.importers.aadl.element_hints import keep_sources
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.port_mapping import MappedPort
-from archgen.importers.aadl.property_values import Scope, read_text
-from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, list_leaf_ports
+from archgen.importers.aadl.property_values import Scope, read_first_text
+from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, list_ports_behind_end
 from archgen.importers.aadl.structures import End, Structure, StructuredPart
 from archgen.model.element_ids import make_id, make_unique_id
 
@@ -61,7 +61,7 @@ def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, pat
     for wire in structure.wires:
         if not wire.connection.name:
             continue
-        name = read_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
+        name = read_first_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
         if not name:
             continue
         producers, consumers = _list_leaves(wire.producer, path), _list_leaves(wire.consumer, path)
@@ -75,7 +75,7 @@ def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, pat
 
 def _list_leaves(end: End, path: Path) -> list[PortPlace]:
     """Return the ports of processes and devices behind an end of a wire."""
-    return [(leaf_path, port.is_input, port.id) for leaf_path, port in list_leaf_ports(end, path)]
+    return [(leaf_path, port.is_input, port.id) for leaf_path, port in list_ports_behind_end(end, path)]
 
 
 class NodeWriter:

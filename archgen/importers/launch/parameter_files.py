@@ -95,11 +95,11 @@ def read_inline_value(text: str) -> Any:  # noqa: ANN401
     return read_value_text(text)
 
 
-def merge_values(values: dict[str, Any], more: Mapping[str, Any]) -> None:
+def overlay_parameters(values: dict[str, Any], more: Mapping[str, Any]) -> None:
     """Put values over others, leaf by leaf."""
     for name, value in more.items():
         old = values.get(name)
         if isinstance(old, dict) and isinstance(value, dict):
-            merge_values(old, value)
+            overlay_parameters(old, value)
         else:
             values[name] = value

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 
 from archgen.importers.launch.launch_values import LaunchValue
-from archgen.importers.launch.python_expressions import ExpressionReader, list_items
+from archgen.importers.launch.python_expressions import ExpressionReader, list_loop_items
 from archgen.importers.launch.python_operators import MAX_ITEMS
 from archgen.importers.launch.python_values import NameScope
 
@@ -35,7 +35,7 @@ class ComprehensionReader(ExpressionReader):
         if depth == len(generators):
             return [scope]
         generator = generators[depth]
-        items = list_items(self.evaluate(generator.iter, scope))
+        items = list_loop_items(self.evaluate(generator.iter, scope))
         if items is None:
             return None
         found: list[NameScope] = []

@@ -259,7 +259,7 @@ class ExpressionReader(ABC):
         if isinstance(target, ast.Name):
             scope.values[target.id] = value
         elif isinstance(target, ast.Tuple | ast.List):
-            items = list_items(value) if not isinstance(value, Mapping) else None
+            items = list_loop_items(value) if not isinstance(value, Mapping) else None
             fits = items is not None and len(items) == len(target.elts)
             for number, each in enumerate(target.elts):
                 self.assign(each, items[number] if fits and items else self.quote(target), scope)
@@ -291,7 +291,7 @@ class ExpressionReader(ABC):
         return self.call(function, CallArguments(positional, named), node)
 
 
-def list_items(value: LaunchValue) -> list[LaunchValue] | None:
+def list_loop_items(value: LaunchValue) -> list[LaunchValue] | None:
     """Return what a loop over a value takes one after the other; None where that is not known."""
     if isinstance(value, list | tuple | Mapping):
         return list(value)[:MAX_ITEMS] if len(value) <= MAX_ITEMS else None

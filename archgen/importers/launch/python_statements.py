@@ -11,7 +11,7 @@ from archgen.importers.launch.launch_actions import LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
 from archgen.importers.launch.python_branches import BranchRecord, Container, merge_names
 from archgen.importers.launch.python_comprehensions import ComprehensionReader
-from archgen.importers.launch.python_expressions import MAX_DEPTH, list_items
+from archgen.importers.launch.python_expressions import MAX_DEPTH, list_loop_items
 from archgen.importers.launch.python_operators import MAX_ITEMS
 from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
@@ -178,7 +178,7 @@ class StatementReader(ComprehensionReader):
         return ""
 
     def _run_for(self, statement: ast.For, scope: NameScope) -> Ending:
-        items = list_items(self.evaluate(statement.iter, scope))
+        items = list_loop_items(self.evaluate(statement.iter, scope))
         if items is None:
             repeated = self.quote(statement.iter)
             self.tell_noted("for", f"how often is computed: `{repeated.reason}`; what is in it is read once", statement)

@@ -8,9 +8,9 @@ from typing import Any
 
 from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.importers.launch.parameter_files import FILE_KIND, read_inline_value, read_inline_values
-from archgen.importers.launch.substitution_texts import read_text
+from archgen.importers.launch.substitution_texts import read_substituted_text
 
 _NODE_KEYS = {
     "package": "pkg",
@@ -74,7 +74,7 @@ class Ros1EntityReader:
 
     def _attribute(self, entity: LaunchEntity, name: str) -> LaunchValue:
         text = entity.attributes.get(name)
-        return None if text is None else read_text(text, self._folder, is_ros_1=True)
+        return None if text is None else read_substituted_text(text, self._folder, is_ros_1=True)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
         reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
@@ -207,11 +207,11 @@ class Ros1EntityReader:
         if isinstance(values, list):
             return [self._fill_values(value, depth + 1) for value in values]
         if isinstance(values, str) and "$(" in values:
-            return Substitution("typed", (read_text(values, self._folder, is_ros_1=True), "yaml"))
+            return Substitution("typed", (read_substituted_text(values, self._folder, is_ros_1=True), "yaml"))
         return values
 
     def _clean_name(self, name: str) -> LaunchValue:
-        return read_text(name.removeprefix("~"), self._folder, is_ros_1=True)
+        return read_substituted_text(name.removeprefix("~"), self._folder, is_ros_1=True)
 
     def _read_param_value(self, entity: LaunchEntity) -> LaunchValue:
         kind = entity.attributes.get("type", "yaml")
@@ -222,4 +222,4 @@ class Ros1EntityReader:
         for key in ("textfile", "binfile"):
             if key in entity.attributes:
                 return Substitution("command", (["cat ", self._attribute(entity, key)],))
-        return UnknownValue(describe_value(entity.attributes.get("name", "")))
+        return UnknownValue(describe_launch_value(entity.attributes.get("name", "")))

@@ -8,7 +8,7 @@ from typing import Any
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
 from archgen.importers.launch.launch_values import LaunchValue, Substitution
-from archgen.importers.launch.substitution_texts import read_text
+from archgen.importers.launch.substitution_texts import read_substituted_text
 
 ADDS_TO_ENVIRONMENT = "it adds to a variable of the environment"
 _UNREAD = {
@@ -58,7 +58,7 @@ class Ros2EntityReader:
 
     def _value(self, value: Any) -> LaunchValue:  # noqa: ANN401 - XML gives text, YAML more
         if isinstance(value, str):
-            return read_text(value, self._folder, is_ros_1=False)
+            return read_substituted_text(value, self._folder, is_ros_1=False)
         return [self._value(item) for item in value] if isinstance(value, list) else value
 
     def _attribute(self, entity: LaunchEntity, *names: str) -> LaunchValue:

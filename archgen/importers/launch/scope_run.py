@@ -10,7 +10,7 @@ from archgen.importers.foreign.foreign_import import ImportNote
 from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
-from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.importers.launch.launched_nodes import clean_name, join_names
 from archgen.importers.launch.parameter_files import FILE_KIND
 
@@ -44,7 +44,7 @@ class ScopeRun:
                 )
             self.context.scope.configurations[name] = value
         if default is None and name not in self.context.scope.configurations:
-            message = f"the argument `{name}` has no default: what it gives stays `{describe_value(Substitution('var', (name,)))}`"
+            message = f"the argument `{name}` has no default: what it gives stays `{describe_launch_value(Substitution('var', (name,)))}`"
             self.add_note(action.word, message, action.span, fate="noted")
 
     def _can_be_set(self) -> bool:

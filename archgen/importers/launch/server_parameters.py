@@ -9,7 +9,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import Substitution, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode
-from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
+from archgen.importers.launch.parameter_files import FILE_KIND, overlay_parameters
 from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_parameter
 
 if TYPE_CHECKING:
@@ -62,8 +62,8 @@ def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[st
         # What the node itself says counts more.
         own = dict(owner.parameters)
         owner.parameters.clear()
-        merge_values(owner.parameters, given)
-        merge_values(owner.parameters, own)
+        overlay_parameters(owner.parameters, given)
+        overlay_parameters(owner.parameters, own)
     return for_all
 
 
@@ -107,4 +107,4 @@ def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution,
         return
     for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
         values = {part: values}
-    merge_values(found, values)
+    overlay_parameters(found, values)

@@ -24,14 +24,14 @@ _PARAMETER_COMMAND = re.compile(r"rosparam dump\b.*")
 
 def read_ros_1_dump(lines: Iterable[DumpLine], graph: RunningGraph) -> None:
     """Take everything that the lines say."""
-    reader = _DumpReader(graph)
+    reader = _Ros1DumpReader(graph)
     for line in lines:
         reader.read_line(line)
     reader.take_parameters()
     _fold_actions(graph)
 
 
-class _DumpReader:
+class _Ros1DumpReader:
     """What the lines before say about the next one."""
 
     def __init__(self, graph: RunningGraph) -> None:

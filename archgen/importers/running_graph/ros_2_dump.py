@@ -39,7 +39,7 @@ _QUIET = re.compile(
 
 def read_ros_2_dump(lines: Iterable[DumpLine], graph: RunningGraph) -> None:
     """Take everything that the lines say."""
-    reader = _DumpReader(graph)
+    reader = _Ros2DumpReader(graph)
     for line in lines:
         reader.read_line(line)
     reader.end_block()
@@ -47,7 +47,7 @@ def read_ros_2_dump(lines: Iterable[DumpLine], graph: RunningGraph) -> None:
     reader.endpoints.settle(graph)
 
 
-class _DumpReader:
+class _Ros2DumpReader:
     """What the lines before say about the next one."""
 
     def __init__(self, graph: RunningGraph) -> None:

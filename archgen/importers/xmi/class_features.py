@@ -10,7 +10,7 @@ from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.import_ledger import ImportLedger, call
 from archgen.importers.xmi.made_names import choose_id, name_parameter
 from archgen.importers.xmi.uml_catalogue import read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
 
 _PERIOD_NAME = "sample"
 _VISIBILITIES = frozenset({"public", "protected", "private"})
@@ -38,7 +38,7 @@ def read_features(
 ) -> ClassFeatures:
     """Return the features of a class. `port_names` are those of its ports, `parts` what is a component inside of it."""
     features = ClassFeatures()
-    for child in list_children(owner, "Property", "Operation"):
+    for child in list_child_elements(owner, "Property", "Operation"):
         if child in parts:
             continue
         if get_kind(child) == "Operation":
@@ -83,7 +83,7 @@ def _read_parameter(
     reference = index.find_reference(element, "type")
     enumeration = reference.element if reference and reference.element is not None else None
     choices = (
-        [get_name(each) for each in list_children(enumeration, "EnumerationLiteral") if get_name(each)]
+        [get_name(each) for each in list_child_elements(enumeration, "EnumerationLiteral") if get_name(each)]
         if enumeration is not None and get_kind(enumeration) == "Enumeration"
         else []
     )
@@ -145,7 +145,7 @@ def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, 
     operation: dict[str, object] = {} if name == operation_id else {"title": name}
     request: dict[str, object] = {}
     answers: dict[str, object] = {}
-    for parameter in list_children(element, "Parameter"):
+    for parameter in list_child_elements(element, "Parameter"):
         direction = parameter.attributes.get("direction", "in")
         type_name = uml_values.find_type_name(index, parameter)
         type_name = uml_values.find_field_type(type_name) or type_name

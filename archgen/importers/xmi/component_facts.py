@@ -11,7 +11,7 @@ from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.template_classes import TemplateClasses, TypeArguments
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_child_elements
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
 _LIBRARY_ID = f"{OWN_PREFIX}package.classes"
@@ -82,7 +82,7 @@ class ClassSorting:
         self._sort_classes()
 
     def _has_ports(self, element: XmlElement) -> bool:
-        return get_kind(element) == "Component" or bool(list_children(element, "Port"))
+        return get_kind(element) == "Component" or bool(list_child_elements(element, "Port"))
 
     def _find_generals(self) -> dict[XmlElement, XmlElement]:
         """Return the class that each is made from; the first of several, none that closes a circle or is too far up."""
@@ -94,7 +94,7 @@ class ClassSorting:
             if element in self._templates.bindings:
                 generals[element], self._arguments[element] = self._templates.bindings[element]
                 tops[element] = generals[element]
-            for generalization in list_children(element, "Generalization"):
+            for generalization in list_child_elements(element, "Generalization"):
                 reference = self._index.find_reference(generalization, "general")
                 unbound = self._templates.describe_unbound(reference.element) if reference and reference.element else ""
                 general, arguments = (
@@ -188,7 +188,7 @@ class ClassSorting:
                     and element not in component_family
                     and not own_id.startswith(OWN_PREFIX)
                 )
-                has_methods = bool(list_children(element, "Operation"))
+                has_methods = bool(list_child_elements(element, "Operation"))
                 sort = "data" if is_data and not has_methods else "component_type"
                 is_free = not (
                     is_true(element, "isAbstract")
@@ -246,7 +246,7 @@ class ClassSorting:
         return {
             part
             for connector in self._catalogue.connectors
-            for end in list_children(connector, "ConnectorEnd")
+            for end in list_child_elements(connector, "ConnectorEnd")
             for part in self._index.list_named(end, "partWithPort", "role")
         }
 
@@ -255,7 +255,7 @@ class ClassSorting:
         pairs = [
             (owner, self._templates.resolve(reference.element)[0])
             for owner in self._templates.classes
-            for part in list_children(owner, "Property")
+            for part in list_child_elements(owner, "Property")
             if self.is_place(part)
             and (reference := self._index.find_reference(part, "type"))
             and reference.element is not None
@@ -287,7 +287,7 @@ class ClassSorting:
         uses: Counter[XmlElement] = Counter()
         owners = (*self._catalogue.classes, *self._catalogue.interfaces, *self._catalogue.data_types)
         for owner in owners:
-            for feature in list_children(owner, "Property", "Port", "Operation"):
-                typed = list_children(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
+            for feature in list_child_elements(owner, "Property", "Port", "Operation"):
+                typed = list_child_elements(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
                 uses.update(each for element in typed for each in self._index.list_named(element, "type"))
         return uses

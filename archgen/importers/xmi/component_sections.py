@@ -11,7 +11,7 @@ from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
 from archgen.importers.xmi.made_names import choose_id, say_title
-from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts, name_interface
+from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts, get_interface_name
 from archgen.importers.xmi.port_wiring import PortWiring, list_inner_references, name_port
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true
@@ -232,7 +232,7 @@ class ComponentSections:
         interfaces = [
             name
             for key in (port.provided if port.is_output else port.required)
-            if (name := name_interface(key)) and not _is_own(key)
+            if (name := get_interface_name(key)) and not _is_own(key)
         ]
         # The interface stands at who provides it: who uses it is connected with that.
         kept = [] if is_fed and not port.is_output else interfaces

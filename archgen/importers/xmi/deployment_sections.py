@@ -10,7 +10,7 @@ from archgen.importers.xmi.component_facts import ClassFacts
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
 from archgen.importers.xmi.made_names import choose_id, say_title
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_child_elements
 from archgen.model.element_ids import make_unique_id
 
 _MAX_HINTS = 10_000
@@ -223,7 +223,7 @@ class DeploymentSections:
 
     def _find_ends(self, element: XmlElement) -> list[str] | None:
         members = self._index.list_named(element, "memberEnd")
-        properties = list(dict.fromkeys((*members, *list_children(element, "Property"))))
+        properties = list(dict.fromkeys((*members, *list_child_elements(element, "Property"))))
         ends = [target for each in properties for target in self._index.list_named(each, "type")[:1]]
         ends = ends or self._index.list_named(element, "endType")
         references: list[str] = []

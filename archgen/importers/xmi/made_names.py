@@ -44,6 +44,6 @@ def name_parameter(name: str) -> str:
     return name if _PARAMETER_NAME.match(name) and len(name) <= MAX_TYPE_LENGTH else make_id(name, "parameter")
 
 
-def name_type(name: str) -> str:
+def name_conceptual_type(name: str) -> str:
     """Return the name of a conceptual type: brackets of templates would be generics."""
     return name.replace("<", "(").replace(">", ")")[:MAX_TYPE_LENGTH].strip()

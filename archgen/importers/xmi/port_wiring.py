@@ -10,9 +10,9 @@ from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
 from archgen.importers.xmi.import_ledger import ImportLedger, call
-from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, name_interface
+from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, get_interface_name
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_child_elements
 
 _MAX_CONNECTIONS = 100_000
 """So many connections one interface makes: each who uses it reads each who realizes it."""
@@ -53,7 +53,7 @@ class PortWiring:
         self._connect_interfaces()
 
     def _read_connector(self, connector: XmlElement) -> tuple[XmlElement, PortEnd, PortEnd] | None:
-        ends = list_children(connector, "ConnectorEnd")
+        ends = list_child_elements(connector, "ConnectorEnd")
         found = [end for each in ends if (end := self._find_end(each))]
         if len(ends) != 2 or len(found) != 2:  # noqa: PLR2004 - a connector joins two
             words = f"{call(connector)} is not taken: it does not join two ports of components"
@@ -169,7 +169,7 @@ class PortWiring:
     def _refuse_connections(self, key: InterfaceKey, provider_count: int, readers: list[PortEnd]) -> None:
         element = key if isinstance(key, XmlElement) else readers[0].port.element
         words = (
-            f"nobody is connected by the interface `{name_interface(key)[:80]}`: {provider_count:,} ports realize it and "
+            f"nobody is connected by the interface `{get_interface_name(key)[:80]}`: {provider_count:,} ports realize it and "
             f"{len(readers):,} use it, which makes more than {_MAX_CONNECTIONS:,} connections"
         )
         self._ledger.leave(element, words, "join the ports by connectors")

@@ -7,7 +7,7 @@ import re
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_name, list_child_elements
 from archgen.importers.xmi.uml_values import find_field_type, name_referenced
 
 SIGNATURE_KINDS = ("TemplateSignature", "RedefinableTemplateSignature")
@@ -21,7 +21,7 @@ TypeArguments = tuple[str, ...]
 
 def read_generic_names(index: UmlIndex, signature: XmlElement) -> tuple[str, ...]:
     """Return the names of a template that stand for types; none where some are no names of types, or two the same."""
-    formals = list_children(signature, *_PARAMETER_KINDS)
+    formals = list_child_elements(signature, *_PARAMETER_KINDS)
     references = [index.find_reference(each, "parameteredElement", "ownedParameteredElement") for each in formals]
     names = tuple(each.name if each else "" for each in references)
     is_usable = all(_GENERIC_NAME.match(name) for name in names) and len(set(names)) == len(names)
@@ -37,11 +37,11 @@ class TemplateClasses:
         self._formals: dict[XmlElement, list[XmlElement]] = {}
         self._signatures: dict[XmlElement, XmlElement] = {}
         for element in catalogue.classes:
-            for signature in list_children(element, *SIGNATURE_KINDS):
+            for signature in list_child_elements(element, *SIGNATURE_KINDS):
                 self._read_signature(element, signature)
         self.bindings: dict[XmlElement, tuple[XmlElement, TypeArguments]] = {}
         for element in catalogue.classes:
-            for binding in list_children(element, "TemplateBinding"):
+            for binding in list_child_elements(element, "TemplateBinding"):
                 self._read_binding(element, binding)
         self.classes = [each for each in catalogue.classes if not self._is_name_only(each)]
         """All classes, without those by which archgen writes `filter<Pose>`."""
@@ -56,7 +56,7 @@ class TemplateClasses:
             self._ledger.leave(signature, words)
             return
         self.generic_names[owner] = names
-        self._formals[owner] = list_children(signature, *_PARAMETER_KINDS)
+        self._formals[owner] = list_child_elements(signature, *_PARAMETER_KINDS)
         self._signatures[signature] = owner
         self._ledger.take(signature)
 
@@ -68,7 +68,7 @@ class TemplateClasses:
             self._ledger.leave(binding, words)
             return
         actuals: dict[XmlElement, str] = {}
-        for substitution in list_children(binding, "TemplateParameterSubstitution"):
+        for substitution in list_child_elements(binding, "TemplateParameterSubstitution"):
             formal = self._index.find_reference(substitution, "formal")
             actual = self._index.find_reference(substitution, "actual", "ownedActual")
             if formal and formal.element and actual:

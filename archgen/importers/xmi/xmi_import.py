@@ -10,7 +10,7 @@ from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassSorting
 from archgen.importers.xmi.component_sections import ComponentSections, assign_port_ids
-from archgen.importers.xmi.data_types import DataTypes
+from archgen.importers.xmi.data_types import UmlDataTypes
 from archgen.importers.xmi.deployment_sections import DeploymentSections
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.leftovers import note_leftovers
@@ -55,7 +55,7 @@ def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger:
     classes = [facts.element for facts in sorting.facts.values() if facts.sort == "data"]
     sections = {
         "component_types": components.make_types(),
-        "types": DataTypes(index, ledger, (*catalogue.data_types, *classes)).make_types(),
+        "types": UmlDataTypes(index, ledger, (*catalogue.data_types, *classes)).make_types(),
         "groups": components.make_groups(),
         "hosts": deployment.make_hosts(),
         "links": deployment.make_links(),

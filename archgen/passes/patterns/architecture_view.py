@@ -15,7 +15,7 @@ from archgen.passes.patterns.view_elements import ViewElement, is_instance, list
 from archgen.passes.patterns.view_index import ComponentIndex
 from archgen.passes.patterns.view_references import ViewReferences
 from archgen.passes.patterns.view_types import ConceptualTypes
-from archgen.passes.patterns.view_values import read_value
+from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
 
@@ -198,7 +198,7 @@ class ArchitectureView:
             self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name
         }
         for entry in expanded:
-            body[entry.key] = read_value(entry.value, self.find_reference, moves)
+            body[entry.key] = read_view_value(entry.value, self.find_reference, moves)
         for key in ("is", "same_as"):
             name = body.get(key)
             base = read_generic_name(name).base if isinstance(name, str) else ""

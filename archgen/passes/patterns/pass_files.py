@@ -48,12 +48,12 @@ def read_pass(name: str, file: str, text: str, known_states: tuple[str, ...] = (
     if sum(1 for _ in list_spans(document.root)) > _MAX_VALUES:
         message = f"a pass file of more than {_MAX_VALUES:,} keys and values"
         return ReadPass(name, file, text, None, (_report(message, Span.of_file(file), "write several passes"),))
-    read = _FileReader(name, file, known_states).read(document.root)
+    read = _PassFileReader(name, file, known_states).read(document.root)
     has_rules = isinstance(document.root.get("rules"), SequenceNode)
     return ReadPass(name, file, text, *read, has_rules=has_rules)
 
 
-class _FileReader:
+class _PassFileReader:
     """Reads one pass file."""
 
     def __init__(self, name: str, file: str, known_states: tuple[str, ...]) -> None:

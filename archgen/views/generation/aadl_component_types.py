@@ -20,7 +20,7 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
-    write_text,
+    write_aadl_string,
 )
 from archgen.views.generation.generation_context import write_place
 
@@ -41,7 +41,7 @@ class SharedType:
     instances: tuple[Process, ...]
 
 
-def find_type(architecture: Architecture, node: Node) -> ComponentType | None:
+def find_type_of_node(architecture: Architecture, node: Node) -> ComponentType | None:
     """Return the component type of the only component that a node implements; none for generic types and those of libraries."""
     component = architecture.find_component(node.implements[0]) if len(node.implements) == 1 else None
     if component is None or not component.component_type or node.wholes:
@@ -57,7 +57,7 @@ def list_shared_types(
     """Return the types with their instances; `names` are what their classifiers are called, by category and id."""
     instances: dict[tuple[str, str], list[Process]] = {}
     for process in processes:
-        if declared := find_type(architecture, process.node):
+        if declared := find_type_of_node(architecture, process.node):
             instances.setdefault((process.category, declared.id), []).append(process)
     return [
         SharedType(architecture.component_types[key[1]], names[key], tuple(_select_alike(found)))
@@ -122,7 +122,7 @@ class TypeWriter:
         for name, text in (("Functionality", declared.functionality), ("Description", declared.description)):
             found.pop(("words", "", f"archgen::{name}"), None)
             if text:
-                found["words", "", f"archgen::{name}"] = write_text(text)
+                found["words", "", f"archgen::{name}"] = write_aadl_string(text)
         return found
 
     def place_instances(self) -> None:
@@ -139,7 +139,7 @@ class TypeWriter:
     def make_classifiers(self) -> list[dict[str, Any]]:
         """Return the type, and for processes the implementation and the thread."""
         declared = self._shared.declared
-        words = [make_property("archgen::Component_Type", write_text(declared.id))]
+        words = [make_property("archgen::Component_Type", write_aadl_string(declared.id))]
         words += make_named_properties(declared.id, declared.id, declared.title)
         words += make_text_properties(owner=declared.owner)
         words += self._list_common("words")

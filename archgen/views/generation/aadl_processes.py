@@ -30,7 +30,7 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
-    write_text,
+    write_aadl_string,
 )
 from archgen.views.generation.generation_context import write_place
 
@@ -150,7 +150,7 @@ class Process:
         endpoint = next(iter(self.find_endpoints(part)), None)
         if endpoint and endpoint.medium == "ros":
             own_name = endpoint.own_name or endpoint.name
-            properties.append(make_property("topic_properties::Default_Name", write_text(own_name)))
+            properties.append(make_property("topic_properties::Default_Name", write_aadl_string(own_name)))
         properties += make_text_properties(
             medium=port.medium if port.medium != "ros" else None,
             external_end=port.external,
@@ -179,7 +179,7 @@ class Process:
         classifier = types.name_type(endpoint.type or endpoint.message, endpoint.flow)
         name = self.names.take_name(endpoint.name.strip("/").replace("/", "_") or "internal")
         properties = [
-            make_property("topic_properties::Default_Name", write_text(endpoint.own_name or endpoint.name)),
+            make_property("topic_properties::Default_Name", write_aadl_string(endpoint.own_name or endpoint.name)),
             make_property("archgen::Is_Internal", "true"),
         ]
         return make_item(name, f"{_INTERNAL_KINDS[endpoint.use]} {classifier}", properties)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.model.node import Endpoint
-from archgen.views.generation.aadl_component_types import TypeWriter, find_type, list_shared_types
+from archgen.views.generation.aadl_component_types import TypeWriter, find_type_of_node, list_shared_types
 from archgen.views.generation.aadl_devices import Device, is_device
 from archgen.views.generation.aadl_processes import Process
 from archgen.views.generation.aadl_types import TypeBook
@@ -30,7 +30,7 @@ class ProgramBook:
         # Component types have their names before the nodes, which may be called like them.
         for node in context.wanted_nodes.values():
             kind = kinds[node.id] = Device if is_device(architecture, node, linked_devices) else Process
-            declared = find_type(architecture, node)
+            declared = find_type_of_node(architecture, node)
             if declared and (kind.category, declared.id) not in self._type_names:
                 name = self._package_names[kind.category].take_name(declared.id)
                 self._type_names[kind.category, declared.id] = name
@@ -42,7 +42,7 @@ class ProgramBook:
             kind, own_endpoints = kinds[node.id], endpoints.get(node.id, ())
             names = self._package_names[kind.category]
             process = self.processes[node.id] = kind(architecture, types, node, own_endpoints, names)
-            if declared := find_type(architecture, node):
+            if declared := find_type_of_node(architecture, node):
                 process.flow_book = flow_books.setdefault((kind.category, declared.id), process.flow_book)
 
     def write_types(self, packages: Mapping[str, str]) -> None:

@@ -26,8 +26,8 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
+    write_aadl_string,
     write_range,
-    write_text,
     write_texts,
 )
 from archgen.views.generation.generation_context import GenerationContext
@@ -264,5 +264,5 @@ def _list_topic_properties(endpoint: Endpoint | None) -> list[AadlProperty]:
     return (
         []
         if endpoint is None or endpoint.medium != "ros"
-        else [make_property("topic_properties::Name", write_text(endpoint.name))]
+        else [make_property("topic_properties::Name", write_aadl_string(endpoint.name))]
     )

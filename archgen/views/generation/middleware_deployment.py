@@ -15,7 +15,7 @@ from archgen.model.node import Qos
 from archgen.views.generation.component_records import read_own_hints
 from archgen.views.generation.generation_context import GenerationContext, tell_left_out, write_place
 from archgen.views.generation.middleware_classes import ComponentClass, name_port_type
-from archgen.views.generation.middleware_names import drop_clashes, name_member, shorten_name
+from archgen.views.generation.middleware_names import drop_clashes, name_member, shorten_wire_name
 from archgen.views.generation.player_interfaces import OPAQUE
 from archgen.views.generation.simulated_timing import find_period, find_timing
 
@@ -170,7 +170,7 @@ def _find_address(context: GenerationContext, host: str) -> str:
     """Return the name under which other computers find a host: what its hints say, if that is a name, else its id."""
     known = context.architecture.hosts.get(host)
     written = str(read_own_hints(known.annotations.hints, context.backend).get("address") or "") if known else ""
-    return written if _ADDRESS.match(written) else shorten_name(name_member(host)) if host else "localhost"
+    return written if _ADDRESS.match(written) else shorten_wire_name(name_member(host)) if host else "localhost"
 
 
 def _list_joined_ports(connections: Iterable[Mapping[str, Any]]) -> dict[str, list[dict[str, str]]]:

@@ -66,7 +66,7 @@ def read_mapping(value: object) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else {}
 
 
-def make_slug(name: str) -> str:
+def make_id_word(name: str) -> str:
     """Return a word for an id made of any text."""
     return make_id(name, "x")
 

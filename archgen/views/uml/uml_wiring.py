@@ -8,7 +8,7 @@ from typing import Any
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name
 from archgen.model.component import Connection, Input
-from archgen.views.uml.uml_components import PortPath, UmlComponents, name_interface
+from archgen.views.uml.uml_components import PortPath, UmlComponents, name_output_interface
 from archgen.views.uml.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, list_names, make_tree, read_hints, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
@@ -36,7 +36,7 @@ class UmlWiring:
     def _write_interface(self, port: PortPath, name: str, *, is_first: bool) -> None:
         path = ".".join(port)
         interface_id = self._registry.claim(f"{'interface' if name else 'made_interface'}.{path}")
-        interface = make_tree("packagedElement", "Interface", interface_id, name or name_interface(*port))
+        interface = make_tree("packagedElement", "Interface", interface_id, name or name_output_interface(*port))
         operation_id = self._registry.claim(f"getter.{path}")
         operation = make_tree("ownedOperation", "Operation", operation_id, f"get{make_camel_name(port[1])}")
         shell = self._architecture.shells.get(port[0])
@@ -123,7 +123,7 @@ class UmlWiring:
         kept = read_hints(hints).get("interface")
         path = ".".join(port)
         interface_id = self._registry.claim(f"{'interface' if kept else 'made_interface'}.needed.{path}")
-        name = kept if isinstance(kept, str) and kept else name_interface(*port)
+        name = kept if isinstance(kept, str) and kept else name_output_interface(*port)
         self.relations.append(make_tree("packagedElement", "Interface", interface_id, name))
         self._use(port, interface_id)
 
