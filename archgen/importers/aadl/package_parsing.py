@@ -58,11 +58,11 @@ def parse_text(file: str, text: str, max_tokens: int = MAX_TOKENS) -> ParsedText
 
 def _parse_unpackaged(cursor: TokenCursor, parsed: ParsedText) -> None:
     start = cursor.token.offset
-    found = parse_classifier(cursor)
+    classifier = parse_classifier(cursor)
     if parsed.unpackaged is None:
         parsed.unpackaged = Package("", cursor.source.span(start, start))
         parsed.packages.append(parsed.unpackaged)
-    parsed.unpackaged.classifiers.append(found)
+    parsed.unpackaged.classifiers.append(classifier)
 
 
 def _skip_to_unit(cursor: TokenCursor) -> None:
@@ -182,24 +182,24 @@ def _parse_renaming(cursor: TokenCursor, package: Package) -> bool:
 
 def _parse_property_set(cursor: TokenCursor) -> PropertySet:
     start = cursor.expect("property", "set").offset
-    found = PropertySet(cursor.expect_name("a property set"), cursor.span_from(start))
+    property_set = PropertySet(cursor.expect_name("a property set"), cursor.span_from(start))
     cursor.expect("is")
     while cursor.at("with"):
-        _parse_uses(cursor, found)
+        _parse_uses(cursor, property_set)
     cursor.parse_entries(
-        lambda: _parse_set_entry(cursor, found), lambda: cursor.at("end") and cursor.peek().kind == "name"
+        lambda: _parse_set_entry(cursor, property_set), lambda: cursor.at("end") and cursor.peek().kind == "name"
     )
     end = cursor.expect("end")
     name = cursor.expect_name("a property set")
-    if name.lower() != found.name.lower():
-        words = f"this ends `{name}`, but what is open is property set `{found.name}`"
-        cursor.tell(AadlSyntaxError(words, end, f"write `end {found.name};`"))
+    if name.lower() != property_set.name.lower():
+        words = f"this ends `{name}`, but what is open is property set `{property_set.name}`"
+        cursor.tell(AadlSyntaxError(words, end, f"write `end {property_set.name};`"))
     cursor.expect(";")
-    return found
+    return property_set
 
 
-def _parse_set_entry(cursor: TokenCursor, found: PropertySet) -> None:
+def _parse_set_entry(cursor: TokenCursor, property_set: PropertySet) -> None:
     if cursor.at("annex"):
         parse_annex(cursor, [])
     else:
-        parse_property_definition(cursor, found)
+        parse_property_definition(cursor, property_set)

@@ -134,21 +134,21 @@ class ClassifierResolver:
         return Use(name, known, values)
 
     def _bind(self, binding: Binding, place: KnownClassifier, env: Mapping[str, Use]) -> Use:
-        found = self.find_use(binding.classifier, binding.bindings, place, env) if binding.classifier else Use()
-        return replace(found, category=binding.category)
+        use = self.find_use(binding.classifier, binding.bindings, place, env) if binding.classifier else Use()
+        return replace(use, category=binding.category)
 
     def _write_out(self, known: KnownClassifier, bindings: Mapping[str, Use]) -> Resolved:
-        found = Resolved(known)
+        resolved = Resolved(known)
         classifier = known.classifier
         if id(classifier) in self._open:
             words = f"{known.full_name} extends itself in the end; what it extends is left out here"
             self.notes.add_contradiction("extends", words, classifier.span)
-            return found
+            return resolved
         if len(self._open) > _MAX_PARENTS:
             self.notes.add_contradiction(
                 "extends", f"more than {_MAX_PARENTS} classifiers extend one another", classifier.span
             )
-            return found
+            return resolved
         self._open.add(id(classifier))
         env = {
             prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {})
@@ -157,12 +157,12 @@ class ClassifierResolver:
             for prototype in classifier.prototypes
         } | dict(bindings)
         for parent in self._list_parents(known, env):
-            self._add_inherited(found, parent)
+            self._add_inherited(resolved, parent)
         self._open.discard(id(classifier))
-        found.prototypes |= env
-        found.initial_mode = classifier.initial_mode.lower() or found.initial_mode
-        self._add_own(found, classifier, found.prototypes)
-        return found
+        resolved.prototypes |= env
+        resolved.initial_mode = classifier.initial_mode.lower() or resolved.initial_mode
+        self._add_own(resolved, classifier, resolved.prototypes)
+        return resolved
 
     def _list_parents(self, known: KnownClassifier, env: Mapping[str, Use]) -> list[Resolved]:
         classifier = known.classifier
@@ -182,37 +182,37 @@ class ClassifierResolver:
                 parents.append(parent)
         return parents
 
-    def _add_own(self, found: Resolved, classifier: Classifier, env: Mapping[str, Use]) -> None:
-        known = found.known
+    def _add_own(self, resolved: Resolved, classifier: Classifier, env: Mapping[str, Use]) -> None:
+        known = resolved.known
         for feature in classifier.features:
-            self._add_feature(found, feature, env)
+            self._add_feature(resolved, feature, env)
         for written in classifier.subcomponents:
             name = written.name.lower()
-            earlier = found.parts.get(name)
+            earlier = resolved.parts.get(name)
             use = self.find_use(written.classifier, written.bindings, known, env) if written.classifier else Use()
             if earlier and not written.classifier:
                 use = earlier.use
             if use.name and use.known is None and use.category != UNBOUND:
                 self.notes.add_unknown_classifier(use.name, written.span)
-            found.parts[name] = Part(written, use, written.category, known)
-        _add_connections(found, classifier)
-        _add_flows(found, classifier)
-        found.calls += classifier.calls
-        found.annexes += [name for name, _ in classifier.annexes if name not in found.annexes]
+            resolved.parts[name] = Part(written, use, written.category, known)
+        _add_connections(resolved, classifier)
+        _add_flows(resolved, classifier)
+        resolved.calls += classifier.calls
+        resolved.annexes += [name for name, _ in classifier.annexes if name not in resolved.annexes]
         for association in classifier.properties:
             for path in association.paths or ((),):
                 key = (
                     tuple(step.lower() for step in path if step.lower() != "self"),
                     fold_property_name(association.name),
                 )
-                chosen = _choose_value(association, found.initial_mode)
-                found.properties[key] = self._override(found, found.properties.get(key), chosen)
+                chosen = _choose_value(association, resolved.initial_mode)
+                resolved.properties[key] = self._override(resolved, resolved.properties.get(key), chosen)
 
-    def _override(self, found: Resolved, earlier: AadlProperty | None, association: AadlProperty) -> AadlProperty:
+    def _override(self, resolved: Resolved, earlier: AadlProperty | None, association: AadlProperty) -> AadlProperty:
         """Return what counts of two associations to the same; `+=>` goes on behind the list that was there."""
         if earlier is None:
             return association
-        if association.modes and not _counts_in(association.modes, found.initial_mode):
+        if association.modes and not _counts_in(association.modes, resolved.initial_mode):
             # The earlier one counts in the initial mode, or was written first.
             self.overridden.add(id(association))
             return earlier
@@ -222,36 +222,39 @@ class ClassifierResolver:
         self.overridden.add(id(earlier))
         return association
 
-    def _add_inherited(self, found: Resolved, parent: Resolved) -> None:
-        found.ancestors = tuple(dict.fromkeys((*found.ancestors, parent.known, *parent.ancestors)))
-        if found.known.classifier.is_implementation and not parent.known.classifier.is_implementation:
-            found.own_type = parent
-        found.initial_mode = parent.initial_mode or found.initial_mode
-        found.prototypes.update(parent.prototypes)
+    def _add_inherited(self, resolved: Resolved, parent: Resolved) -> None:
+        resolved.ancestors = tuple(dict.fromkeys((*resolved.ancestors, parent.known, *parent.ancestors)))
+        if resolved.known.classifier.is_implementation and not parent.known.classifier.is_implementation:
+            resolved.own_type = parent
+        resolved.initial_mode = parent.initial_mode or resolved.initial_mode
+        resolved.prototypes.update(parent.prototypes)
         # Its own type came before, and says more of features than the type of what it extends.
-        found.ports = {**found.ports, **{name: port for name, port in parent.ports.items() if name not in found.ports}}
-        found.parts.update(parent.parts)
-        found.connections.update(parent.connections)
+        resolved.ports = {
+            **resolved.ports,
+            **{name: port for name, port in parent.ports.items() if name not in resolved.ports},
+        }
+        resolved.parts.update(parent.parts)
+        resolved.connections.update(parent.connections)
         for key, flow in parent.flows.items():
-            if key[1] or key not in found.flows:
-                found.flows[key] = flow
+            if key[1] or key not in resolved.flows:
+                resolved.flows[key] = flow
         for place, association in parent.properties.items():
             is_of_type = parent.own_type is not None and parent.own_type.properties.get(place) is association
-            if not is_of_type or place not in found.properties:
-                found.properties[place] = association
-        found.calls += [call for call in parent.calls if call not in found.calls]
-        found.annexes += [name for name in parent.annexes if name not in found.annexes]
+            if not is_of_type or place not in resolved.properties:
+                resolved.properties[place] = association
+        resolved.calls += [call for call in parent.calls if call not in resolved.calls]
+        resolved.annexes += [name for name in parent.annexes if name not in resolved.annexes]
 
-    def _add_feature(self, found: Resolved, feature: AadlFeature, env: Mapping[str, Use]) -> None:
-        earlier = found.ports.get(feature.name.lower())
-        use = self.find_use(feature.classifier, {}, found.known, env) if feature.classifier else Use()
+    def _add_feature(self, resolved: Resolved, feature: AadlFeature, env: Mapping[str, Use]) -> None:
+        earlier = resolved.ports.get(feature.name.lower())
+        use = self.find_use(feature.classifier, {}, resolved.known, env) if feature.classifier else Use()
         if earlier and not feature.classifier:
             use = earlier.use
         kind = feature.kind
         if earlier and kind == "feature":
             kind = earlier.kind
         direction = feature.direction or (earlier.direction if earlier else "")
-        found.ports[feature.name.lower()] = Port(feature, use, kind, direction, found.known)
+        resolved.ports[feature.name.lower()] = Port(feature, use, kind, direction, resolved.known)
 
 
 def _choose_value(association: AadlProperty, initial_mode: str) -> AadlProperty:
@@ -282,19 +285,19 @@ def _name_bindings(bindings: Mapping[str, Use]) -> str:
     )
 
 
-def _add_connections(found: Resolved, classifier: Classifier) -> None:
+def _add_connections(resolved: Resolved, classifier: Classifier) -> None:
     for index, written in enumerate(classifier.connections):
-        name = written.name.lower() or f"{found.known.key}#{index}"
-        earlier, connection = found.connections.get(name), written
+        name = written.name.lower() or f"{resolved.known.key}#{index}"
+        earlier, connection = resolved.connections.get(name), written
         if written.refined and earlier and not written.source:
             connection = replace(written, source=earlier.source, target=earlier.target)
-        found.connections[name] = connection
+        resolved.connections[name] = connection
 
 
-def _add_flows(found: Resolved, classifier: Classifier) -> None:
+def _add_flows(resolved: Resolved, classifier: Classifier) -> None:
     for written in classifier.flows:
         key = (written.name.lower(), classifier.is_implementation and written.kind != "end to end")
-        earlier, flow = found.flows.get(key), written
+        earlier, flow = resolved.flows.get(key), written
         if written.refined and earlier and not written.steps:
             flow = replace(written, steps=earlier.steps)
-        found.flows[key] = flow
+        resolved.flows[key] = flow

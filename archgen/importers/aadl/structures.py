@@ -86,7 +86,7 @@ class Structure:
                 for outer, inner in ((wire.producer, wire.consumer), (wire.consumer, wire.producer)):
                     if outer.part is None and inner.part is not None:
                         ends.setdefault(id(outer.port), {})[inner] = None
-            self._inner_ends = {key: list(found) for key, found in ends.items()}
+            self._inner_ends = {key: list(inner_ends) for key, inner_ends in ends.items()}
         return self._inner_ends.get(id(port), [])
 
     def find_wires(self, connection_name: str) -> list[Wire]:
@@ -121,7 +121,7 @@ class StructureFinder:
         return self._found[id(resolved)]
 
     def _build(self, resolved: Resolved) -> Structure:
-        found = Structure(resolved, self._mapper.map_ports(resolved))
+        structure = Structure(resolved, self._mapper.map_ports(resolved))
         # What each node has from the library, such as its main thread, is no behaviour of its own.
         parts = [
             part
@@ -132,15 +132,15 @@ class StructureFinder:
             and not (part.category == "device" and self._read_own_text(resolved, part, "component"))
         ]
         if resolved.category == "process" and len(parts) == 1 and parts[0].category == "thread":
-            found.thread = parts[0]
-            self._join_thread(found, parts[0])
+            structure.thread = parts[0]
+            self._join_thread(structure, parts[0])
             parts = []
         used_ids: set[str] = set()
         for part in parts:
             if structured := self._build_part(resolved, part, used_ids):
-                found.parts[structured.name] = structured
-        self._add_wires(found)
-        return found
+                structure.parts[structured.name] = structured
+        self._add_wires(structure)
+        return structure
 
     def _build_part(self, around: Resolved, part: Part, used_ids: set[str]) -> StructuredPart | None:
         inner = self._resolver.resolve(part.use)
@@ -170,44 +170,47 @@ class StructureFinder:
         scope = Scope(self._resolver, self._used, around)
         return find_own_text(scope, (part.written.name.lower(),), key)
 
-    def _join_thread(self, found: Structure, thread: Part) -> None:
+    def _join_thread(self, structure: Structure, thread: Part) -> None:
         """Find which port of the thread stands behind which of the process."""
         name = thread.written.name.lower()
-        for connection in found.resolved.connections.values():
+        for connection in structure.resolved.connections.values():
             ends = [fold_part_path(connection.source), fold_part_path(connection.target)]
             inside = next((end[1:] for end in ends if len(end) > 1 and end[0] == name), None)
             outside = next((end for end in ends if end and end[0] != name), None)
             if connection.kind not in WIRE_KINDS:
-                found.access_connections[connection.name] = connection
+                structure.access_connections[connection.name] = connection
             elif inside and outside:
-                for port in found.ports.by_path.get(outside, ()):
-                    found.thread_ports[port.id, port.is_input] = ".".join(inside)
+                for port in structure.ports.by_path.get(outside, ()):
+                    structure.thread_ports[port.id, port.is_input] = ".".join(inside)
 
-    def _add_wires(self, found: Structure) -> None:
-        if found.thread is not None:
+    def _add_wires(self, structure: Structure) -> None:
+        if structure.thread is not None:
             return
-        for connection in found.resolved.connections.values():
+        for connection in structure.resolved.connections.values():
             if connection.kind not in WIRE_KINDS:
-                found.access_connections[connection.name] = connection
+                structure.access_connections[connection.name] = connection
                 continue
-            sources, targets = self._list_ends(found, connection.source), self._list_ends(found, connection.target)
+            sources, targets = (
+                self._list_ends(structure, connection.source),
+                self._list_ends(structure, connection.target),
+            )
             wires = list(_join_ends(sources, targets, connection))
             if not wires and sources is not None and targets is not None:
                 words = f"connection {connection.name} joins no output to an input".replace("  ", " ")
                 self._notes.add("connection", words, connection.span, "are its ends called so, and in the right order?")
-            found.wires += wires
+            structure.wires += wires
 
-    def _list_ends(self, found: Structure, written_path: Path) -> list[tuple[Path, End]] | None:
+    def _list_ends(self, structure: Structure, written_path: Path) -> list[tuple[Path, End]] | None:
         """Return the ports that an end of a connection means, with their paths below it; None if it is no component's."""
         path = fold_part_path(written_path)
         if not path:
             return []
-        part = found.parts.get(path[0]) if len(path) > 1 else None
-        if part is None and len(path) > 1 and path[0] in found.resolved.parts:
+        part = structure.parts.get(path[0]) if len(path) > 1 else None
+        if part is None and len(path) > 1 and path[0] in structure.resolved.parts:
             return None
         if part is not None and part.structure is None:
             return None
-        ports = part.structure.ports if part and part.structure else found.ports
+        ports = part.structure.ports if part and part.structure else structure.ports
         port_path = path[1:] if part else path
         if port_path in ports.groups:
             return [(port.path[len(port_path) :], End(part, port)) for port in ports.groups[port_path]]

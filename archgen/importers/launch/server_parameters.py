@@ -68,18 +68,18 @@ def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[st
 
 
 def _has_parameter(node: LaunchedNode, parts: list[str]) -> bool:
-    found: Any = node.parameters
+    parameters: Any = node.parameters
     for part in parts:
-        found = found.get(part) if isinstance(found, dict) else None
-    return found is not None
+        parameters = parameters.get(part) if isinstance(parameters, dict) else None
+    return parameters is not None
 
 
 def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, Any]:
     """Return parameters of ROS 1 that stand outside of nodes, by their names."""
-    found: dict[str, Any] = {}
+    server_values: dict[str, Any] = {}
     for entry in action.values["entries"]:
         if isinstance(entry, Substitution) and entry.kind == FILE_KIND:
-            _read_server_file(run, action, entry, found)
+            _read_server_file(run, action, entry, server_values)
         elif isinstance(entry, Mapping):
             for raw_name, raw_value in entry.items():
                 name = run.context.resolve(raw_name)
@@ -88,16 +88,16 @@ def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, An
                     continue
                 value, others = split_parameter(evaluate_parameter(raw_value, run.context), name)
                 if value is not None:
-                    found[name] = value
+                    server_values[name] = value
                 for inner_name, other in others:
                     if isinstance(other, UnknownValue):
                         run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
                     else:
-                        found[inner_name.replace(".", "/")] = other
-    return found
+                        server_values[inner_name.replace(".", "/")] = other
+    return server_values
 
 
-def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution, found: dict[str, Any]) -> None:
+def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution, server_values: dict[str, Any]) -> None:
     text = run.context.resolve(entry.parts[0])
     path = run.files.find_file(text) if isinstance(text, str) else None
     values = None if path is None else run.parameter_reader.read_whole(path)
@@ -107,4 +107,4 @@ def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution,
         return
     for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
         values = {part: values}
-    overlay_parameters(found, values)
+    overlay_parameters(server_values, values)

@@ -92,23 +92,27 @@ class _OrcaReader:
         tags = [parts[1] for key in values if (parts := key.split("."))[0] == word and len(parts) == 3]  # noqa: PLR2004 - `Provides.NAME.Type`
         ports: dict[str, Any] = {}
         for tag in dict.fromkeys(tags):
-            found = {key: values[f"{word}.{tag}.{key}"] for key in _PORT_KEYS[word] if f"{word}.{tag}.{key}" in values}
-            self._known |= {f"{word}.{tag}.{key}" for key in found}
+            properties = {
+                key: values[f"{word}.{tag}.{key}"] for key in _PORT_KEYS[word] if f"{word}.{tag}.{key}" in values
+            }
+            self._known |= {f"{word}.{tag}.{key}" for key in properties}
             names = [
-                found[key].value for key in ("DefaultName", "DefaultInterface") if key in found and found[key].value
+                properties[key].value
+                for key in ("DefaultName", "DefaultInterface")
+                if key in properties and properties[key].value
             ]
             port_id = make_unique_id(make_id(names[0] if names else tag, "port"), ports.keys())
             if names and names[0] != port_id:
-                self._add_note("DefaultName", f"`{names[0]}` is called `{port_id}`", found, fate="noted")
-            ports[port_id] = self._write_port(tag, port_id, found)
+                self._add_note("DefaultName", f"`{names[0]}` is called `{port_id}`", properties, fate="noted")
+            ports[port_id] = self._write_port(tag, port_id, properties)
             self._taken[word] += 1
         return ports
 
-    def _write_port(self, tag: str, port_id: str, found: dict[str, OrcaProperty]) -> Any:  # noqa: ANN401 - the short or the long form
-        type_name = found["Type"].value.rpartition("::")[2].strip() if "Type" in found else ""
+    def _write_port(self, tag: str, port_id: str, properties: dict[str, OrcaProperty]) -> Any:  # noqa: ANN401 - the short or the long form
+        type_name = properties["Type"].value.rpartition("::")[2].strip() if "Type" in properties else ""
         if not type_name:
-            self._add_note("Type", f"`{tag}` has no type", found)
-        proxy = found.get("DefaultProxy")
+            self._add_note("Type", f"`{tag}` has no type", properties)
+        proxy = properties.get("DefaultProxy")
         data = {
             "type": type_name,
             # Not the hint of the backend: that stands for what is outside of the architecture.
@@ -171,8 +175,8 @@ class _OrcaReader:
                     ImportNote(each.key.partition(".")[0], f"`{each.key}` is no key of a definition", each.span)
                 )
 
-    def _add_note(self, kind: str, message: str, found: dict[str, OrcaProperty], fate: str = "not taken") -> None:
-        span = next((each.span for each in found.values()), Span.of_file(self._file))
+    def _add_note(self, kind: str, message: str, properties: dict[str, OrcaProperty], fate: str = "not taken") -> None:
+        span = next((each.span for each in properties.values()), Span.of_file(self._file))
         self._notes.append(ImportNote(kind, message, span, fate=fate))
 
 

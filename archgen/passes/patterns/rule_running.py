@@ -86,11 +86,11 @@ class _RuleRunner:
         """Apply a rule wherever it finds something now; say whether it found anything."""
         has_applied = False
         try:
-            for found in match_view(rule.find, self._view, {}, self._budget, rule.distinct):
+            for match_bindings in match_view(rule.find, self._view, {}, self._budget, rule.distinct):
                 # What was written meanwhile may have taken away what was found.
-                if has_applied and not self._is_found(rule, found):
+                if has_applied and not self._is_found(rule, match_bindings):
                     continue
-                bindings = self._bind_names(rule, found)
+                bindings = self._bind_names(rule, match_bindings)
                 if self._is_wanted(rule, bindings):
                     self._apply(rule, bindings)
                     has_applied = True
@@ -105,8 +105,8 @@ class _RuleRunner:
     def _is_found(self, rule: RewriteRule, bindings: Bindings) -> bool:
         return any(True for _ in match_view(rule.find, self._view, bindings, self._budget, rule.distinct))
 
-    def _bind_names(self, rule: RewriteRule, found: Bindings) -> Bindings:
-        bindings: dict[str, ViewValue] = dict(found)
+    def _bind_names(self, rule: RewriteRule, match_bindings: Bindings) -> Bindings:
+        bindings: dict[str, ViewValue] = dict(match_bindings)
         for let in rule.let:
             try:
                 bindings[let.name] = self._evaluate_let(let, bindings)
