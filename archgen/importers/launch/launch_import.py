@@ -55,7 +55,7 @@ def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = Non
 def _make_import(run: LaunchRun, launched: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]) -> ForeignImport:
     kept = _drop_twins(run, [node for nodes, _ in launched.values() for node in nodes])
     for_all = give_server_parameters(
-        run, [node for nodes in launched.values() for node in nodes[0] if id(node) in kept]
+        run, run.server_parameters, [node for nodes in launched.values() for node in nodes[0] if id(node) in kept]
     )
     maker = SliceMaker(run)
     slices: dict[str, Mapping[str, Any]] = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.importers.launch.command_words import split_words
 from archgen.importers.launch.file_changes import FileChanges
@@ -14,10 +14,7 @@ from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, jo
 from archgen.importers.launch.parameter_files import FILE_KIND, overlay_parameters
 from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
 from archgen.importers.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
-
-if TYPE_CHECKING:
-    from archgen.importers.launch.launch_run import LaunchRun
-
+from archgen.importers.launch.scope_run import ScopeRun
 
 CONTAINER_PACKAGE = "rclcpp_components"
 
@@ -25,7 +22,7 @@ CONTAINER_PACKAGE = "rclcpp_components"
 class NodeMaker:
     """Makes nodes for a run, whose context says what is set."""
 
-    def __init__(self, run: LaunchRun) -> None:
+    def __init__(self, run: ScopeRun) -> None:
         self._run = run
 
     def make_node(self, action: LaunchAction, form: str) -> LaunchedNode:

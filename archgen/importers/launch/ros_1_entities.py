@@ -22,7 +22,6 @@ _NODE_KEYS = {
     "prefix": "launch-prefix",
     "host": "machine",
 }
-_TAGS = frozenset({"arg", "env", "group", "include", "machine", "node", "param", "remap", "rosparam", "test"})
 _WORKING_FOLDERS = frozenset({"node", "ROS_HOME"})
 
 
@@ -67,6 +66,18 @@ class Ros1EntityReader:
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
+        self._readers: dict[str, Callable[[LaunchEntity], LaunchAction]] = {
+            "arg": self._read_arg,
+            "env": self._read_env,
+            "group": self._read_group,
+            "include": self._read_include,
+            "machine": self._read_machine,
+            "node": self._read_node,
+            "param": self._read_param,
+            "remap": self._read_remap,
+            "rosparam": self._read_rosparam,
+            "test": self._read_test,
+        }
 
     def read_launch(self, root: LaunchEntity) -> list[LaunchAction]:
         """Return the actions of a launch file."""
@@ -77,10 +88,7 @@ class Ros1EntityReader:
         return None if text is None else read_substituted_text(text, self._folder, is_ros_1=True)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
-        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
-        if entity.tag in _TAGS:
-            reader = getattr(self, f"_read_{entity.tag}")
-        action = reader(entity)
+        action = self._readers.get(entity.tag, self._read_unknown)(entity)
         action.conditions += self._read_conditions(entity)
         return action
 

@@ -18,21 +18,6 @@ _UNREAD = {
     "shutdown": "it ends the launch",
     "append_env": ADDS_TO_ENVIRONMENT,
 }
-_TAGS = frozenset(
-    {
-        *("arg", "composable_node", "executable", "group", "include", "let", "lifecycle_node", "load_composable_node"),
-        *(
-            "log",
-            "node",
-            "node_container",
-            "push_ros_namespace",
-            "set_env",
-            "set_parameter",
-            "set_parameters_from_file",
-        ),
-        *("set_remap", "timer"),
-    }
-)
 _NODE_KEYS = {
     "package": ("pkg",),
     "executable": ("exec",),
@@ -51,6 +36,25 @@ class Ros2EntityReader:
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
+        self._readers: dict[str, Callable[[LaunchEntity], LaunchAction]] = {
+            "arg": self._read_arg,
+            "composable_node": self._read_composable_node,
+            "executable": self._read_executable,
+            "group": self._read_group,
+            "include": self._read_include,
+            "let": self._read_let,
+            "lifecycle_node": self._read_lifecycle_node,
+            "load_composable_node": self._read_load_composable_node,
+            "log": self._read_log,
+            "node": self._read_node,
+            "node_container": self._read_node_container,
+            "push_ros_namespace": self._read_push_ros_namespace,
+            "set_env": self._read_set_env,
+            "set_parameter": self._read_set_parameter,
+            "set_parameters_from_file": self._read_set_parameters_from_file,
+            "set_remap": self._read_set_remap,
+            "timer": self._read_timer,
+        }
 
     def read_launch(self, root: LaunchEntity) -> list[LaunchAction]:
         """Return the actions of a launch file."""
@@ -65,11 +69,7 @@ class Ros2EntityReader:
         return next((self._value(entity.attributes[name]) for name in names if name in entity.attributes), None)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
-        tag = entity.tag.replace("-", "_")
-        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
-        if tag in _TAGS:
-            reader = getattr(self, f"_read_{tag}")
-        action = reader(entity)
+        action = self._readers.get(entity.tag.replace("-", "_"), self._read_unknown)(entity)
         for word, is_negated in (("if", False), ("unless", True)):
             if word in entity.attributes:
                 action.conditions.append(LaunchCondition(self._attribute(entity, word), is_negated))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
@@ -11,9 +11,7 @@ from archgen.importers.launch.launch_values import Substitution, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode
 from archgen.importers.launch.parameter_files import FILE_KIND, overlay_parameters
 from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_parameter
-
-if TYPE_CHECKING:
-    from archgen.importers.launch.launch_run import LaunchRun
+from archgen.importers.launch.scope_run import ScopeRun
 
 SIMULATED_TIME = "use_sim_time"
 
@@ -27,11 +25,13 @@ class ServerParameter(NamedTuple):
     conditions: tuple[tuple[str, bool | None], ...]
 
 
-def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[str, Any]:
+def give_server_parameters(
+    run: ScopeRun, server_parameters: Sequence[ServerParameter], nodes: list[LaunchedNode]
+) -> dict[str, Any]:
     """Give nodes what stands below their names; return what is for all nodes, and note the rest."""
     names = {node.full_name: node for node in nodes if node.full_name}
     for_all: dict[str, Any] = {}
-    for full_name, value, span, conditions in run.server_parameters:
+    for full_name, value, span, conditions in server_parameters:
         parts = full_name.strip("/").split("/")
         owner = next(
             (names[name] for end in range(len(parts), 0, -1) if (name := "/" + "/".join(parts[:end])) in names), None
@@ -74,7 +74,7 @@ def _has_parameter(node: LaunchedNode, parts: list[str]) -> bool:
     return parameters is not None
 
 
-def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, Any]:
+def read_server_parameters(run: ScopeRun, action: LaunchAction) -> dict[str, Any]:
     """Return parameters of ROS 1 that stand outside of nodes, by their names."""
     server_values: dict[str, Any] = {}
     for entry in action.values["entries"]:
@@ -97,7 +97,7 @@ def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, An
     return server_values
 
 
-def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution, server_values: dict[str, Any]) -> None:
+def _read_server_file(run: ScopeRun, action: LaunchAction, entry: Substitution, server_values: dict[str, Any]) -> None:
     text = run.context.resolve(entry.parts[0])
     path = run.files.find_file(text) if isinstance(text, str) else None
     values = None if path is None else run.parameter_reader.read_whole(path)
