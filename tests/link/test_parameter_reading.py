@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.link import parameter_reading
 from archgen.link.parameter_texts import matches_node_name
 from archgen.model.parameter_values import find_effective_parameters
@@ -29,7 +30,7 @@ def check(folder: Path, files: Mapping[str, str]) -> pipeline.CheckedProject:
 
 
 def pack(checked: pipeline.CheckedProject) -> str:
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     return write_yaml(packed.data, packed.comments)
 
 

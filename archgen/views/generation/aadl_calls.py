@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from archgen.timing.system.timing_system import Arc
 from archgen.views.generation.aadl_flow_steps import NO_TIME, TimeRange
-from archgen.views.generation.aadl_parts import Route, SystemTree
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_system_tree import Route, SystemTree
 from archgen.views.generation.aadl_types import UNTYPED, TypeBook
 from archgen.views.generation.aadl_words import make_property, write_range
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.views.generation.aadl_parts import Route, SystemPart
+from archgen.views.generation.aadl_system_part import SystemPart
+from archgen.views.generation.aadl_system_tree import Route
 from archgen.views.generation.aadl_words import can_be_written, make_item, make_property, write_range
 
 TimeRange = tuple[Fraction, Fraction]

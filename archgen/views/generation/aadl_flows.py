@@ -12,8 +12,8 @@ from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.system.timing_system import Arc
 from archgen.views.generation.aadl_calls import RouteFinder
 from archgen.views.generation.aadl_flow_steps import NO_TIME, FlowStep, TimeRange, fold_steps, list_route_steps
-from archgen.views.generation.aadl_parts import SystemPart
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_system_part import SystemPart
 from archgen.views.generation.aadl_words import AadlProperty, can_be_written, make_item, make_property, write_range
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
@@ -19,6 +19,7 @@ from archgen.views.generation.aadl_hints import (
     read_aadl_hints,
 )
 from archgen.views.generation.aadl_ports import PortPart, find_outer_port
+from archgen.views.generation.aadl_system_part import SystemPart
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -33,9 +34,6 @@ from archgen.views.generation.aadl_words import (
     write_aadl_string,
 )
 from archgen.views.generation.generation_context import write_place
-
-if TYPE_CHECKING:
-    from archgen.views.generation.aadl_parts import SystemPart
 
 _TF_TOPICS = frozenset({"/tf", "/tf_static"})
 _LONGEST_QUEUE = 512

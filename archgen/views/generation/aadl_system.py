@@ -14,10 +14,11 @@ from archgen.views.generation.aadl_calls import RouteEnds, RouteFinder
 from archgen.views.generation.aadl_devices import Device
 from archgen.views.generation.aadl_flows import FlowWriter
 from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
-from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
 from archgen.views.generation.aadl_platform import Platform
 from archgen.views.generation.aadl_ports import PortPart
 from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_system_part import SystemPart, list_system_properties
+from archgen.views.generation.aadl_system_tree import Route, SystemTree
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
