@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.model.counted_outputs import list_described_outputs
+from archgen.model.relied_outputs import list_described_outputs
 from archgen.timing.chains.read_ages import find_sent_ages
 from archgen.timing.figures.figure_wording import format_duration, format_rate
 from archgen.timing.figures.value_arithmetic import add_values, is_boundless, is_known_bound, smallest_value

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
-from archgen.model.counted_outputs import list_deprecated_kinds
+from archgen.model.deprecation_lookup import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.emit import file_tree, picture_files
+from archgen.emit.own_file_marks import PACKED_HEADER
 from archgen.emit.picture import Picture
-from archgen.emit.written_formats import PACKED_HEADER
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.syntax.folder_files import read_named_file

@@ -16,8 +16,8 @@ from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
-from archgen.model.counted_outputs import list_counted_outputs
 from archgen.model.promise import Deprecation, Promise, format_range
+from archgen.model.relied_outputs import list_relied_outputs
 from archgen.model.review_settings import BreakCategory
 
 
@@ -126,7 +126,7 @@ class _WordComparison:
 
 def _index_readings(architecture: Architecture, matched_ids: MatchedIds) -> dict[_Reading, Output]:
     readings: dict[_Reading, Output] = {}
-    for counted in list_counted_outputs(architecture):
+    for counted in list_relied_outputs(architecture):
         if counted.reader.id in architecture.inputs:
             reading = (
                 matched_ids.common_id("input", counted.reader.id),

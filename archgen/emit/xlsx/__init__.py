@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
-from archgen.emit.written_formats import PROGRAM_NAME, PROGRAM_PART
+from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
 from archgen.views.shapes import Facts, Inlines, Outline, Section, Table
 
 _MAX_NAME = 31

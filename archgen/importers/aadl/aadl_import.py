@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers.aadl.aadl_data_types import AadlDataTypes
 from archgen.importers.aadl.aadl_tokens import MAX_TOKENS, AadlText, TooManyTokensError
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
 from archgen.importers.aadl.classifier_names import ClassifierNames
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
-from archgen.importers.aadl.data_types import AadlDataTypes
 from archgen.importers.aadl.hardware_mapping import HardwareMapper
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.model_roots import ModelRoots

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from archgen.importers.aadl.aadl_data_types import AadlDataTypes
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text, is_marked, read_port_words
-from archgen.importers.aadl.data_types import AadlDataTypes
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import Scope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Port, Resolved

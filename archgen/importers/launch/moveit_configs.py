@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue
-from archgen.importers.launch.python_file_access import FileAccessReader
+from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import CallArguments, RecordValue
 from archgen.importers.launch.xacro_commands import make_xacro_command
 
@@ -64,7 +64,7 @@ def make_builder(arguments: CallArguments) -> MoveItBuilder | None:
 
 
 def call_builder(
-    reader: FileAccessReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
+    reader: MethodReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
 ) -> LaunchValue:
     """Return what a method of a builder gives: mostly itself."""
     files = _MoveItReader(reader, builder, node)
@@ -80,7 +80,7 @@ def call_builder(
 class _MoveItReader:
     """Reads the files of one call."""
 
-    def __init__(self, reader: FileAccessReader, builder: MoveItBuilder, node: ast.Call) -> None:
+    def __init__(self, reader: MethodReader, builder: MoveItBuilder, node: ast.Call) -> None:
         self._reader, self._builder, self._node = reader, builder, node
         self._steps: dict[str, Callable[[CallArguments], dict[LaunchValue, LaunchValue]]] = {
             "robot_description": self._read_robot_description,

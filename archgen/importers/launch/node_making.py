@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from archgen.importers.launch.command_words import split_words
-from archgen.importers.launch.file_changes import FileChanges
 from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, overlay_parameters
+from archgen.importers.launch.launch_parameter_values import evaluate_parameter, split_parameter
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, join_names
-from archgen.importers.launch.parameter_files import FILE_KIND, overlay_parameters
-from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
+from archgen.importers.launch.rewritten_files import FileRewrites
 from archgen.importers.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
 from archgen.importers.launch.scope_run import ScopeRun
 
@@ -228,13 +228,15 @@ class NodeMaker:
             self._run.tell_computed(action.word, "a parameter file", text, action.span)
             return
         self._keep_written(node, "parameter_files", value)
-        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, FileChanges) else None)
+        self._add_file(
+            node, text, self._resolve_text(namespace), changes if isinstance(changes, FileRewrites) else None
+        )
 
     def _resolve_text(self, value: LaunchValue) -> str:
         text = self._run.context.resolve("" if value is None else value)
         return text if isinstance(text, str) else ""
 
-    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileChanges | None) -> None:
+    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileRewrites | None) -> None:
         """Add a parameter file: its name, and what it says to the node where it can be read."""
         if not text:
             return

@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue
 from archgen.importers.launch.moveit_configs import MoveItBuilder, call_builder, make_builder
-from archgen.importers.launch.python_file_access import FileAccessReader
+from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, RecordValue
 from archgen.importers.launch.xacro_commands import make_xacro_command, write_mappings
 
 _COMMAND_WORDS = 2
 
 
-class OpenedFileReader(FileAccessReader):
+class OpenedFileReader(MethodReader):
     """Reads calls that open files."""
 
     def __init__(self, file: str, lines: list[str]) -> None:

@@ -7,13 +7,13 @@ import posixpath
 from abc import abstractmethod
 from collections.abc import Mapping
 
-from archgen.importers.launch.file_changes import FileChanges
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.importers.launch.launch_parameter_files import FILE_KIND
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
 from archgen.importers.launch.opened_files import OpenedFileReader
-from archgen.importers.launch.parameter_files import FILE_KIND
 from archgen.importers.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
+from archgen.importers.launch.rewritten_files import FileRewrites
 
 _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
     "LaunchConfiguration": ("var", ("variable_name", "default")),
@@ -191,18 +191,18 @@ class CallReader(OpenedFileReader):
             "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
         )
         source = arguments.get(0, "source_file")
-        if isinstance(source, Substitution) and source.kind == FILE_KIND and isinstance(source.parts[2], FileChanges):
+        if isinstance(source, Substitution) and source.kind == FILE_KIND and isinstance(source.parts[2], FileRewrites):
             source, _, earlier = source.parts
-            made = FileChanges(changes, earlier.texts, earlier.condition)
+            made = FileRewrites(changes, earlier.texts, earlier.condition)
         else:
-            made = FileChanges(changes)
+            made = FileRewrites(changes)
         return Substitution(FILE_KIND, (source, "" if root is None else root, made))
 
     def _call_replace_string(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         texts, condition = arguments.get(1, "replacements"), arguments.get(2, "condition")
         if not isinstance(texts, Mapping):
             return self.quote(node)
-        made = FileChanges({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
+        made = FileRewrites({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
         return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:

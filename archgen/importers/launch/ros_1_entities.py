@@ -8,8 +8,8 @@ from typing import Any
 
 from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, read_inline_value, read_inline_values
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_launch_value
-from archgen.importers.launch.parameter_files import FILE_KIND, read_inline_value, read_inline_values
 from archgen.importers.launch.substitution_texts import read_substituted_text
 
 _NODE_KEYS = {

@@ -11,9 +11,9 @@ from archgen.importers.launch.launch_actions import ActionKind, ConditionalValue
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_files import LaunchFiles
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, ParameterFileReader
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.importers.launch.launched_nodes import clean_name, join_names
-from archgen.importers.launch.parameter_files import FILE_KIND, ParameterFileReader
 
 
 class ScopeRun:

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, overlay_parameters
+from archgen.importers.launch.launch_parameter_values import CommandWords, evaluate_parameter, split_parameter
 from archgen.importers.launch.launch_values import Substitution, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode
-from archgen.importers.launch.parameter_files import FILE_KIND, overlay_parameters
-from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_parameter
 from archgen.importers.launch.scope_run import ScopeRun
 
 SIMULATED_TIME = "use_sim_time"

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from archgen.importers.running_graph.dump_lines import DumpLine
+from archgen.importers.running_graph.dumped_parameters import read_server_values
 from archgen.importers.running_graph.graph_model import RunningGraph, RunningNode
-from archgen.importers.running_graph.parameter_blocks import read_server_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.model.ros_distro import PAST_DISTROS
 

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable
 
 from archgen.importers.running_graph.dump_lines import FULL_NAME, DumpLine
+from archgen.importers.running_graph.dumped_parameters import take_node_parameters
 from archgen.importers.running_graph.endpoint_blocks import EndpointReader
 from archgen.importers.running_graph.graph_model import RunningGraph, RunningNode
-from archgen.importers.running_graph.parameter_blocks import take_node_parameters
 
 _SECTIONS = {
     "Subscribers:": "subscribes",

@@ -9,14 +9,14 @@ from archgen.importers.foreign.foreign_import import ForeignImport
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassSorting
-from archgen.importers.xmi.component_sections import ComponentSections, assign_port_ids
-from archgen.importers.xmi.data_types import UmlDataTypes
 from archgen.importers.xmi.deployment_sections import DeploymentSections
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
 from archgen.importers.xmi.leftovers import note_leftovers
 from archgen.importers.xmi.port_facts import InterfaceUses
 from archgen.importers.xmi.port_wiring import PortWiring
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, make_catalogue
+from archgen.importers.xmi.uml_component_sections import ComponentSections, assign_port_ids
+from archgen.importers.xmi.uml_data_types import UmlDataTypes
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument, read_documents
 

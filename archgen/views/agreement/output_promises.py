@@ -9,10 +9,10 @@ from typing import TypeVar
 from archgen.analyses.kept_promises import find_broken_promises
 from archgen.frozen import dataclass, replace
 from archgen.model.component import Output
-from archgen.model.counted_outputs import find_counted_output
 from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.model.quantity import Quantity
+from archgen.model.relied_outputs import find_relied_output
 from archgen.timing.chains.read_ages import find_sent_ages
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless
@@ -48,9 +48,7 @@ def list_counted_ports(lookup: Lookup, interface: PartnerInterface) -> tuple[Cou
     ports: dict[tuple[object, ...], CountedPort] = {}
     for reader in interface.inputs:
         connection = next((each for each in reader.connections if interface.output.id in each.outputs), None)
-        port = (
-            find_counted_output(lookup.architecture, connection, interface.output) if connection else interface.output
-        )
+        port = find_relied_output(lookup.architecture, connection, interface.output) if connection else interface.output
         words = tuple((port.promise or Promise()).list_kept()), port.version, _deprecation_text(port)
         known = ports.get(words, CountedPort(port, ()))
         ports[words] = CountedPort(known.port, (*known.readers, reader.id))

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
-from archgen.model.counted_outputs import list_deprecated_kinds
 from archgen.model.declared_timing import Timing
+from archgen.model.deprecation_lookup import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import list_medium_words

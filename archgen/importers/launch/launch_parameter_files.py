@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.launch.parameter_values import read_value_text
+from archgen.importers.launch.launch_parameter_values import read_value_text
 from archgen.link.parameter_texts import ParameterText, matches_node_name, read_parameter_text
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_data
 
@@ -19,7 +19,7 @@ _MAX_BYTES = 4_000_000
 MAX_OPENED_BYTES = 32_000_000
 """How much YAML launch files in Python may open altogether."""
 FILE_KIND = "parameter file"
-"""The substitution for a file among parameters: its path, the namespace of its values, and its FileChanges."""
+"""The substitution for a file among parameters: its path, the namespace of its values, and its FileRewrites."""
 
 
 class ParameterFileReader:
