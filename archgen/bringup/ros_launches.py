@@ -63,14 +63,14 @@ def describe_container_launch(architecture: Architecture, container: Container) 
         namespace=container.namespace,
         package=package,
         executable=executable,
-        own_values=dict(_flatten("", container.parameters)),
+        own_values=dict(_flatten_values("", container.parameters)),
     )
 
 
-def _flatten(prefix: str, values: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+def _flatten_values(prefix: str, values: Mapping[str, object]) -> Iterator[tuple[str, object]]:
     for key, value in values.items():
         if isinstance(value, Mapping):
-            yield from _flatten(f"{prefix}{key}.", value)
+            yield from _flatten_values(f"{prefix}{key}.", value)
         elif value is not None:
             yield f"{prefix}{key}", value
 

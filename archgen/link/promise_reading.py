@@ -64,19 +64,19 @@ def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnosti
         if limit is None:
             help_line = "a limit is a number, with or without a unit, such as `0`, `1.5 m` or `.inf`"
             diagnostics.append(
-                _diagnose(f"`{clip_text(item.text)}` is no limit of a range", item.span, help_line, element_id)
+                _diagnose_value(f"`{clip_text(item.text)}` is no limit of a range", item.span, help_line, element_id)
             )
             return ()
         limits.append(limit)
     place = entry.value.span if limits else entry.key_span
     if len(limits) != 2:  # noqa: PLR2004 - least and greatest
-        message = f"a range has two limits, the least and the greatest value: here {_count(len(limits))}"
-        diagnostics.append(_diagnose(message, place, "write `range: [0, 30]`; `.inf` is no limit", element_id))
+        message = f"a range has two limits, the least and the greatest value: here {_count_words(len(limits))}"
+        diagnostics.append(_diagnose_value(message, place, "write `range: [0, 30]`; `.inf` is no limit", element_id))
         return ()
     least, greatest = limits
     if least.number > greatest.number:
         message = f"the least value ({least.number:g}) is above the greatest ({greatest.number:g})"
-        diagnostics.append(_diagnose(message, place, "exchange them", element_id))
+        diagnostics.append(_diagnose_value(message, place, "exchange them", element_id))
         return ()
     units = {limit.unit for limit in limits if limit.unit}
     written_unit = mapping_values.get_text(body, "unit")
@@ -85,12 +85,12 @@ def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnosti
     if len(units) > 1:
         message = f"the range is in {' and '.join(f'`{unit}`' for unit in sorted(units))}"
         label = (Label(mapping_values.get_span(body, "unit"), "the unit"),) if written_unit else ()
-        diagnostics.append(_diagnose(message, place, "write it in one unit", element_id, *label))
+        diagnostics.append(_diagnose_value(message, place, "write it in one unit", element_id, *label))
         return ()
     return (least, greatest)
 
 
-def _count(number: int) -> str:
+def _count_words(number: int) -> str:
     return {0: "is none", 1: "is one"}.get(number, f"are {number}")
 
 
@@ -117,7 +117,7 @@ def read_deprecation(holder: MappingNode, element_id: str, diagnostics: list[Dia
     if until is not None and not _is_day(until):
         message = f"there is no day `{until}`"
         help_line = "a day is year, month and day, such as `2027-03-01`"
-        diagnostics.append(_diagnose(message, until_at, help_line, element_id))
+        diagnostics.append(_diagnose_value(message, until_at, help_line, element_id))
         until = None
     return Deprecation(
         until=until,
@@ -135,5 +135,5 @@ def _is_day(text: str) -> bool:
         return False
 
 
-def _diagnose(message: str, span: Span, help_line: str, element_id: str, *labels: Label) -> Diagnostic:
+def _diagnose_value(message: str, span: Span, help_line: str, element_id: str, *labels: Label) -> Diagnostic:
     return Diagnostic("wrong-value", message, span, labels=labels, help=help_line, element=element_id)

@@ -52,12 +52,12 @@ def _find_port(architecture: Architecture, shell_port: str, leaf: Output) -> Out
     """Return the output of a composed component that is named, or of a component that is named as a whole."""
     shell = architecture.shells.get(shell_port)
     if shell is not None:
-        return next((port for port in shell.outputs.values() if _carries(architecture, port, leaf)), None)
+        return next((port for port in shell.outputs.values() if _is_passed_on(architecture, port, leaf)), None)
     holder = architecture.shells.get(shell_port.rpartition(".")[0])
     return holder.outputs.get(shell_port.rpartition(".")[2]) if holder else None
 
 
-def _carries(architecture: Architecture, port: Output, leaf: Output) -> bool:
+def _is_passed_on(architecture: Architecture, port: Output, leaf: Output) -> bool:
     return leaf.id in architecture.leaf_ports_of("output", port.id)
 
 

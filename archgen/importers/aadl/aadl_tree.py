@@ -102,12 +102,12 @@ class AadlFeature:
 
 
 @dataclass(slots=True)
-class Binding:
+class PrototypeBinding:
     """What a prototype stands for: a category and a classifier with bindings of its own."""
 
     category: str
     classifier: str
-    bindings: dict[str, Binding] = field(default_factory=dict)
+    bindings: dict[str, PrototypeBinding] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -128,7 +128,7 @@ class Subcomponent:
     category: str
     span: Span
     classifier: str = ""
-    bindings: dict[str, Binding] = field(default_factory=dict)
+    bindings: dict[str, PrototypeBinding] = field(default_factory=dict)
     refined: bool = False
     dimensions: tuple[str, ...] = ()
     modes: Modes = ()
@@ -151,7 +151,7 @@ class AadlConnection:
 
 
 @dataclass(slots=True)
-class Flow:
+class AadlFlow:
     """A flow: `kind` is source, sink, path or `end to end`; `steps` are the features, or subcomponents and connections."""
 
     name: str
@@ -172,14 +172,14 @@ class Classifier:
     """`talker`, or `talker.impl`."""
     span: Span
     extends: str = ""
-    bindings: dict[str, Binding] = field(default_factory=dict)
+    bindings: dict[str, PrototypeBinding] = field(default_factory=dict)
     inverse_of: str = ""
     prototypes: list[Prototype] = field(default_factory=list)
     features: list[AadlFeature] = field(default_factory=list)
     subcomponents: list[Subcomponent] = field(default_factory=list)
     connections: list[AadlConnection] = field(default_factory=list)
     calls: list[Subcomponent] = field(default_factory=list)
-    flows: list[Flow] = field(default_factory=list)
+    flows: list[AadlFlow] = field(default_factory=list)
     modes: list[str] = field(default_factory=list)
     initial_mode: str = ""
     properties: list[AadlProperty] = field(default_factory=list)
@@ -192,7 +192,7 @@ class Classifier:
 
 
 @dataclass(slots=True)
-class Package:
+class AadlPackage:
     """A package, its public and its private part as one."""
 
     name: str

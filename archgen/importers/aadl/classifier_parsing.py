@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tokens import END
-from archgen.importers.aadl.aadl_tree import AadlConnection, Classifier, Flow, Path, Subcomponent
+from archgen.importers.aadl.aadl_tree import AadlConnection, AadlFlow, Classifier, Path, Subcomponent
 from archgen.importers.aadl.feature_parsing import (
     ACCESSES,
     CATEGORIES,
@@ -244,7 +244,7 @@ def _parse_call_sequence(cursor: TokenCursor, classifier: Classifier) -> None:
     cursor.expect(";")
 
 
-def _parse_flow(cursor: TokenCursor) -> Flow:
+def _parse_flow(cursor: TokenCursor) -> AadlFlow:
     start = cursor.token.offset
     name = cursor.expect_name("a flow")
     cursor.expect(":")
@@ -263,7 +263,7 @@ def _parse_flow(cursor: TokenCursor) -> Flow:
     properties = parse_property_list(cursor)
     modes = parse_modes(cursor)
     cursor.expect(";")
-    return Flow(name, kind, tuple(steps), cursor.span_from(start), refined, properties, modes)
+    return AadlFlow(name, kind, tuple(steps), cursor.span_from(start), refined, properties, modes)
 
 
 def _parse_mode(cursor: TokenCursor, classifier: Classifier) -> None:

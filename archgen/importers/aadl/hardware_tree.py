@@ -10,8 +10,8 @@ from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.bus_names import read_bound_path
 from archgen.importers.aadl.classifier_names import fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, read_references
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.importers.aadl.property_values import PropertyScope, read_references
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_part_path
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
 
@@ -25,9 +25,9 @@ _MAX_DEPTH = 40
 class HardwarePart:
     """A processor or bus where it stands."""
 
-    part: Part
-    resolved: Resolved | None
-    scope: Scope
+    part: ResolvedPart
+    resolved: ResolvedClassifier | None
+    scope: PropertyScope
 
 
 @dataclass(slots=True)
@@ -79,7 +79,7 @@ class HardwareFinder:
         self.tree = HardwareTree()
         self._resolver, self._notes = resolver, notes
 
-    def walk(self, resolved: Resolved, scope: Scope, path: Path = ()) -> None:
+    def walk(self, resolved: ResolvedClassifier, scope: PropertyScope, path: Path = ()) -> None:
         """Add all that stands in a classifier at a path."""
         tree = self.tree
         tree.count += 1
@@ -104,7 +104,7 @@ class HardwareFinder:
             if len(path) < _MAX_DEPTH:
                 self.walk(inner, inner_scope, inner_path)
 
-    def _add_bindings(self, resolved: Resolved, scope: Scope, path: Path) -> None:
+    def _add_bindings(self, resolved: ResolvedClassifier, scope: PropertyScope, path: Path) -> None:
         # What is written farther out was found before, and counts.
         for (target, name), association in _list_bindings(resolved):
             if name == "actual_processor_binding":
@@ -124,7 +124,7 @@ class HardwareFinder:
                 self.tree.bound_connections.setdefault((*path, *bus), {})[path, connection.name.lower()] = None
 
 
-def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], AadlProperty]]:
+def _list_bindings(resolved: ResolvedClassifier) -> Iterator[tuple[tuple[Path, str], AadlProperty]]:
     """Yield what is bound in a classifier, in braces of its parts as well; references there begin at the classifier, too."""
     yield from resolved.properties.items()
     for name, part in resolved.parts.items():

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, UsedProperties, read_first_text
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved, Use
-from archgen.importers.aadl.structures import Structure, StructureFinder
+from archgen.importers.aadl.property_values import PropertyScope, UsedProperties, read_first_text
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ClassifierUse, ResolvedClassifier
+from archgen.importers.aadl.structures import ClassifierStructure, StructureFinder
 from archgen.model.element_ids import make_id, make_unique_id
 
 _TYPE_CATEGORIES = frozenset({"system", "process", "device", "abstract"})
@@ -17,11 +17,11 @@ class ModelRoots:
 
     def __init__(self, resolver: ClassifierResolver, finder: StructureFinder, notes: NoteList) -> None:
         """Look at all classifiers that `resolver` knows."""
-        self.roots: list[Structure] = []
-        self.types: dict[str, Structure] = {}
+        self.roots: list[ClassifierStructure] = []
+        self.types: dict[str, ClassifierStructure] = {}
         self._resolver, self._finder, self._notes = resolver, finder, notes
         self._uses: dict[int, int] = {}
-        self._used_structures: dict[int, Structure] = {}
+        self._used_structures: dict[int, ClassifierStructure] = {}
         self._extended: set[int] = set()
         self._part_keys: set[str] = set()
         self._type_ids: dict[int, str] = {}
@@ -29,11 +29,11 @@ class ModelRoots:
         self._root_ids: set[int] = set()
         self._find_all()
 
-    def find_type_id(self, structure: Structure) -> str:
+    def find_type_id(self, structure: ClassifierStructure) -> str:
         """Return the id of the component type that a structure is, or nothing."""
         return self._type_ids.get(id(structure), "")
 
-    def find_base_id(self, structure: Structure) -> str:
+    def find_base_id(self, structure: ClassifierStructure) -> str:
         """Return the component type from which another one is made, or nothing."""
         known = structure.resolved.known
         name = known.classifier.extends
@@ -41,12 +41,12 @@ class ModelRoots:
             own_type = self._resolver.names.find(known.classifier.name.partition(".")[0], known.package)
             name, known = (own_type.classifier.extends, own_type) if own_type else ("", known)
         base = self._resolver.names.find(name, known.package) if name else None
-        resolved = self._resolver.resolve(Use(name, base)) if base else None
+        resolved = self._resolver.resolve(ClassifierUse(name, base)) if base else None
         if resolved is None or resolved is structure.resolved:
             return ""
         return self._type_ids.get(id(self._finder.find(resolved)), "")
 
-    def is_single(self, structure: Structure) -> bool:
+    def is_single(self, structure: ClassifierStructure) -> bool:
         """Whether something stands in one place alone, and is no component type."""
         return self._uses.get(id(structure), 0) == 1 and id(structure) not in self._type_ids
 
@@ -82,9 +82,9 @@ class ModelRoots:
             self._count_uses(structure)
             self._used_structures[id(structure)] = structure
 
-    def _find_structure(self, known: KnownClassifier) -> Structure:
-        resolved = self._resolver.resolve(Use(known.full_name, known))
-        return self._finder.find(resolved or Resolved(known))
+    def _find_structure(self, known: KnownClassifier) -> ClassifierStructure:
+        resolved = self._resolver.resolve(ClassifierUse(known.full_name, known))
+        return self._finder.find(resolved or ResolvedClassifier(known))
 
     def _list_named(self, known_classifiers: list[KnownClassifier]) -> set[str]:
         """Return the keys of what is extended; remember those of what is a part."""
@@ -99,7 +99,7 @@ class ModelRoots:
                     self._part_keys.add(found.key)
         return extended
 
-    def _count_uses(self, structure: Structure) -> None:
+    def _count_uses(self, structure: ClassifierStructure) -> None:
         waiting = [structure]
         while waiting:
             for part in waiting.pop().parts.values():
@@ -111,13 +111,13 @@ class ModelRoots:
                     self._used_structures[id(inner)] = inner
                     waiting.append(inner)
 
-    def _name_type(self, structure: Structure) -> None:
+    def _name_type(self, structure: ClassifierStructure) -> None:
         """Give a structure an id as a component type, if it is one."""
         category = structure.resolved.category
         if category not in _TYPE_CATEGORIES and category != "thread group":
             return
         wanted = read_first_text(
-            Scope(self._resolver, UsedProperties(), structure.resolved).value((), "archgen::component_type")
+            PropertyScope(self._resolver, UsedProperties(), structure.resolved).value((), "archgen::component_type")
         )
         is_reused = self._uses.get(id(structure), 0) != 1 or id(structure) in self._extended
         if not (wanted or is_reused or self._has_reused_base(structure)):
@@ -130,16 +130,16 @@ class ModelRoots:
         self._type_ids[id(structure)] = make_unique_id(make_id(wanted or name, "type"), self.types.keys())
         self.types[self._type_ids[id(structure)]] = structure
 
-    def _has_reused_base(self, structure: Structure) -> bool:
+    def _has_reused_base(self, structure: ClassifierStructure) -> bool:
         """Whether it extends what is a component type: then it is one, made from that."""
         return any(
             entry.classifier.category in _TYPE_CATEGORIES
-            and (resolved := self._resolver.resolve(Use(entry.full_name, entry))) is not None
+            and (resolved := self._resolver.resolve(ClassifierUse(entry.full_name, entry))) is not None
             and id(self._finder.find(resolved)) in self._extended
             for entry in structure.resolved.ancestors
         )
 
 
-def _has_content(structure: Structure) -> bool:
+def _has_content(structure: ClassifierStructure) -> bool:
     """Whether a classifier says anything that a component type can have; bases of a library often do not."""
     return bool(structure.ports.ports or structure.parts or structure.thread)

@@ -17,7 +17,7 @@ from archgen.importers.aadl.aadl_tree import (
     Path,
 )
 from archgen.importers.aadl.classifier_names import ClassifierNames, fold_property_name
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 
 _UNITS = {"ns": "ns", "us": "us", "ms": "ms", "sec": "s", "s": "s", "min": "min", "hr": "h", "h": "h"}
 _BYTES_A_SECOND = {
@@ -56,7 +56,7 @@ class UsedProperties:
 
 
 @dataclass(slots=True)
-class Scope:
+class PropertyScope:
     """Where a classifier stands: the associations around it count before its own.
 
     `layers` are what is around it, the outermost first, each with the path from there to it.
@@ -64,9 +64,9 @@ class Scope:
 
     resolver: ClassifierResolver
     used: UsedProperties
-    inner: Resolved | None
-    layers: tuple[tuple[Resolved, Path], ...] = ()
-    hidden: Resolved | None = None
+    inner: ResolvedClassifier | None
+    layers: tuple[tuple[ResolvedClassifier, Path], ...] = ()
+    hidden: ResolvedClassifier | None = None
     """The type of an instance of which only what is written around it is asked for; `hidden_path` leads on from there."""
     hidden_path: Path = ()
 
@@ -79,7 +79,7 @@ class Scope:
             self.used.add(association)
         return next(filter(None, found), None)
 
-    def _find_inside(self, resolved: Resolved, path: Path, name: str) -> AadlProperty | None:
+    def _find_inside(self, resolved: ResolvedClassifier, path: Path, name: str) -> AadlProperty | None:
         if found := resolved.properties.get((path, name)):
             self.used.add(found)
             return found
@@ -136,7 +136,7 @@ class Scope:
         found = self.find_inherited(path, name)
         return fold_value(found.value, self.resolver.names) if found else None
 
-    def go_into(self, part: Part, inner: Resolved | None) -> Scope:
+    def go_into(self, part: ResolvedPart, inner: ResolvedClassifier | None) -> PropertyScope:
         """Return the scope of a subcomponent."""
         name = part.written.name.lower()
         layers = [(outer, (*prefix, name)) for outer, prefix in self.layers]
@@ -144,17 +144,17 @@ class Scope:
             layers.append((self.inner, (name,)))
         if part.written.properties:
             layers.append((_wrap_properties(part), ()))
-        return Scope(self.resolver, self.used, inner, tuple(layers))
+        return PropertyScope(self.resolver, self.used, inner, tuple(layers))
 
     def find_hidden(self, path: Path, name: str) -> AadlProperty | None:
         """Return what the type of an instance itself says of it."""
         return self._find_inside(self.hidden, (*self.hidden_path, *path), name) if self.hidden else None
 
-    def go_below(self, part: Part) -> Scope:
+    def go_below(self, part: ResolvedPart) -> PropertyScope:
         """Return what is written around an instance of something in whose type a subcomponent stands, for that."""
         name = part.written.name.lower()
         layers = tuple((outer, (*prefix, name)) for outer, prefix in self.layers)
-        return Scope(self.resolver, self.used, None, layers, self.hidden, (*self.hidden_path, name))
+        return PropertyScope(self.resolver, self.used, None, layers, self.hidden, (*self.hidden_path, name))
 
     def says_anything(self) -> bool:
         """Whether an association around the classifier applies to it or to something in it, or is handed down to it."""
@@ -164,14 +164,14 @@ class Scope:
             for outer, prefix in self.layers
         )
 
-    def only_around(self) -> Scope:
+    def only_around(self) -> PropertyScope:
         """Return the scope without the classifier's own associations: what is written of this instance alone."""
-        return Scope(self.resolver, self.used, None, self.layers, self.inner)
+        return PropertyScope(self.resolver, self.used, None, self.layers, self.inner)
 
 
-def _wrap_properties(part: Part) -> Resolved:
+def _wrap_properties(part: ResolvedPart) -> ResolvedClassifier:
     """Return the associations in the braces of a subcomponent, as if they were a classifier's."""
-    wrapped = Resolved(part.owner)
+    wrapped = ResolvedClassifier(part.owner)
     for association in part.written.properties:
         for path in association.paths or ((),):
             key = (tuple(step.lower() for step in path), fold_property_name(association.name))

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field, replace
 from archgen.importers.aadl.aadl_tree import (
     AadlConnection,
     AadlFeature,
+    AadlFlow,
     AadlList,
     AadlProperty,
     AadlValue,
-    Binding,
     Classifier,
-    Flow,
     Modes,
     Path,
+    PrototypeBinding,
     Subcomponent,
 )
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
@@ -28,12 +28,12 @@ _MAX_PARENTS = 150
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class ClassifierUse:
     """A classifier as it is used: its name as written, what it is (None if that is in no file), its prototypes' values."""
 
     name: str = ""
     known: KnownClassifier | None = None
-    bindings: Mapping[str, Use] = field(default_factory=dict)
+    bindings: Mapping[str, ClassifierUse] = field(default_factory=dict)
     category: str = ""
 
     @property
@@ -43,45 +43,45 @@ class Use:
 
 
 @dataclass(slots=True)
-class Part:
+class ResolvedPart:
     """A subcomponent, its classifier looked up, with the package in which it is written."""
 
     written: Subcomponent
-    use: Use
+    use: ClassifierUse
     category: str
     owner: KnownClassifier
 
 
 @dataclass(slots=True)
-class Port:
+class ResolvedPort:
     """A feature, its classifier looked up."""
 
     written: AadlFeature
-    use: Use
+    use: ClassifierUse
     kind: str
     direction: str
     owner: KnownClassifier
 
 
 @dataclass(slots=True, eq=False)
-class Resolved:
+class ResolvedClassifier:
     """A classifier with all that it inherits, by names in lower case."""
 
     known: KnownClassifier
     ancestors: tuple[KnownClassifier, ...] = ()
     """What it extends and what it implements, the nearest first."""
-    prototypes: dict[str, Use] = field(default_factory=dict)
+    prototypes: dict[str, ClassifierUse] = field(default_factory=dict)
     """What its prototypes stand for."""
-    ports: dict[str, Port] = field(default_factory=dict)
-    parts: dict[str, Part] = field(default_factory=dict)
+    ports: dict[str, ResolvedPort] = field(default_factory=dict)
+    parts: dict[str, ResolvedPart] = field(default_factory=dict)
     connections: dict[str, AadlConnection] = field(default_factory=dict)
-    flows: dict[tuple[str, bool], Flow] = field(default_factory=dict)
+    flows: dict[tuple[str, bool], AadlFlow] = field(default_factory=dict)
     """By name, and whether it is a flow of an implementation."""
     properties: dict[tuple[Path, str], AadlProperty] = field(default_factory=dict)
     """The last association of each property, by the path that it applies to."""
     initial_mode: str = ""
     """In lower case; empty where it has no modes."""
-    own_type: Resolved | None = None
+    own_type: ResolvedClassifier | None = None
     """The type of an implementation."""
     calls: list[Subcomponent] = field(default_factory=list)
     annexes: list[str] = field(default_factory=list)
@@ -111,10 +111,10 @@ class ClassifierResolver:
         self.names, self.notes = names, notes
         self.overridden: set[int] = set()
         """Associations, by identity, that others write over where they stand."""
-        self._resolved: dict[tuple[str, str], Resolved] = {}
+        self._resolved: dict[tuple[str, str], ResolvedClassifier] = {}
         self._open: set[int] = set()
 
-    def resolve(self, use: Use) -> Resolved | None:
+    def resolve(self, use: ClassifierUse) -> ResolvedClassifier | None:
         """Return what is used with all that it inherits, or None where it is in no file."""
         if use.known is None:
             return None
@@ -124,21 +124,27 @@ class ClassifierResolver:
         return self._resolved[key]
 
     def find_use(
-        self, name: str, bindings: Mapping[str, Binding], place: KnownClassifier, env: Mapping[str, Use]
-    ) -> Use:
+        self,
+        name: str,
+        bindings: Mapping[str, PrototypeBinding],
+        place: KnownClassifier,
+        env: Mapping[str, ClassifierUse],
+    ) -> ClassifierUse:
         """Return what a name means at a place; a prototype's is what it stands for."""
         if name.lower() in env:
             return env[name.lower()]
         known = self.names.find(name, place.package)
         values = {key: self._bind(binding, place, env) for key, binding in bindings.items()}
-        return Use(name, known, values)
+        return ClassifierUse(name, known, values)
 
-    def _bind(self, binding: Binding, place: KnownClassifier, env: Mapping[str, Use]) -> Use:
-        use = self.find_use(binding.classifier, binding.bindings, place, env) if binding.classifier else Use()
+    def _bind(
+        self, binding: PrototypeBinding, place: KnownClassifier, env: Mapping[str, ClassifierUse]
+    ) -> ClassifierUse:
+        use = self.find_use(binding.classifier, binding.bindings, place, env) if binding.classifier else ClassifierUse()
         return replace(use, category=binding.category)
 
-    def _write_out(self, known: KnownClassifier, bindings: Mapping[str, Use]) -> Resolved:
-        resolved = Resolved(known)
+    def _write_out(self, known: KnownClassifier, bindings: Mapping[str, ClassifierUse]) -> ResolvedClassifier:
+        resolved = ResolvedClassifier(known)
         classifier = known.classifier
         if id(classifier) in self._open:
             words = f"{known.full_name} extends itself in the end; what it extends is left out here"
@@ -153,7 +159,7 @@ class ClassifierResolver:
         env = {
             prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {})
             if prototype.classifier
-            else Use(prototype.name, category=UNBOUND)
+            else ClassifierUse(prototype.name, category=UNBOUND)
             for prototype in classifier.prototypes
         } | dict(bindings)
         for parent in self._list_parents(known, env):
@@ -164,37 +170,41 @@ class ClassifierResolver:
         self._add_own(resolved, classifier, resolved.prototypes)
         return resolved
 
-    def _list_parents(self, known: KnownClassifier, env: Mapping[str, Use]) -> list[Resolved]:
+    def _list_parents(self, known: KnownClassifier, env: Mapping[str, ClassifierUse]) -> list[ResolvedClassifier]:
         classifier = known.classifier
-        uses: list[tuple[str, Mapping[str, Binding]]] = []
+        uses: list[tuple[str, Mapping[str, PrototypeBinding]]] = []
         if classifier.is_implementation:
             uses.append((classifier.name.partition(".")[0], {}))
         if classifier.extends:
             uses.append((classifier.extends, classifier.bindings))
-        parents: list[Resolved] = []
+        parents: list[ResolvedClassifier] = []
         for name, own_bindings in uses:
             use = self.find_use(name, own_bindings, known, {})
             if use.known is None:
                 self.notes.add_unknown_classifier(name, classifier.span)
                 continue
             values = {key: self._bind(binding, known, env) for key, binding in own_bindings.items()}
-            if parent := self.resolve(Use(name, use.known, {**env, **values})):
+            if parent := self.resolve(ClassifierUse(name, use.known, {**env, **values})):
                 parents.append(parent)
         return parents
 
-    def _add_own(self, resolved: Resolved, classifier: Classifier, env: Mapping[str, Use]) -> None:
+    def _add_own(self, resolved: ResolvedClassifier, classifier: Classifier, env: Mapping[str, ClassifierUse]) -> None:
         known = resolved.known
         for feature in classifier.features:
             self._add_feature(resolved, feature, env)
         for written in classifier.subcomponents:
             name = written.name.lower()
             earlier = resolved.parts.get(name)
-            use = self.find_use(written.classifier, written.bindings, known, env) if written.classifier else Use()
+            use = (
+                self.find_use(written.classifier, written.bindings, known, env)
+                if written.classifier
+                else ClassifierUse()
+            )
             if earlier and not written.classifier:
                 use = earlier.use
             if use.name and use.known is None and use.category != UNBOUND:
                 self.notes.add_unknown_classifier(use.name, written.span)
-            resolved.parts[name] = Part(written, use, written.category, known)
+            resolved.parts[name] = ResolvedPart(written, use, written.category, known)
         _add_connections(resolved, classifier)
         _add_flows(resolved, classifier)
         resolved.calls += classifier.calls
@@ -208,7 +218,9 @@ class ClassifierResolver:
                 chosen = _choose_value(association, resolved.initial_mode)
                 resolved.properties[key] = self._override(resolved, resolved.properties.get(key), chosen)
 
-    def _override(self, resolved: Resolved, earlier: AadlProperty | None, association: AadlProperty) -> AadlProperty:
+    def _override(
+        self, resolved: ResolvedClassifier, earlier: AadlProperty | None, association: AadlProperty
+    ) -> AadlProperty:
         """Return what counts of two associations to the same; `+=>` goes on behind the list that was there."""
         if earlier is None:
             return association
@@ -222,7 +234,7 @@ class ClassifierResolver:
         self.overridden.add(id(earlier))
         return association
 
-    def _add_inherited(self, resolved: Resolved, parent: Resolved) -> None:
+    def _add_inherited(self, resolved: ResolvedClassifier, parent: ResolvedClassifier) -> None:
         resolved.ancestors = tuple(dict.fromkeys((*resolved.ancestors, parent.known, *parent.ancestors)))
         if resolved.known.classifier.is_implementation and not parent.known.classifier.is_implementation:
             resolved.own_type = parent
@@ -245,16 +257,18 @@ class ClassifierResolver:
         resolved.calls += [call for call in parent.calls if call not in resolved.calls]
         resolved.annexes += [name for name in parent.annexes if name not in resolved.annexes]
 
-    def _add_feature(self, resolved: Resolved, feature: AadlFeature, env: Mapping[str, Use]) -> None:
+    def _add_feature(
+        self, resolved: ResolvedClassifier, feature: AadlFeature, env: Mapping[str, ClassifierUse]
+    ) -> None:
         earlier = resolved.ports.get(feature.name.lower())
-        use = self.find_use(feature.classifier, {}, resolved.known, env) if feature.classifier else Use()
+        use = self.find_use(feature.classifier, {}, resolved.known, env) if feature.classifier else ClassifierUse()
         if earlier and not feature.classifier:
             use = earlier.use
         kind = feature.kind
         if earlier and kind == "feature":
             kind = earlier.kind
         direction = feature.direction or (earlier.direction if earlier else "")
-        resolved.ports[feature.name.lower()] = Port(feature, use, kind, direction, resolved.known)
+        resolved.ports[feature.name.lower()] = ResolvedPort(feature, use, kind, direction, resolved.known)
 
 
 def _choose_value(association: AadlProperty, initial_mode: str) -> AadlProperty:
@@ -278,14 +292,14 @@ def _list_items(value: AadlValue) -> tuple[AadlValue, ...]:
     return value.items if isinstance(value, AadlList) else (value,)
 
 
-def _name_bindings(bindings: Mapping[str, Use]) -> str:
+def _name_bindings(bindings: Mapping[str, ClassifierUse]) -> str:
     """Return a text that is equal for equal values of prototypes."""
     return ",".join(
         f"{name}={use.full_name.lower()}({_name_bindings(use.bindings)})" for name, use in sorted(bindings.items())
     )
 
 
-def _add_connections(resolved: Resolved, classifier: Classifier) -> None:
+def _add_connections(resolved: ResolvedClassifier, classifier: Classifier) -> None:
     for index, written in enumerate(classifier.connections):
         name = written.name.lower() or f"{resolved.known.key}#{index}"
         earlier, connection = resolved.connections.get(name), written
@@ -294,7 +308,7 @@ def _add_connections(resolved: Resolved, classifier: Classifier) -> None:
         resolved.connections[name] = connection
 
 
-def _add_flows(resolved: Resolved, classifier: Classifier) -> None:
+def _add_flows(resolved: ResolvedClassifier, classifier: Classifier) -> None:
     for written in classifier.flows:
         key = (written.name.lower(), classifier.is_implementation and written.kind != "end to end")
         earlier, flow = resolved.flows.get(key), written

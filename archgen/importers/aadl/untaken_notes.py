@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.importers.aadl.aadl_tree import AadlConnection, AadlProperty, Classifier, Flow, Modes, Subcomponent
+from archgen.importers.aadl.aadl_tree import AadlConnection, AadlFlow, AadlProperty, Classifier, Modes, Subcomponent
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import UsedProperties
@@ -101,7 +101,7 @@ def _tell_modes(known: KnownClassifier, notes: NoteList) -> None:
             notes.add("in modes", words, element.span, fate="noted")
 
 
-def _list_elements(classifier: Classifier) -> Iterator[tuple[Subcomponent | AadlConnection | Flow, str]]:
+def _list_elements(classifier: Classifier) -> Iterator[tuple[Subcomponent | AadlConnection | AadlFlow, str]]:
     yield from ((part, part.category) for part in classifier.subcomponents)
     yield from ((connection, "connection") for connection in classifier.connections)
     yield from ((flow, "flow") for flow in classifier.flows)

@@ -139,7 +139,7 @@ class Ros2EntityReader:
             for child in inner:
                 read = self._read_param(child, depth + 1)
                 merged |= read if isinstance(read, dict) else {}
-            return {_text(name): merged}
+            return {_write_scalar(name): merged}
         value = self._attribute(entity, "value")
         if isinstance(entity.attributes.get("value"), str):
             separator = entity.attributes.get("value-sep")
@@ -150,7 +150,7 @@ class Ros2EntityReader:
                 ]
             else:
                 value = Substitution("typed", (value, entity.attributes.get("type", "yaml")))
-        return {_text(name): value}
+        return {_write_scalar(name): value}
 
     def _read_executable(self, entity: LaunchEntity) -> LaunchAction:
         values = self._read_node_values(entity)
@@ -206,5 +206,5 @@ class Ros2EntityReader:
         return LaunchAction("later", entity.tag, entity.span, {"reason": reason}, children)
 
 
-def _text(value: LaunchValue) -> str:
+def _write_scalar(value: LaunchValue) -> str:
     return value if isinstance(value, str) else "" if value is None else str(value)

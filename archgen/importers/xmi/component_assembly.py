@@ -7,7 +7,7 @@ from collections import defaultdict
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures, read_features
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.importers.xmi.import_ledger import ImportLedger, call
+from archgen.importers.xmi.import_ledger import ImportLedger, name_element
 from archgen.importers.xmi.made_names import choose_id
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
@@ -84,7 +84,7 @@ class ComponentAssembly:
                 if part_type is None or part_type.sort != "component_type":
                     continue
                 if is_true(part_type.element, "isAbstract"):
-                    words = f"{call(part)} is not taken: `{get_name(part_type.element)}` is abstract"
+                    words = f"{name_element(part)} is not taken: `{get_name(part_type.element)}` is abstract"
                     self._ledger.leave(part, words)
                     continue
                 facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
@@ -114,7 +114,7 @@ class ComponentAssembly:
                 if inner.base is not None and any(
                     id(each) in active for each in (inner.base, *inner.base.list_bases())
                 ):
-                    words = f"{call(inner.element)} is not taken: the component type would contain itself"
+                    words = f"{name_element(inner.element)} is not taken: the component type would contain itself"
                     self._ledger.leave(inner.element, words)
                     facts.inside.remove(inner)
                     self._sorting.parts.pop(inner.element, None)

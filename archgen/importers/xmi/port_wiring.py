@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.importers.xmi.import_ledger import ImportLedger, call
+from archgen.importers.xmi.import_ledger import ImportLedger, name_element
 from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, get_interface_name
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_child_elements
@@ -56,7 +56,7 @@ class PortWiring:
         ends = list_child_elements(connector, "ConnectorEnd")
         found = [end for each in ends if (end := self._find_end(each))]
         if len(ends) != 2 or len(found) != 2:  # noqa: PLR2004 - a connector joins two
-            words = f"{call(connector)} is not taken: it does not join two ports of components"
+            words = f"{name_element(connector)} is not taken: it does not join two ports of components"
             self._ledger.leave(connector, words)
             return None
         for each, other in (found, found[::-1]):
@@ -99,7 +99,7 @@ class PortWiring:
                 self._delegate(connector, outer, inner)
                 return
         if first.port.is_output and second.port.is_output and not (first.port.is_input or second.port.is_input):
-            words = f"{call(connector)} joins two ports of which nothing says which one reads: {self._tell_ends(first, second)}"
+            words = f"{name_element(connector)} joins two ports of which nothing says which one reads: {self._tell_ends(first, second)}"
             self._ledger.leave(connector, words, "let one of the two use the interface that the other one realizes")
             return
         taken = False
@@ -109,7 +109,7 @@ class PortWiring:
         if taken:
             self._ledger.take(connector)
         else:
-            words = f"{call(connector)} is not taken: {self._tell_ends(first, second)} do not fit"
+            words = f"{name_element(connector)} is not taken: {self._tell_ends(first, second)} do not fit"
             self._ledger.leave(connector, words)
 
     @staticmethod
@@ -124,7 +124,7 @@ class PortWiring:
         if outer.port.is_output and inner.port.is_output:
             self.inner_of[outer.facts][outer.port].append(inner)
         if outer.port.is_input != inner.port.is_input and outer.port.is_output != inner.port.is_output:
-            words = f"{call(connector)} is not taken: its ports do not go the same way, {self._tell_ends(outer, inner)}"
+            words = f"{name_element(connector)} is not taken: its ports do not go the same way, {self._tell_ends(outer, inner)}"
             self._ledger.leave(connector, words)
         else:
             self._ledger.take(connector)

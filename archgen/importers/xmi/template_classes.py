@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from archgen.importers.foreign.xml_tree import XmlElement
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_name, list_child_elements
 from archgen.importers.xmi.uml_values import find_field_type, name_referenced
@@ -52,7 +52,7 @@ class TemplateClasses:
     def _read_signature(self, owner: XmlElement, signature: XmlElement) -> None:
         names = read_generic_names(self._index, signature)
         if not names or owner in self.generic_names:
-            words = f"{call(owner)} is no generic component type: its template's parameters need a name each, as `T`"
+            words = f"{name_element(owner)} is no generic component type: its template's parameters need a name each, as `T`"
             self._ledger.leave(signature, words)
             return
         self.generic_names[owner] = names
@@ -64,7 +64,7 @@ class TemplateClasses:
         signature = self._index.find_reference(binding, "signature")
         template = self._signatures.get(signature.element) if signature and signature.element else None
         if template is None or owner in self.bindings or template is owner:
-            words = f"{call(owner)} is not bound to a template: a component type is made from one class of these files"
+            words = f"{name_element(owner)} is not bound to a template: a component type is made from one class of these files"
             self._ledger.leave(binding, words)
             return
         actuals: dict[XmlElement, str] = {}
@@ -77,9 +77,7 @@ class TemplateClasses:
         arguments = tuple(actuals.get(each, "") for each in self._formals[template])
         if not all(arguments):
             names = ", ".join(f"`{name}`" for name in self.generic_names[template])
-            words = (
-                f"{call(owner)} is not bound to `{get_name(template)[:80]}`: it does not say what {names} stands for"
-            )
+            words = f"{name_element(owner)} is not bound to `{get_name(template)[:80]}`: it does not say what {names} stands for"
             self._ledger.leave(binding, words)
             return
         self.bindings[owner] = template, arguments

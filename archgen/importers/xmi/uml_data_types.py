@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
 from archgen.importers.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_child_elements
@@ -36,7 +36,7 @@ class UmlDataTypes:
                 continue
             if not name or name in self._elements:
                 why = "there is another one of this name" if name else "it has no name"
-                ledger.leave(element, f"{call(element)} is not taken: {why}")
+                ledger.leave(element, f"{name_element(element)} is not taken: {why}")
                 continue
             self._elements[name] = element
             for signature in list_child_elements(element, *SIGNATURE_KINDS):

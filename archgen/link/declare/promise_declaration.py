@@ -16,7 +16,7 @@ from archgen.model.component import Output
 from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise
 
 
-class _Said(NamedTuple):
+class _OutputWords(NamedTuple):
     """What is said of an output, by itself or by what it gives on."""
 
     promise: Promise | None = None
@@ -24,7 +24,7 @@ class _Said(NamedTuple):
     deprecated: Deprecation | None = None
 
 
-_NOTHING = _Said()
+_NOTHING = _OutputWords()
 
 
 class PromisedOutputs:
@@ -42,8 +42,8 @@ class PromisedOutputs:
         self._sources = sources
         self._parameters = parameters
         self._resolver = resolver
-        self._own: dict[str, _Said] = {}
-        self._kept: dict[str, _Said] = {}
+        self._own: dict[str, _OutputWords] = {}
+        self._kept: dict[str, _OutputWords] = {}
 
     def complete_output(self, output: Output) -> Output:
         """Return an output with all that is said of it."""
@@ -52,7 +52,7 @@ class PromisedOutputs:
         said = self._find_said(output.id)
         return replace(output, promise=said.promise, version=said.version, deprecated=said.deprecated)
 
-    def _find_said(self, output_id: str) -> _Said:
+    def _find_said(self, output_id: str) -> _OutputWords:
         """Return what is said of an output: its own, else what is said of what it gives on.
 
         Without recursion: what only passes on may stand behind one another in thousands.
@@ -85,7 +85,7 @@ class PromisedOutputs:
                 return port[1]
         return None
 
-    def _join_given(self, output_id: str) -> _Said:
+    def _join_given(self, output_id: str) -> _OutputWords:
         """Return what all outputs say that an output gives on together: what one of them does not say, nobody keeps."""
         if self._sources is None or output_id.rpartition(".")[0] not in self._outline.shells:
             return _NOTHING
@@ -94,13 +94,13 @@ class PromisedOutputs:
         if not said:
             return _NOTHING
         first = said[0]
-        return _Said(
+        return _OutputWords(
             _join_promises([each.promise for each in said]),
             first.version if all(each.version == first.version for each in said) else None,
             first.deprecated if all(each.deprecated == first.deprecated for each in said) else None,
         )
 
-    def _lift_replacement(self, said: _Said, output_id: str) -> _Said:
+    def _lift_replacement(self, said: _OutputWords, output_id: str) -> _OutputWords:
         """Return what is given on with the replacement as seen from outside: the port that gives the replacement on."""
         shell_id = output_id.rpartition(".")[0]
         target = said.deprecated.target if said.deprecated else None
@@ -110,7 +110,7 @@ class PromisedOutputs:
         lifted = next((port for port in ports if self._find_given(port) == target), target)
         return said._replace(deprecated=replace(said.deprecated, target=lifted))
 
-    def _find_own(self, output_id: str) -> _Said:
+    def _find_own(self, output_id: str) -> _OutputWords:
         """Return what is written at an output, each reference resolved once."""
         if output_id not in self._own:
             component_id, _, name = output_id.rpartition(".")
@@ -121,7 +121,7 @@ class PromisedOutputs:
                 promise = replace(promise, frame=self._parameters.fill_in_name(promise.frame, component_id, place))
             if deprecated and deprecated.use:
                 deprecated = replace(deprecated, target=self._resolve_use(deprecated, component_id))
-            self._own[output_id] = _Said(promise, output.version, deprecated)
+            self._own[output_id] = _OutputWords(promise, output.version, deprecated)
         return self._own[output_id]
 
     def _resolve_use(self, deprecated: Deprecation, component_id: str) -> str | None:
@@ -150,7 +150,7 @@ class PromisedOutputs:
         return None
 
 
-def _lay_over(given: _Said, own: _Said) -> _Said:
+def _lay_over(given: _OutputWords, own: _OutputWords) -> _OutputWords:
     """Return what is said by itself, and for the rest what is given on; of a promise key by key."""
     promise = own.promise or given.promise
     if own.promise and given.promise:
@@ -160,7 +160,7 @@ def _lay_over(given: _Said, own: _Said) -> _Said:
         if "unit" in kept and own.promise.range is not None:
             del kept["unit"]  # the unit of another range
         promise = replace(own.promise, **kept, places={**given.promise.places, **own.promise.places})
-    return _Said(promise, own.version or given.version, own.deprecated or given.deprecated)
+    return _OutputWords(promise, own.version or given.version, own.deprecated or given.deprecated)
 
 
 def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:
@@ -169,13 +169,15 @@ def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:
     if first is None:
         return None
     differing: dict[str, Any] = {
-        key: None for key in PROMISE_KEYS if any(_read(each, key) != _read(first, key) for each in others)
+        key: None
+        for key in PROMISE_KEYS
+        if any(_read_promised(each, key) != _read_promised(first, key) for each in others)
     }
     joined = replace(first, **differing)
     return joined if any(_list_kept(joined)) else None
 
 
-def _read(promise: Promise | None, key: str) -> object:
+def _read_promised(promise: Promise | None, key: str) -> object:
     return getattr(promise, key) if promise else None
 
 

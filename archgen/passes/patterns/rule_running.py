@@ -9,7 +9,7 @@ from archgen.diagnostics.element_origins import TreePath
 from archgen.diagnostics.source_span import Span
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.edit_values import EditError, fill_pattern
-from archgen.passes.patterns.expression_values import WrongValueError, evaluate, holds
+from archgen.passes.patterns.expression_values import WrongValueError, evaluate_operand, is_condition_true
 from archgen.passes.patterns.expressions import Call, ListOperand, TextOperand
 from archgen.passes.patterns.matching import match_view
 from archgen.passes.patterns.pass_shapes import WRONG_PASS, LetBinding, PatternPass, RewriteRule
@@ -116,18 +116,18 @@ class _RuleRunner:
 
     def _evaluate_let(self, let: LetBinding, bindings: Bindings) -> ViewValue:
         if let.is_expression and isinstance(let.value, (TextOperand, ListOperand, Call)):
-            return evaluate(let.value, bindings, self._view)
+            return evaluate_operand(let.value, bindings, self._view)
         return fill_pattern(let.value, bindings)  # type: ignore[arg-type]
 
     def _is_wanted(self, rule: RewriteRule, bindings: Bindings) -> bool:
         try:
-            if not all(holds(written.comparison, bindings, self._view) for written in rule.where):
+            if not all(is_condition_true(written.comparison, bindings, self._view) for written in rule.where):
                 return False
             for negative in rule.unless:
                 for inner in match_view(
                     negative.pattern, self._view, bindings, self._budget, rule.distinct | negative.distinct
                 ):
-                    if all(holds(written.comparison, inner, self._view) for written in negative.where):
+                    if all(is_condition_true(written.comparison, inner, self._view) for written in negative.where):
                         return False
         except WrongValueError as error:
             raise self._stop(rule, bindings, str(error), None) from None

@@ -124,13 +124,13 @@ def _write_values(
     """Write values, one a line; where not all readers see the same, each with its readers."""
     lines = []
     for value, readers in values:
-        names = f" for {', '.join(_short(reader) for reader in readers)}" if is_several and readers else ""
+        names = f" for {', '.join(_shorten_id(reader) for reader in readers)}" if is_several and readers else ""
         number = str(value.value) if isinstance(value, Quantity) else None
         lines.append((Text(f"{write(value)}{names}", sort_number=number),))
     return inline_text.join_lines(lines)
 
 
-def _short(port_id: str) -> str:
+def _shorten_id(port_id: str) -> str:
     return ".".join(port_id.split(".")[-2:])
 
 
@@ -203,13 +203,13 @@ def find_broken_words(lookup: Lookup, interface: PartnerInterface, ports: Sequen
     if lookup.timing is not None and interface.output is not None and any(each.port.promise for each in ports):
         for broken in find_broken_promises(lookup.architecture, lookup.timing.analysis):
             if broken.leaf == interface.output.id and broken.port in port_ids:
-                yield f"`{_short(broken.port)}` promises {broken.promised}: {broken.words}."
+                yield f"`{_shorten_id(broken.port)}` promises {broken.promised}: {broken.words}."
     freshness = {port.id: port.freshness for port in interface.inputs if port.freshness}
     for each in ports:
         for reader in each.readers:
             needed, promised = freshness.get(reader), each.promise.max_age
             if needed and promised and promised.value > needed.value:
-                yield f"`{_short(reader)}` needs what is no older than {needed}, and {promised} is promised."
+                yield f"`{_shorten_id(reader)}` needs what is no older than {needed}, and {promised} is promised."
 
 
 def identify_words(ports: Sequence[CountedPort]) -> list[list[str]]:

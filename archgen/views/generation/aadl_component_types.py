@@ -10,8 +10,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType
 from archgen.model.node import Node
-from archgen.views.generation.aadl_devices import Device
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_devices import NodeDevice
+from archgen.views.generation.aadl_processes import NodeProcess
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
@@ -38,7 +38,7 @@ class SharedType:
 
     declared: ComponentType
     name: str
-    instances: tuple[Process, ...]
+    instances: tuple[NodeProcess, ...]
 
 
 def find_type_of_node(architecture: Architecture, node: Node) -> ComponentType | None:
@@ -52,10 +52,10 @@ def find_type_of_node(architecture: Architecture, node: Node) -> ComponentType |
 
 
 def list_shared_types(
-    architecture: Architecture, processes: Iterable[Process], names: Mapping[tuple[str, str], str]
+    architecture: Architecture, processes: Iterable[NodeProcess], names: Mapping[tuple[str, str], str]
 ) -> list[SharedType]:
     """Return the types with their instances; `names` are what their classifiers are called, by category and id."""
-    instances: dict[tuple[str, str], list[Process]] = {}
+    instances: dict[tuple[str, str], list[NodeProcess]] = {}
     for process in processes:
         if declared := find_type_of_node(architecture, process.node):
             instances.setdefault((process.category, declared.id), []).append(process)
@@ -65,11 +65,11 @@ def list_shared_types(
     ]
 
 
-def _select_alike(processes: Sequence[Process]) -> list[Process]:
+def _select_alike(processes: Sequence[NodeProcess]) -> list[NodeProcess]:
     """Return those that one classifier can stand for: as many as possible."""
     shapes = [_describe_shape(process) for process in processes]
     [(shape, _)] = Counter(shapes).most_common(1)
-    alike: list[Process] = []
+    alike: list[NodeProcess] = []
     texts: dict[tuple[str, str], str] = {}
     for process, own_shape in zip(processes, shapes, strict=True):
         own_texts = {("feature", each["name"]): each["text"] for each in process.feature_items}
@@ -80,7 +80,7 @@ def _select_alike(processes: Sequence[Process]) -> list[Process]:
     return alike
 
 
-def _describe_shape(process: Process) -> str:
+def _describe_shape(process: NodeProcess) -> str:
     """Return a text that is equal for processes of which one classifier can be made."""
     features = [(each["name"], each["text"]) for each in process.feature_items if not _is_extra(each)]
     inside = [(each["name"], each["text"]) for each in (*process.connections, *process.subcomponents)]
@@ -128,7 +128,7 @@ class TypeWriter:
     def place_instances(self) -> None:
         """Make the subcomponents of the type, with what each says otherwise."""
         for process, said in zip(self._shared.instances, self._said, strict=True):
-            ending = "" if isinstance(process, Device) else ".impl"
+            ending = "" if isinstance(process, NodeDevice) else ".impl"
             process.item["text"] = f"{process.category} {self._package_name}::{self._shared.name}{ending}"
             process.item["properties"] += [
                 make_property(name, value, path)
@@ -146,7 +146,7 @@ class TypeWriter:
         own_type = make_classifier(self._first.category, self._shared.name, place=write_place(declared.at))
         own_type.update(features=self._merge_items("features"), flows=self._merge_items("flows"), properties=words)
         inside = self._list_common("inside")
-        if isinstance(self._first, Device):
+        if isinstance(self._first, NodeDevice):
             own_type["properties"] = [*words, *inside]
             return [own_type]
         threads, names = self._copy_threads()
@@ -192,7 +192,7 @@ class TypeWriter:
         ]
 
 
-def _list_said(process: Process) -> Iterator[tuple[_Key, str]]:
+def _list_said(process: NodeProcess) -> Iterator[tuple[_Key, str]]:
     """Yield all properties of a process with their values."""
     for each in process.list_words():
         yield ("words", "", each["name"]), each["value"]

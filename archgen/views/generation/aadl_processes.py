@@ -57,7 +57,7 @@ def _find_whole(architecture: Architecture, node: Node) -> Component | None:
     return None
 
 
-class Process:
+class NodeProcess:
     """A node in AADL: its type and implementation, which grow as connections and flows are found."""
 
     category = "process"

@@ -6,7 +6,7 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.views.generation.aadl_ports import PortPart, find_outer_port
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_processes import NodeProcess
 from archgen.views.generation.aadl_system_part import SystemPart
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -42,7 +42,7 @@ class SystemTree:
         self._package_name = package_name
         self._classifiers = NameSpace((root.classifier,))
 
-    def find_home(self, process: Process) -> tuple[SystemPart, str]:
+    def find_home(self, process: NodeProcess) -> tuple[SystemPart, str]:
         """Return the system that a process stands in, and the component that it is there; nothing for one of several."""
         components = [found for each in process.node.implements if (found := self._architecture.find_component(each))]
         whole = process.whole
@@ -72,8 +72,8 @@ class SystemTree:
 
     def join(
         self,
-        source: tuple[Process, PortPart],
-        reader: tuple[Process, PortPart],
+        source: tuple[NodeProcess, PortPart],
+        reader: tuple[NodeProcess, PortPart],
         properties: list[AadlProperty],
     ) -> Route:
         """Join the ports of two processes, through the borders of all systems between them."""
@@ -97,7 +97,7 @@ class SystemTree:
         joint = scope.join_ends(name, output.connection_kind, (end, own_end), properties)
         return Route(tuple(outward), scope, joint, tuple(reversed(inward)))
 
-    def _cross(self, system: SystemPart, process: Process, part: PortPart, inner_end: str) -> tuple[str, str]:
+    def _cross(self, system: SystemPart, process: NodeProcess, part: PortPart, inner_end: str) -> tuple[str, str]:
         """Return the feature of a system for a port inside, and the connection inside that leads there."""
         shell_port = self._find_shell_port(system, part)
         place = (shell_port or process.node.id, part.text if shell_port else part.key)
@@ -120,7 +120,7 @@ class SystemTree:
             return None
         return find_outer_port(self._architecture, shell, part)
 
-    def lead_access(self, process: Process, feature: str, accessed: str, name: str) -> None:
+    def lead_access(self, process: NodeProcess, feature: str, accessed: str, name: str) -> None:
         """Lead the access to something of the outermost system, `data access ros::tf`, by systems to a process' feature."""
         kind = accessed.rpartition(" ")[0]
         wanted_name = feature

@@ -67,13 +67,13 @@ def connect_instances(
         if output.component not in instances or reader.component not in instances:
             continue
         source, target = classes[output.component].record, classes[reader.component].record
-        sent = _find(source["outputs"], output.name)
+        sent = _find_port(source["outputs"], output.name)
         same = [
             each for each in target["inputs"] if sent and name_port_type(each["type"]) == name_port_type(sent["type"])
         ]
-        read = _find(same, reader.name)
-        served = _find(source["operations"], output.name, "port")
-        call = _find(target["calls"], reader.name)
+        read = _find_port(same, reader.name)
+        served = _find_port(source["operations"], output.name, "port")
+        call = _find_port(target["calls"], reader.name)
         ends: dict[str, Any] = {
             **_record_end("source", instances[output.component], sent or served),
             **_record_end("target", instances[reader.component], read or call),
@@ -112,7 +112,7 @@ def _record_end(end: str, instance: Mapping[str, Any], port: Mapping[str, Any] |
     return {f"{end}_{key}": value for key, value in words.items()}
 
 
-def _find(ports: Iterable[dict[str, Any]], name: str, key: str = "title") -> dict[str, Any] | None:
+def _find_port(ports: Iterable[dict[str, Any]], name: str, key: str = "title") -> dict[str, Any] | None:
     return next((each for each in ports if each[key] == name), None)
 
 

@@ -133,13 +133,13 @@ class UmlWiring:
             place = self._components.samples.get(path.removeprefix(TYPE_PREFIX), "") if _is_type(path) else path
             for name, port in read_mapping(body.get("outputs")).items():
                 given = self._architecture.shell_ports.get(f"output {place}.{name}", ()) if place else ()
-                inner = [(_move(each, place, path), each.rpartition(".")[2]) for each in given]
+                inner = [(_move_path(each, place, path), each.rpartition(".")[2]) for each in given]
                 for each in inner or _read_references(path, read_mapping(port).get("from")):
                     if each in self._components.port_ids and (path, name) in self._components.port_ids:
                         self._join(path, (path, name), each)
 
 
-def _move(output: str, place: str, path: str) -> str:
+def _move_path(output: str, place: str, path: str) -> str:
     """Return the path of an output's component inside of a type, for that inside of an instance."""
     component = output.rpartition(".")[0]
     return f"{path}.{component.rpartition('.')[2]}" if component.rpartition(".")[0] == place else ""
