@@ -58,6 +58,7 @@ class ModelRoots:
         for known in known_classifiers:
             if known.classifier.category != "system" or not known.classifier.is_implementation:
                 continue
+            # What is neither a part nor extended stands for itself: AADL does not say which systems are instantiated.
             if known.key not in self._part_keys and known.key not in extended_keys:
                 self.roots.append(self._find_structure(known))
         self._root_ids = {id(root) for root in self.roots}
@@ -100,6 +101,7 @@ class ModelRoots:
         return extended
 
     def _count_uses(self, structure: ClassifierStructure) -> None:
+        # Without recursion: parts may nest as deep as the file likes, and many stand in the same structure.
         waiting = [structure]
         while waiting:
             for part in waiting.pop().parts.values():
@@ -107,6 +109,7 @@ class ModelRoots:
                 if inner is None:
                     continue
                 self._uses[id(inner)] = self._uses.get(id(inner), 0) + 1
+                # Each structure is entered once: doubled parts, twenty levels deep, would be a million ways.
                 if id(inner) not in self._used_structures:
                     self._used_structures[id(inner)] = inner
                     waiting.append(inner)

@@ -65,6 +65,7 @@ def name_object(value: object) -> UnknownValue:
 
 def write_plain(value: LaunchValue) -> str:
     """Return a plain value as a launch file writes it."""
+    # A boolean is a number to Python, and would be written in its words.
     if isinstance(value, bool):
         return "true" if value else "false"
     return "" if value is None else str(value)

@@ -116,6 +116,7 @@ class _MoveItReader:
         merged: dict[LaunchValue, LaunchValue] = {}
         for name in (*_STEPS, "moveit_cpp"):
             merged |= parts.get(name, {})
+        # They stand below the same key as the limits of joints, and are added there key by key.
         for key, limits in parts.get("pilz_cartesian_limits", {}).items():
             known = merged.get(key)
             if isinstance(known, dict) and isinstance(limits, dict):

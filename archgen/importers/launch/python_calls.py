@@ -116,11 +116,13 @@ class CallReader(OpenedFileReader):
             return self._make_substitution(name, arguments, node)
         if name in CONDITIONS:
             return make_condition(name, arguments)
+        # By a table and not by the name of a method: the name comes from the file, and may be that of any method here.
         caller = self._callers.get(name)
         if caller is not None and _is_meant(function):
             return caller(arguments, node)
         if name in _FIRST_ARGUMENT and (arguments.positional or arguments.named):
             return arguments.get(0, _FIRST_ARGUMENT[name], *arguments.named)
+        # Packages of launch files often add their own folder, and import from it in the next line.
         if function.name in {"sys.path.append", "sys.path.insert"} and arguments.positional:
             self.add_module_folder(arguments.positional[-1])
             return None

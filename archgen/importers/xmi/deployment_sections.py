@@ -40,6 +40,7 @@ class DeploymentSections:
         self._own_nodes: dict[str, dict[str, object]] = {}
         """Nodes that archgen exported, by id."""
         self._own_hosts: dict[XmlElement, str] = {}
+        # Manifestations first: what is deployed is mostly an artifact, and this says which components are in it.
         self._read_manifestations()
         self._read_deployments()
         self._make_own_nodes()
@@ -60,6 +61,7 @@ class DeploymentSections:
         middlewares: dict[str, list[str]] = defaultdict(list)
         environments = [each for each in self._catalogue.hardware if get_kind(each) == "ExecutionEnvironment"]
         hosts_of_all = list(self._hosts.values())
+        # Environments outside of nodes count for each node: a hostile file would make the product of both.
         if len(environments) * len(hosts_of_all) > _MAX_HINTS:
             hosts_of_all = []
         for element in environments:
@@ -86,6 +88,7 @@ class DeploymentSections:
             for artifact in artifacts:
                 if get_kind(artifact) == "Artifact" and not _is_own_node(artifact):
                     for facts in components:
+                        # The first artifact counts: a node names one package.
                         if self._package_of.setdefault(facts, artifact) is not artifact:
                             words = f"{name_element(artifact)} manifests {name_element(facts.element)}, too: a component is in one package"
                             self._ledger.leave(artifact, words)
@@ -145,6 +148,7 @@ class DeploymentSections:
             self._ledger.take(deployment)
             return
         for facts in manifested:
+            # The first deployment counts: the language has one host for a node, and no way to choose the better one.
             if self._host_of.setdefault(facts, host) != host:
                 words = f"`{facts.id}` runs on `{self._host_of[facts]}` already: one component is on one host"
                 self._ledger.leave(deployment, words)
