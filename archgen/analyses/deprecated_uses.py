@@ -168,7 +168,7 @@ def _list_type_users(architecture: Architecture, types: Mapping[str, Deprecation
 def _list_naming_ports(architecture: Architecture, types: Mapping[str, Deprecation]) -> Iterator[_Use]:
     """Yield the ports and operations that name a type."""
     for component, output in list_described_outputs(architecture):
-        # The type of what a composed component gives on follows from inside: it is told there.
+        # The type of what a composed component passes on follows from inside: it is told there.
         is_given_on = bool(component.children) and output.type_at == NO_SPAN
         if output.deprecated is None and not is_given_on:
             span = output.type_at if output.type_at != NO_SPAN else output.at

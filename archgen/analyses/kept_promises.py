@@ -80,7 +80,7 @@ def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[D
     """
     told: set[tuple[str, str, Span]] = set()
     for broken in find_broken_promises(architecture, analysis):
-        # What is given on as it is promised inside is not told twice.
+        # What is passed on as it is promised inside is not told twice.
         if (broken.key, broken.leaf, broken.at) not in told:
             told.add((broken.key, broken.leaf, broken.at))
             yield _diagnose_broken(broken)

@@ -91,7 +91,7 @@ class _AutomaticConnections:
             self._give_on(children, shell_id, mode)
 
     def _give_on(self, children: Sequence[str], shell_id: str, mode: str) -> None:
-        """Let each output of a composed component give on the output inside that nobody there reads but sinks."""
+        """Let each output of a composed component pass on the output inside that nobody there reads but sinks."""
         self._sources.forget_outputs()
         read_inside = {
             source.target.id

@@ -110,7 +110,7 @@ COMPOSED = KindSpec(
             lambda _, shell: word_set(shell.title),
             lambda shell: shell.title in {title_from_id(shell.name), shell.name},
         ),
-        # What it holds and gives on. Instances of one type are alike in this: of these the name decides.
+        # What it holds and passes on. Instances of one type are alike in this: of these the name decides.
         FeatureSpec("components", 6, lambda _, shell: frozenset(list_last_names(shell.children))),
         FeatureSpec("ports", 2, mark_ports),
         text_feature(3, "functionality", "description"),

@@ -103,7 +103,7 @@ class _WordComparison:
         return self._outputs_after.get(common_id) or self._outputs_after.get(new_leaf)
 
     def _find_causes(self, leaf: str, new_port: Output, key: str) -> list[int]:
-        """Return the indices of the changes that say it: at the output, at the composed component, or what it gives on."""
+        """Return the indices of the changes that say it: at the output, at the composed component, or what it passes on."""
         context = self._context
         group = key.partition(".")[0]
         shell, _, name = new_port.id.rpartition(".")

@@ -39,7 +39,7 @@ class PortWiring:
     ) -> None:
         self._index, self._ledger, self._sorting, self._assembly = index, ledger, sorting, assembly
         self.inner_of: dict[ClassFacts, dict[PortFacts, list[PortEnd]]] = defaultdict(lambda: defaultdict(list))
-        """The ports inside that a port of a composed component gives on, by component and port."""
+        """The ports inside that a port of a composed component passes on, by component and port."""
         self._everyone = [*assembly.types.values(), *assembly.components]
         self._end_of_port = {
             port.element: PortEnd(facts, port) for facts in self._everyone for port in facts.ports if port.is_port
@@ -60,7 +60,7 @@ class PortWiring:
             self._ledger.leave(connector, words)
             return None
         for each, other in (found, found[::-1]):
-            # A port that is given on to the inside still meets others outside.
+            # A port that is passed on to the inside still meets others outside.
             each.port.is_joined |= other.facts.owner is not each.facts
         return connector, found[0], found[1]
 
@@ -187,7 +187,7 @@ class PortWiring:
 
 
 def list_inner_references(wiring: PortWiring, facts: ClassFacts, port: PortFacts) -> list[str]:
-    """Return what a composed component's output gives on, as it names these."""
+    """Return what a composed component's output passes on, as it names these."""
     ends = wiring.inner_of.get(facts, {}).get(port, ())
     return list(dict.fromkeys(f"{end.facts.id}.{end.port.output_id}" for end in ends))
 

@@ -200,7 +200,7 @@ def list_child_elements(element: XmlElement, *kinds: str) -> list[XmlElement]:
 
 
 def is_written_here(child: XmlElement) -> bool:
-    """Whether an element is itself, and no reference to another one."""
+    """Whether an element is defined here, rather than being a reference to another one."""
     return "xmi:idref" not in child.attributes and "href" not in child.attributes
 
 

@@ -1,4 +1,4 @@
-"""Outputs with what they promise: frames named by parameters, replacements resolved, and what is given on kept."""
+"""Outputs with what they promise: frames named by parameters, replacements resolved, and what is passed on kept."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise
 
 
 class _OutputWords(NamedTuple):
-    """What is said of an output, by itself or by what it gives on."""
+    """What is said of an output, by itself or by what it passes on."""
 
     promise: Promise | None = None
     version: str | None = None
@@ -28,7 +28,7 @@ _NOTHING = _OutputWords()
 
 
 class PromisedOutputs:
-    """Completes outputs with what they promise; of composed components with what they keep of what they give on."""
+    """Completes outputs with what they promise; of composed components with what they keep of what they pass on."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class PromisedOutputs:
         return replace(output, promise=said.promise, version=said.version, deprecated=said.deprecated)
 
     def _find_said(self, output_id: str) -> _OutputWords:
-        """Return what is said of an output: its own, else what is said of what it gives on.
+        """Return what is said of an output: its own, else what is said of what it passes on.
 
         Without recursion: what only passes on may stand behind one another in thousands.
         """
@@ -70,7 +70,7 @@ class PromisedOutputs:
         return said
 
     def _find_given(self, output_id: str) -> str | None:
-        """Return the one output that an output of a composed component gives on; None for none, and for several."""
+        """Return the one output that an output of a composed component passes on; None for none, and for several."""
         port: PortKey = ("output", output_id)
         seen_ports: set[PortKey] = set()
         while self._sources is not None and port not in seen_ports:
@@ -86,7 +86,7 @@ class PromisedOutputs:
         return None
 
     def _join_given(self, output_id: str) -> _OutputWords:
-        """Return what all outputs say that an output gives on together: what one of them does not say, nobody keeps."""
+        """Return what all outputs say that an output passes on together: what one of them does not say, nobody keeps."""
         if self._sources is None or output_id.rpartition(".")[0] not in self._outline.shells:
             return _NOTHING
         behind = self._sources.leaf_outputs_of(output_id)
@@ -101,7 +101,7 @@ class PromisedOutputs:
         )
 
     def _lift_replacement(self, said: _OutputWords, output_id: str) -> _OutputWords:
-        """Return what is given on with the replacement as seen from outside: the port that gives the replacement on."""
+        """Return what is passed on with the replacement as seen from outside: the port that gives the replacement on."""
         shell_id = output_id.rpartition(".")[0]
         target = said.deprecated.target if said.deprecated else None
         if target is None or said.deprecated is None or shell_id not in self._outline.shells:
@@ -151,7 +151,7 @@ class PromisedOutputs:
 
 
 def _lay_over(given: _OutputWords, own: _OutputWords) -> _OutputWords:
-    """Return what is said by itself, and for the rest what is given on; of a promise key by key."""
+    """Return what is said by itself, and for the rest what is passed on; of a promise key by key."""
     promise = own.promise or given.promise
     if own.promise and given.promise:
         kept: dict[str, Any] = {

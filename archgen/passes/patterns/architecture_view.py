@@ -193,7 +193,7 @@ class ArchitectureView:
         body.path = element.key
         if element.parent is not None:
             body["in"] = element.parent
-        # What a type's ports give on from inside is inside of what is made from it, too.
+        # What a type's ports pass on from inside is inside of what is made from it, too.
         moves = {
             self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name
         }

@@ -64,7 +64,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
 
 
 def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Key, ...]:
-    """Return what is said of a composed component itself. No selector finds it by that: what flows, flows between leaves."""
+    """Return the keys that a composed component has of its own. Selectors do not look at them: they select leaves."""
     return tuple(
         dict.fromkeys(
             (

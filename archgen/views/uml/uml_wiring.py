@@ -128,7 +128,7 @@ class UmlWiring:
         self._use(port, interface_id)
 
     def write_delegations(self, composed: Iterator[tuple[str, Mapping[str, Any]]]) -> None:
-        """Write what outputs of composed components give on. `composed` are these with their paths."""
+        """Write what outputs of composed components pass on. `composed` are these with their paths."""
         for path, body in composed:
             place = self._components.samples.get(path.removeprefix(TYPE_PREFIX), "") if _is_type(path) else path
             for name, port in read_mapping(body.get("outputs")).items():
