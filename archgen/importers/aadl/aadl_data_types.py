@@ -8,9 +8,10 @@ from typing import Any
 from archgen.importers.aadl.aadl_tree import AadlLink, AadlList, AadlName
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
+from archgen.importers.aadl.classifier_shapes import ClassifierUse, ResolvedClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import PropertyScope, UsedProperties, read_first_text, read_size, read_texts
-from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, ClassifierUse, ResolvedClassifier
+from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
 _ROS_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from archgen.importers.aadl.aadl_tree import Path
+from archgen.importers.aadl.classifier_shapes import ResolvedPart
 from archgen.importers.aadl.property_values import PropertyScope, read_references
-from archgen.importers.aadl.resolved_classifiers import ResolvedPart
 from archgen.model.element_ids import make_id
 from archgen.model.port_media import MEDIUM_NAMES
 

@@ -8,11 +8,12 @@ from typing import Any
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure, keep_thread
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort
 from archgen.importers.aadl.property_values import PropertyScope, read_count, read_first_text
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.structures import ClassifierStructure, StructuredPart, Wire
 from archgen.importers.aadl.thread_timing import add_port_hints, add_trigger, find_role, fits_role, map_timing
 

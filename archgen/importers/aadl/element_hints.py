@@ -6,9 +6,9 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from archgen.importers.aadl.aadl_tree import AadlConnection, AadlProperty, Path
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import PropertyScope, read_first_text, read_texts, read_time_range
-from archgen.importers.aadl.resolved_classifiers import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.structures import ClassifierStructure
 
 

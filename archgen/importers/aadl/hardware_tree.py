@@ -9,9 +9,10 @@ from archgen.importers.aadl.aadl_tree import AadlProperty, Path
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.bus_names import read_bound_path
 from archgen.importers.aadl.classifier_names import fold_property_name
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import PropertyScope, read_references
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_part_path
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
+from archgen.importers.aadl.classifier_shapes import ClassifierUse, ResolvedClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import PropertyScope, UsedProperties, read_first_text
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ClassifierUse, ResolvedClassifier
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.structures import ClassifierStructure, StructureFinder
 from archgen.model.element_ids import make_id, make_unique_id
 

@@ -8,9 +8,10 @@ from typing import Any
 from archgen.importers.aadl.aadl_data_types import AadlDataTypes
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text, is_marked, read_port_words
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPort
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import PropertyScope, UsedProperties
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPort
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.model.element_ids import make_id, make_unique_id
 
 PORT_KINDS = frozenset({"data port", "event data port", "event port", "feature", "subprogram access"})

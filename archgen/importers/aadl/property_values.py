@@ -17,7 +17,8 @@ from archgen.importers.aadl.aadl_tree import (
     Path,
 )
 from archgen.importers.aadl.classifier_names import ClassifierNames, fold_property_name
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 
 _UNITS = {"ns": "ns", "us": "us", "ms": "ms", "sec": "s", "s": "s", "min": "min", "hr": "h", "h": "h"}
 _BYTES_A_SECOND = {

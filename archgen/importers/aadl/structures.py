@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 from archgen.importers.aadl.aadl_tree import AadlConnection, Path
 from archgen.importers.aadl.archgen_words import find_own_text
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
 from archgen.importers.aadl.property_values import PropertyScope, UsedProperties
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.model.element_ids import make_id, make_unique_id
 
 COMPONENT_CATEGORIES = frozenset({"system", "process", "device", "abstract", "thread", "thread group"})

@@ -6,10 +6,10 @@ from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPorts
 from archgen.importers.aadl.property_values import PropertyScope, read_count, read_duration, read_time_range, read_word
-from archgen.importers.aadl.resolved_classifiers import ResolvedClassifier
 
 _ROLES = {"message_source": "source", "filter": "filter", "message_sink": "sink", "reactive": "reactive"}
 _BEHAVIOURS = {"periodic": "periodic", "sporadic": "event", "aperiodic": "event"}

@@ -133,7 +133,7 @@ class PromisedOutputs:
         if text in known:
             return text
         if not self._resolver.is_lost(text) and not self._resolver.is_lost(f"{component_id}.{text}"):
-            guess = self._resolver.guess_name(text, outputs if "." not in text else known)
+            guess = self._resolver.guesser.guess_name(text, outputs if "." not in text else known)
             span = outputs[guess].at if guess in outputs else known.get(guess or "", NO_SPAN)
             self._resolver.diagnostics.append(
                 Diagnostic(
