@@ -86,34 +86,40 @@ class AadlDataTypes:
                 self._name_known(known, "msg")
         return count
 
-    def _is_part(self, known: KnownClassifier | None) -> bool:
+    def _is_part(self, known_classifier: KnownClassifier | None) -> bool:
         """Whether an export of archgen's wrote data as the request or the answer of a call: the message says it."""
-        resolved = self._resolver.resolve(ClassifierUse(known.full_name, known)) if known else None
+        resolved = (
+            self._resolver.resolve(ClassifierUse(known_classifier.full_name, known_classifier))
+            if known_classifier
+            else None
+        )
         return resolved is not None and bool(
             find_own_text(PropertyScope(self._resolver, self._used, resolved), (), "part_of")
         )
 
-    def _is_shadowed(self, known: KnownClassifier) -> bool:
+    def _is_shadowed(self, known_classifier: KnownClassifier) -> bool:
         """Whether a type is told by its only implementation."""
-        return known.key in self._only_implementations
+        return known_classifier.key in self._only_implementations
 
-    def _name_known(self, known: KnownClassifier, kind: str) -> str:
+    def _name_known(self, known_classifier: KnownClassifier, kind: str) -> str:
         # A type and its only implementation are one: it has the fields of the implementation.
-        known = self._only_implementations.get(known.key, known)
-        key = known.key
+        known_classifier = self._only_implementations.get(known_classifier.key, known_classifier)
+        key = known_classifier.key
         type_key = key.partition(".")[0]
-        is_only = self._only_implementations.get(type_key) is known
+        is_only = self._only_implementations.get(type_key) is known_classifier
         if key in self._names:
             return self._names[key]
-        resolved = self._resolver.resolve(ClassifierUse(known.full_name, known)) or ResolvedClassifier(known)
+        resolved = self._resolver.resolve(
+            ClassifierUse(known_classifier.full_name, known_classifier)
+        ) or ResolvedClassifier(known_classifier)
         scope = PropertyScope(self._resolver, self._used, resolved)
         own_kind = find_own_text(scope, (), "flow_kind") or kind
-        own_message = find_own_text(scope, (), "message_name") or _make_message(known.full_name, own_kind)
-        name = find_own_text(scope, (), "id") or known.classifier.name.partition(".")[0]
-        if known.classifier.is_implementation and not is_only:
-            name = known.classifier.name.replace(".", " ")
+        own_message = find_own_text(scope, (), "message_name") or _make_message(known_classifier.full_name, own_kind)
+        name = find_own_text(scope, (), "id") or known_classifier.classifier.name.partition(".")[0]
+        if known_classifier.classifier.is_implementation and not is_only:
+            name = known_classifier.classifier.name.replace(".", " ")
         if name in self._taken_names:
-            name = f"{name} ({known.package.name.replace('::', ' ')})"[:200]
+            name = f"{name} ({known_classifier.package.name.replace('::', ' ')})"[:200]
         self._names[key] = name
         body = self._describe(resolved, scope, kind)
         if own_message and not body:
@@ -123,14 +129,14 @@ class AadlDataTypes:
         message = own_message or _find_message(resolved, own_kind)
         body = {**({"message": message} if message else {}), **body}
         self._taken_names.add(name)
-        if known.package.name.lower() not in _BASE_PACKAGES:
-            self._add_type(known, name, body)
+        if known_classifier.package.name.lower() not in _BASE_PACKAGES:
+            self._add_type(known_classifier, name, body)
         return name
 
-    def _add_type(self, known: KnownClassifier, name: str, body: dict[str, Any]) -> None:
+    def _add_type(self, known_classifier: KnownClassifier, name: str, body: dict[str, Any]) -> None:
         if not self._resolver.names.is_own:
             hints = body.get("hints", {}).get("aadl", {})
-            body = {**body, "hints": {"aadl": {"classifier": known.full_name, **hints}}}
+            body = {**body, "hints": {"aadl": {"classifier": known_classifier.full_name, **hints}}}
         self.types[name] = body
 
     def _describe(self, resolved: ResolvedClassifier, scope: PropertyScope, kind: str) -> dict[str, Any]:
@@ -233,9 +239,9 @@ class AadlDataTypes:
         return type_name
 
 
-def _is_library_data(known: KnownClassifier) -> bool:
-    name = known.classifier.name.lower().partition(".")[0]
-    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or known.is_of_library
+def _is_library_data(classifier: KnownClassifier) -> bool:
+    name = classifier.classifier.name.lower().partition(".")[0]
+    return classifier.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or classifier.is_of_library
 
 
 def _find_message(resolved: ResolvedClassifier, kind: str) -> str:

@@ -71,22 +71,22 @@ class ModelRoots:
         for structure in list(self._used_structures.values()):
             self._name_type(structure)
 
-    def _add_unused(self, known: KnownClassifier, implemented: set[str], extended_keys: set[str]) -> None:
+    def _add_unused(self, known_classifier: KnownClassifier, implemented: set[str], extended_keys: set[str]) -> None:
         """Count what stands in no system: it becomes a component type, too."""
-        structure = self._find_structure(known)
-        is_told_otherwise = known.key in implemented and known.key not in self._part_keys
+        structure = self._find_structure(known_classifier)
+        is_told_otherwise = known_classifier.key in implemented and known_classifier.key not in self._part_keys
         if is_told_otherwise or id(structure) in self._root_ids or not _has_content(structure):
             return
-        if known.key in extended_keys and known.key not in self._only:
+        if known_classifier.key in extended_keys and known_classifier.key not in self._only:
             self._extended.add(id(structure))
         if id(structure) not in self._uses:
             self._uses[id(structure)] = 0
             self._count_uses(structure)
             self._used_structures[id(structure)] = structure
 
-    def _find_structure(self, known: KnownClassifier) -> ClassifierStructure:
-        resolved = self._resolver.resolve(ClassifierUse(known.full_name, known))
-        return self._finder.find(resolved or ResolvedClassifier(known))
+    def _find_structure(self, known_classifier: KnownClassifier) -> ClassifierStructure:
+        resolved = self._resolver.resolve(ClassifierUse(known_classifier.full_name, known_classifier))
+        return self._finder.find(resolved or ResolvedClassifier(known_classifier))
 
     def _list_named(self, known_classifiers: list[KnownClassifier]) -> set[str]:
         """Return the keys of what is extended; remember those of what is a part."""

@@ -222,18 +222,18 @@ def _parse_record(cursor: TokenCursor) -> AadlRecord:
     return AadlRecord(fields)
 
 
-def parse_property_definition(cursor: TokenCursor, known: PropertySet) -> None:
+def parse_property_definition(cursor: TokenCursor, property_set: PropertySet) -> None:
     """Parse a definition of a property set: a property, a type, or a constant."""
     start = cursor.token.offset
     name = cursor.expect_name("a property")
     cursor.expect(":")
     if cursor.accept("type"):
         parse_property_type(cursor)
-        known.types[name.lower()] = cursor.span_from(start)
+        property_set.types[name.lower()] = cursor.span_from(start)
     elif cursor.accept("constant"):
         parse_property_type(cursor)
         cursor.expect("=>")
-        known.constants[name.lower()] = parse_property_value(cursor)
+        property_set.constants[name.lower()] = parse_property_value(cursor)
     else:
         cursor.accept("access")
         cursor.accept("inherit")
@@ -243,7 +243,7 @@ def parse_property_definition(cursor: TokenCursor, known: PropertySet) -> None:
             parse_property_value(cursor)
         cursor.expect("applies", "to")
         _skip_brackets(cursor)
-        known.properties[name.lower()] = cursor.span_from(start)
+        property_set.properties[name.lower()] = cursor.span_from(start)
     cursor.expect(";")
 
 

@@ -64,11 +64,13 @@ class ClassifierResolver:
         use = self.find_use(binding.classifier, binding.bindings, place, env) if binding.classifier else ClassifierUse()
         return replace(use, category=binding.category)
 
-    def _write_out(self, known: KnownClassifier, bindings: Mapping[str, ClassifierUse]) -> ResolvedClassifier:
-        resolved = ResolvedClassifier(known)
-        classifier = known.classifier
+    def _write_out(
+        self, known_classifier: KnownClassifier, bindings: Mapping[str, ClassifierUse]
+    ) -> ResolvedClassifier:
+        resolved = ResolvedClassifier(known_classifier)
+        classifier = known_classifier.classifier
         if id(classifier) in self._open:
-            words = f"{known.full_name} extends itself in the end; what it extends is left out here"
+            words = f"{known_classifier.full_name} extends itself in the end; what it extends is left out here"
             self.notes.add_contradiction("extends", words, classifier.span)
             return resolved
         if len(self._open) > _MAX_PARENTS:
@@ -78,12 +80,12 @@ class ClassifierResolver:
             return resolved
         self._open.add(id(classifier))
         env = {
-            prototype.name.lower(): self.find_use(prototype.classifier, {}, known, {})
+            prototype.name.lower(): self.find_use(prototype.classifier, {}, known_classifier, {})
             if prototype.classifier
             else ClassifierUse(prototype.name, category=UNBOUND)
             for prototype in classifier.prototypes
         } | dict(bindings)
-        for parent in self._list_parents(known, env):
+        for parent in self._list_parents(known_classifier, env):
             self._add_inherited(resolved, parent)
         self._open.discard(id(classifier))
         resolved.prototypes |= env
@@ -91,8 +93,10 @@ class ClassifierResolver:
         self._add_own(resolved, classifier, resolved.prototypes)
         return resolved
 
-    def _list_parents(self, known: KnownClassifier, env: Mapping[str, ClassifierUse]) -> list[ResolvedClassifier]:
-        classifier = known.classifier
+    def _list_parents(
+        self, known_classifier: KnownClassifier, env: Mapping[str, ClassifierUse]
+    ) -> list[ResolvedClassifier]:
+        classifier = known_classifier.classifier
         uses: list[tuple[str, Mapping[str, PrototypeBinding]]] = []
         if classifier.is_implementation:
             uses.append((classifier.name.partition(".")[0], {}))
@@ -100,11 +104,11 @@ class ClassifierResolver:
             uses.append((classifier.extends, classifier.bindings))
         parents: list[ResolvedClassifier] = []
         for name, own_bindings in uses:
-            use = self.find_use(name, own_bindings, known, {})
+            use = self.find_use(name, own_bindings, known_classifier, {})
             if use.known is None:
                 self.notes.add_unknown_classifier(name, classifier.span)
                 continue
-            values = {key: self._bind(binding, known, env) for key, binding in own_bindings.items()}
+            values = {key: self._bind(binding, known_classifier, env) for key, binding in own_bindings.items()}
             if parent := self.resolve(ClassifierUse(name, use.known, {**env, **values})):
                 parents.append(parent)
         return parents

@@ -34,12 +34,12 @@ def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
                 _walk_part(system, roots, part, group)
 
 
-def _count_instances(structure: ClassifierStructure, known: dict[int, int]) -> int:
-    """Return how many parts a structure has, to any depth; `known` are those that were counted."""
-    if id(structure) not in known:
+def _count_instances(structure: ClassifierStructure, counts_by_id: dict[int, int]) -> int:
+    """Return how many parts a structure has, to any depth; `counts_by_id` has those that were counted."""
+    if id(structure) not in counts_by_id:
         inner = (part.structure for part in structure.parts.values() if part.structure and not structure.is_node)
-        known[id(structure)] = sum(1 + _count_instances(each, known) for each in inner)
-    return known[id(structure)]
+        counts_by_id[id(structure)] = sum(1 + _count_instances(each, counts_by_id) for each in inner)
+    return counts_by_id[id(structure)]
 
 
 def _walk_part(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, around: ProcessInstance) -> None:

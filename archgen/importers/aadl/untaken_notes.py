@@ -87,9 +87,9 @@ def _tell_values(association: AadlProperty, notes: NoteList) -> None:
     notes.add("in modes", words, association.span, fate="noted")
 
 
-def _tell_modes(known: KnownClassifier, notes: NoteList) -> None:
+def _tell_modes(known_classifier: KnownClassifier, notes: NoteList) -> None:
     """Tell what stands in some modes alone, each at its place."""
-    classifier = known.classifier
+    classifier = known_classifier.classifier
     if classifier.modes:
         words = "archgen has no modes: what changes when one follows another is not taken"
         notes.add_counted("modes", words, classifier.span)

@@ -25,10 +25,10 @@ def make_type_name(message: str) -> str:
 
 
 def read_message_definition(
-    text: str, message: str, shown: str, *, is_ros_1: bool
+    text: str, message: str, shown_path: str, *, is_ros_1: bool
 ) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
     """Return the type that a definition makes, and what is wrong in it. Lines that ROS refuses are left out."""
-    definition = parse_interface_definition(text, message, shown, ros1=is_ros_1)
+    definition = parse_interface_definition(text, message, shown_path, ros1=is_ros_1)
     interface = definition.interface
     data: dict[str, Any] = {"message": message}
     if message in load_shipped_interfaces(None).names:

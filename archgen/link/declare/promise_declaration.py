@@ -100,15 +100,15 @@ class PromisedOutputs:
             first.deprecated if all(each.deprecated == first.deprecated for each in said) else None,
         )
 
-    def _lift_replacement(self, said: _OutputWords, output_id: str) -> _OutputWords:
+    def _lift_replacement(self, output_words: _OutputWords, output_id: str) -> _OutputWords:
         """Return what is passed on with the replacement as seen from outside: the port that gives the replacement on."""
         shell_id = output_id.rpartition(".")[0]
-        target = said.deprecated.target if said.deprecated else None
-        if target is None or said.deprecated is None or shell_id not in self._outline.shells:
-            return said
+        target = output_words.deprecated.target if output_words.deprecated else None
+        if target is None or output_words.deprecated is None or shell_id not in self._outline.shells:
+            return output_words
         ports = (f"{shell_id}.{name}" for name in self._outline.outputs[shell_id])
         lifted = next((port for port in ports if self._find_given(port) == target), target)
-        return said._replace(deprecated=replace(said.deprecated, target=lifted))
+        return output_words._replace(deprecated=replace(output_words.deprecated, target=lifted))
 
     def _find_own(self, output_id: str) -> _OutputWords:
         """Return what is written at an output, each reference resolved once."""
@@ -150,17 +150,17 @@ class PromisedOutputs:
         return None
 
 
-def _lay_over(given: _OutputWords, own: _OutputWords) -> _OutputWords:
+def _lay_over(given_words: _OutputWords, own: _OutputWords) -> _OutputWords:
     """Return what is said by itself, and for the rest what is passed on; of a promise key by key."""
-    promise = own.promise or given.promise
-    if own.promise and given.promise:
+    promise = own.promise or given_words.promise
+    if own.promise and given_words.promise:
         kept: dict[str, Any] = {
-            key: value for key, value in given.promise.list_kept() if getattr(own.promise, key) is None
+            key: value for key, value in given_words.promise.list_kept() if getattr(own.promise, key) is None
         }
         if "unit" in kept and own.promise.range is not None:
             del kept["unit"]  # the unit of another range
-        promise = replace(own.promise, **kept, places={**given.promise.places, **own.promise.places})
-    return _OutputWords(promise, own.version or given.version, own.deprecated or given.deprecated)
+        promise = replace(own.promise, **kept, places={**given_words.promise.places, **own.promise.places})
+    return _OutputWords(promise, own.version or given_words.version, own.deprecated or given_words.deprecated)
 
 
 def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:

@@ -78,13 +78,13 @@ class ArchitectureView:
         """Return what a conceptual type has, None where there is none."""
         return self.types.get_body(name)
 
-    def is_a(self, name: str, wanted: str) -> bool:
+    def is_a(self, name: str, type_name: str) -> bool:
         """Whether a conceptual type is one, or made from a generic one; whether a component, or its type, is made from another."""
-        if name == wanted or read_generic_name(name).base == wanted:
+        if name == type_name or read_generic_name(name).base == type_name:
             return True
         key = name if name in self.elements else self.type_keys.get(read_generic_name(name).base, "")
         names = {each.type_name for each in self.list_layers(key)} if key in self.elements else set()
-        return any(each is not None and wanted in (each, self.type_keys.get(each)) for each in names)
+        return any(each is not None and type_name in (each, self.type_keys.get(each)) for each in names)
 
     # What edits ask.
 

@@ -34,7 +34,7 @@ class NamedElements(Protocol):
         """Return what a conceptual type has, None where there is none."""
         ...
 
-    def is_a(self, name: str, wanted: str) -> bool:
+    def is_a(self, name: str, type_name: str) -> bool:
         """Whether a type, or a component, is one, or made from it."""
         ...
 

@@ -207,5 +207,5 @@ def _join_takers(changes: Iterable[BoundaryChange]) -> Iterable[BoundaryChange]:
     return joined.values()
 
 
-def _note_before(partners: str) -> str:
-    return f" (before: {partners})" if partners else ""
+def _note_before(partner_phrase: str) -> str:
+    return f" (before: {partner_phrase})" if partner_phrase else ""
