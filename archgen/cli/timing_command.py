@@ -156,7 +156,7 @@ def _print_summary(request: TimingRequest) -> None:
 
 def _print_chain(request: TimingRequest, chain_id: str) -> None:
     from archgen.emit.data import timing_json
-    from archgen.emit.terminal import timing_text
+    from archgen.emit.terminal import chain_text
     from archgen.simulation.chain_evidence import ChainEvidence
     from archgen.timing.chains import chain_bounds as chains_of
     from archgen.timing.chains import duerr_bounds
@@ -176,7 +176,7 @@ def _print_chain(request: TimingRequest, chain_id: str) -> None:
         _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result, evidence)})
     else:
         age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(timing_text.format_chain(result, analysis, age, published, find_width(sys.stdout), evidence))
+        _print_lines(chain_text.format_chain(result, analysis, age, published, find_width(sys.stdout), evidence))
 
 
 def _print_reasons(request: TimingRequest, word: str) -> None:
@@ -201,7 +201,7 @@ def _print_reasons(request: TimingRequest, word: str) -> None:
 
 def _print_paths(request: TimingRequest, source: str, target: str, path_count: int) -> None:
     from archgen.emit.data import timing_json
-    from archgen.emit.terminal import timing_text
+    from archgen.emit.terminal import chain_text
     from archgen.timing.chains import chain_bounds, word_resolution
     from archgen.timing.chains.cost_network import CostNetwork
     from archgen.timing.run_analysis import analyse_architecture
@@ -223,7 +223,7 @@ def _print_paths(request: TimingRequest, source: str, target: str, path_count: i
     if request.as_json:
         _print_json(timing_json.ways_to_json(start.id, end.id, count, *listed_paths))
     else:
-        _print_lines(timing_text.format_ways(start.id, end.id, count, *listed_paths))
+        _print_lines(chain_text.format_ways(start.id, end.id, count, *listed_paths))
 
 
 def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_remedies import describe_slack
-from archgen.emit.terminal.timing_text import format_figure
+from archgen.emit.terminal.figure_text import format_figure
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.figures import figure_wording
